@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sono
+{
+
+/// A comma-separated table with a header line. Empty lines and lines starting with '#' are skipped, fields may be
+/// quoted ("" inside quotes is one quote), spaces around a field are dropped, missing last fields are empty.
+struct CsvFile
+{
+  struct Row
+  {
+    int line = 0;                    ///< line number in the file, from 1
+    std::vector<std::string> fields; ///< as many as the header has
+  };
+
+  std::string path;
+  std::vector<std::string> header;
+  std::vector<Row> rows;
+
+  /// Throws Error naming the file (and line) when it is missing, empty, or a line has a broken quote or more fields
+  /// than the header.
+  static CsvFile read(const std::string& path);
+
+  /// Index of a column; -1 when the header lacks it.
+  int column(const std::string& name) const;
+  /// Index of a column; throws Error naming file and column when the header lacks it.
+  int requiredColumn(const std::string& name) const;
+  /// "'table.csv' line 7", for messages.
+  std::string where(const Row& row) const;
+};
+
+/// The whole text as a number, in any locale; empty when it is not one.
+std::optional<double> parseNumber(const std::string& text);
+
+/// The field as it goes into a file: quoted where it must be.
+std::string csvField(const std::string& text);
+
+} // namespace sono

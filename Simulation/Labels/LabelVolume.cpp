@@ -1,0 +1,125 @@
+#include "Labels/LabelVolume.h"
+
+#include "Progress.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono
+{
+
+namespace
+{
+
+constexpr double orthonormalTolerance = 1e-3;
+
+bool isPositive(double value)
+{
+  return std::isfinite(value) && value > 0.0;
+}
+
+/// Largest deviation of the columns' scalar products from those of an orthonormal frame.
+double orthonormalError(const Mat3d& m)
+{
+  double worst = 0.0;
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int b = a; b < 3; ++b)
+    {
+      const double deviation = std::abs(glm::dot(m[a], m[b]) - (a == b ? 1.0 : 0.0));
+      worst = std::isfinite(deviation) ? std::max(worst, deviation) : HUGE_VAL;
+    }
+  }
+  return worst;
+}
+
+} // namespace
+
+void GridPlacement::validate(const std::string& what) const
+{
+  if (size.x <= 0 || size.y <= 0 || size.z <= 0)
+  {
+    throw Error("'" + what + "' has no voxels (" + std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
+                std::to_string(size.z) + "); choose an image with at least one voxel along each axis.");
+  }
+  if (!isPositive(spacingMm.x) || !isPositive(spacingMm.y) || !isPositive(spacingMm.z))
+  {
+    throw Error("'" + what + "' has a voxel spacing that is zero, negative or not finite; correct its header.");
+  }
+  if (!std::isfinite(originMm.x) || !std::isfinite(originMm.y) || !std::isfinite(originMm.z))
+  {
+    throw Error("'" + what + "' has an origin that is not finite; correct its header.");
+  }
+  if (orthonormalError(direction) > orthonormalTolerance)
+  {
+    throw Error("'" + what + "' has axes that are not at right angles; resample it to a grid without shear.");
+  }
+}
+
+GridPlacement placementFromAffine(const Vec3i& size,
+                                  const Mat3d& columns,
+                                  const Vec3d& originMm,
+                                  const std::string& what)
+{
+  GridPlacement placement;
+  placement.size = size;
+  placement.originMm = originMm;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    placement.spacingMm[axis] = glm::length(columns[axis]);
+    placement.direction[axis] = columns[axis] / placement.spacingMm[axis];
+  }
+  placement.validate(what);
+
+  // The inverse is taken as the transpose, so what the file's rounding left over must go.
+  Mat3d& d = placement.direction;
+  const Vec3d thirdAxis = d[2];
+  d[1] = glm::normalize(d[1] - glm::dot(d[0], d[1]) * d[0]);
+  d[2] = glm::cross(d[0], d[1]);
+  if (glm::dot(d[2], thirdAxis) < 0.0)
+  {
+    d[2] = -d[2];
+  }
+  return placement;
+}
+
+const LabelInfo* LabelVolume::find(int id) const
+{
+  const auto at = std::lower_bound(
+    labels.begin(), labels.end(), id, [](const LabelInfo& label, int wanted) { return label.id < wanted; });
+  return at != labels.end() && at->id == id ? &*at : nullptr;
+}
+
+void LabelVolume::collectLabels()
+{
+  std::vector<bool> occurs(65536, false);
+  for (const std::uint16_t id : voxels)
+  {
+    occurs[id] = true;
+  }
+  std::vector<LabelInfo> known(65536);
+  for (LabelInfo& label : labels)
+  {
+    if (label.id >= 0 && label.id < 65536)
+    {
+      known[std::size_t(label.id)] = std::move(label);
+    }
+  }
+  labels.clear();
+  for (int id = 0; id < 65536; ++id)
+  {
+    if (!occurs[std::size_t(id)])
+    {
+      continue;
+    }
+    LabelInfo label = std::move(known[std::size_t(id)]);
+    label.id = id;
+    if (label.name.empty())
+    {
+      label.name = id == 0 ? "background" : "label_" + std::to_string(id);
+    }
+    labels.push_back(std::move(label));
+  }
+}
+
+} // namespace sono

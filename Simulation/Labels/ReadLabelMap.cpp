@@ -1,0 +1,209 @@
+#include "Labels/ReadLabelMap.h"
+
+#include "Labels/CsvFile.h"
+#include "Labels/ReadNifti.h"
+#include "Labels/ReadNrrd.h"
+#include "Progress.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <set>
+#include <stdexcept>
+
+namespace sono
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// The known ending of a file name, in lower case; empty for another one.
+std::string knownEnding(const std::string& path)
+{
+  std::string lower = path;
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  for (const std::string ending : { ".nii.gz", ".nii", ".seg.nrrd", ".nrrd", ".nhdr" })
+  {
+    if (lower.size() > ending.size() && lower.compare(lower.size() - ending.size(), ending.size(), ending) == 0)
+    {
+      return ending;
+    }
+  }
+  return {};
+}
+
+LabelVolume readByEnding(const std::string& path, const std::string& ending)
+{
+  if (ending.empty())
+  {
+    throw Error("cannot read '" + path +
+                "': its name ends in none of .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd; convert it.");
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || !std::ifstream(path))
+  {
+    throw Error("cannot read '" + path + "': no such file, or no permission to read it.");
+  }
+  try
+  {
+    return ending.compare(0, 4, ".nii") == 0 ? readNifti(path) : readNrrd(path);
+  }
+  catch (const std::bad_alloc&)
+  {
+    throw Error("cannot read '" + path + "': it does not fit into memory; crop or resample it.");
+  }
+}
+
+/// A number of a table within [0, maximum]; throws Error naming file, line and column.
+double tableNumber(const CsvFile& csv, const CsvFile::Row& row, int column, double maximum)
+{
+  const std::string& text = row.fields[std::size_t(column)];
+  const auto value = parseNumber(text);
+  if (!value || !(*value >= 0.0 && *value <= maximum) || *value != std::floor(*value))
+  {
+    throw Error(csv.where(row) + " has '" + text + "' in column '" + csv.header[std::size_t(column)] +
+                "'; write a whole number from 0 to " + std::to_string(int(maximum)) + ".");
+  }
+  return *value;
+}
+
+std::vector<LabelInfo> labelsFromTable(const CsvFile& csv)
+{
+  const int id = csv.requiredColumn("id");
+  const int name = csv.requiredColumn("name");
+  const int channels[3] = { csv.column("r"), csv.column("g"), csv.column("b") };
+  const bool colored = *std::min_element(channels, channels + 3) >= 0;
+  std::vector<LabelInfo> labels;
+  for (const CsvFile::Row& row : csv.rows)
+  {
+    LabelInfo label;
+    label.id = int(tableNumber(csv, row, id, 65535.0));
+    label.name = row.fields[std::size_t(name)];
+    if (colored && !row.fields[std::size_t(channels[0])].empty())
+    {
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        label.color[c] = float(tableNumber(csv, row, channels[c], 255.0) / 255.0);
+      }
+      label.hasColor = true;
+    }
+    labels.push_back(std::move(label));
+  }
+  return labels;
+}
+
+/// The table that belongs to a label map: `<stem>.csv`, else labels.csv; empty when neither names labels.
+std::string tableBeside(const std::string& path, const std::string& ending)
+{
+  const fs::path stem = path.substr(0, path.size() - ending.size());
+  for (const fs::path& candidate : { fs::path(stem.string() + ".csv"), stem.parent_path() / "labels.csv" })
+  {
+    std::error_code error;
+    if (!fs::is_regular_file(candidate, error))
+    {
+      continue;
+    }
+    const CsvFile csv = CsvFile::read(candidate.string());
+    if (csv.column("id") >= 0 && csv.column("name") >= 0)
+    {
+      return candidate.string();
+    }
+  }
+  return {};
+}
+
+void copyNameAndColor(const LabelInfo& from, LabelInfo& to)
+{
+  if (!from.name.empty())
+  {
+    to.name = from.name;
+  }
+  if (from.hasColor)
+  {
+    to.color = from.color;
+    to.hasColor = true;
+  }
+}
+
+} // namespace
+
+LabelVolume readLabelMap(const std::string& path)
+{
+  const std::string ending = knownEnding(path);
+  LabelVolume volume = readByEnding(path, ending);
+  const std::string table = tableBeside(path, ending);
+  if (!table.empty())
+  {
+    std::set<int> named;
+    for (const LabelInfo& label : volume.labels)
+    {
+      if (!label.name.empty())
+      {
+        named.insert(label.id);
+      }
+    }
+    for (LabelInfo& label : labelsFromTable(CsvFile::read(table)))
+    {
+      if (named.count(label.id) == 0)
+      {
+        volume.labels.push_back(std::move(label));
+      }
+    }
+  }
+  volume.collectLabels();
+  return volume;
+}
+
+void readLabelTable(const std::string& csvPath, LabelVolume& volume)
+{
+  for (const LabelInfo& row : labelsFromTable(CsvFile::read(csvPath)))
+  {
+    for (LabelInfo& label : volume.labels)
+    {
+      if (label.id == row.id)
+      {
+        copyNameAndColor(row, label);
+      }
+    }
+  }
+}
+
+void writeLabelMap(const std::string& path, const LabelVolume& volume)
+{
+  const std::string ending = knownEnding(path);
+  if (ending != ".nii" && ending != ".nii.gz")
+  {
+    throw Error("cannot write '" + path + "': its name must end in .nii or .nii.gz.");
+  }
+  volume.placement.validate(path);
+  if (volume.voxels.size() != volume.placement.voxelCount())
+  {
+    throw Error("cannot write '" + path + "': the volume has " + std::to_string(volume.voxels.size()) +
+                " voxels for a grid of " + std::to_string(volume.placement.voxelCount()) + ".");
+  }
+  writeNifti(path, volume);
+
+  const std::string tablePath = path.substr(0, path.size() - ending.size()) + ".csv";
+  std::ofstream table(tablePath, std::ios::binary);
+  table << "id,name,r,g,b\n";
+  for (const LabelInfo& label : volume.labels)
+  {
+    table << std::to_string(label.id) << ',' << csvField(label.name);
+    for (const float channel : label.color)
+    {
+      table << ',' << (label.hasColor ? std::to_string(std::lround(255.0 * double(channel))) : "");
+    }
+    table << '\n';
+  }
+  if (!table.flush())
+  {
+    throw Error("cannot write '" + tablePath + "': the disk may be full or the file protected.");
+  }
+}
+
+} // namespace sono

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "Labels/LabelVolume.h"
+
+#include <string>
+
+namespace sono
+{
+
+/// Reads a NIfTI-1 or NIfTI-2 label map (.nii, .nii.gz) with the names and colours of a label table in its header
+/// extensions; `labels` holds those, also of ids that no voxel carries. Throws Error as readLabelMap does.
+LabelVolume readNifti(const std::string& path);
+
+/// Writes NIfTI-1, uint16; gzip-compressed when the name ends in .gz. Throws Error when that fails.
+void writeNifti(const std::string& path, const LabelVolume& volume);
+
+/// The `<Label Key=".." Red=".." Green=".." Blue="..">name</Label>` elements of an XML text (Connectome Workbench's
+/// label table; colours 0..1).
+std::vector<LabelInfo> labelsFromXml(const std::string& xml);
+
+} // namespace sono

@@ -1,0 +1,140 @@
+#include "Scene/TissueTable.h"
+
+#include "Labels/CsvFile.h"
+#include "Progress.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace sono
+{
+
+namespace
+{
+
+/// One number of a tissue: its column, where it is kept, and its range.
+struct Property
+{
+  const char* column;
+  double Tissue::*member;
+  double minimum;
+  double maximum;
+  bool aboveMinimum; ///< the minimum itself is refused
+};
+
+constexpr double unlimited = std::numeric_limits<double>::max();
+
+const Property properties[] = {
+  { "impedance_MRayl", &Tissue::impedanceMRayl, 0.0, unlimited, true },
+  { "sound_speed_m_per_s", &Tissue::soundSpeedMPerS, 0.0, unlimited, true },
+  { "attenuation_dB_per_cm_MHz", &Tissue::attenuationDbPerCmMHz, 0.0, unlimited, false },
+  { "mu0", &Tissue::scattererMean, 0.0, 1.0, false },
+  { "sigma0", &Tissue::scattererSigma, 0.0, 1.0, false },
+  { "mu1", &Tissue::scattererProbability, 0.0, 1.0, false },
+  { "tau", &Tissue::tau, 0.0, 3.0, false },
+  { "gamma", &Tissue::gamma, -2.0, 2.0, false },
+};
+
+std::string rangeOf(const Property& property)
+{
+  std::ostringstream text;
+  if (property.maximum == unlimited)
+  {
+    text << "a finite number " << (property.aboveMinimum ? "above " : "of at least ") << property.minimum;
+  }
+  else
+  {
+    text << "a number from " << property.minimum << " to " << property.maximum;
+  }
+  return text.str();
+}
+
+bool isInRange(const Property& property, double value)
+{
+  return std::isfinite(value) && value <= property.maximum &&
+         (property.aboveMinimum ? value > property.minimum : value >= property.minimum);
+}
+
+double readNumber(const CsvFile& csv, const CsvFile::Row& row, const Property& property, const std::string& tissue)
+{
+  const std::string& text = row.fields[std::size_t(csv.requiredColumn(property.column))];
+  const auto value = parseNumber(text);
+  if (!value)
+  {
+    throw Error(csv.where(row) + ": tissue '" + tissue + "' has '" + text + "' in column '" + property.column +
+                "'; write " + rangeOf(property) + ".");
+  }
+  return *value;
+}
+
+} // namespace
+
+TissueTable TissueTable::read(const std::string& path)
+{
+  const CsvFile csv = CsvFile::read(path);
+  const auto name = std::size_t(csv.requiredColumn("tissue"));
+  const auto source = std::size_t(csv.requiredColumn("source"));
+  TissueTable table;
+  for (const CsvFile::Row& row : csv.rows)
+  {
+    Tissue tissue;
+    tissue.name = row.fields[name];
+    tissue.source = row.fields[source];
+    for (const Property& property : properties)
+    {
+      tissue.*property.member = readNumber(csv, row, property, tissue.name);
+    }
+    try
+    {
+      table.add(tissue);
+    }
+    catch (const Error& error)
+    {
+      throw Error(csv.where(row) + ": " + error.what());
+    }
+  }
+  if (table.tissues_.empty())
+  {
+    throw Error("'" + path + "' holds no tissue; add a line for each.");
+  }
+  return table;
+}
+
+void TissueTable::add(const Tissue& tissue)
+{
+  if (tissue.name.empty())
+  {
+    throw Error("a tissue has no name; give it one in column 'tissue'.");
+  }
+  if (find(tissue.name))
+  {
+    throw Error("tissue '" + tissue.name + "' is there twice; rename or remove one.");
+  }
+  for (const Property& property : properties)
+  {
+    const double value = tissue.*property.member;
+    if (!isInRange(property, value))
+    {
+      std::ostringstream message;
+      message << "tissue '" << tissue.name << "' has " << value << " in column '" << property.column << "'; write "
+              << rangeOf(property) << ".";
+      throw Error(message.str());
+    }
+  }
+  tissues_.push_back(tissue);
+}
+
+const Tissue* TissueTable::find(const std::string& name) const
+{
+  for (const Tissue& tissue : tissues_)
+  {
+    if (tissue.name == name)
+    {
+      return &tissue;
+    }
+  }
+  return nullptr;
+}
+
+} // namespace sono

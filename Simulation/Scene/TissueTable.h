@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sono
+{
+
+/// Acoustic and scattering properties of one tissue.
+struct Tissue
+{
+  std::string name;
+  double impedanceMRayl = 1.5;        ///< > 0
+  double soundSpeedMPerS = 1540.0;    ///< > 0
+  double attenuationDbPerCmMHz = 0.5; ///< >= 0; amplitude decibels, one way
+  double scattererMean = 0.0;         ///< mu0 in [0, 1]
+  double scattererSigma = 0.0;        ///< sigma0 in [0, 1]
+  double scattererProbability = 0.0;  ///< mu1 in [0, 1]
+  double tau = 1.0;                   ///< exponent of the intensity in a boundary echo, in [0, 3]; 1 is neutral
+  double gamma = 0.0;                 ///< exponent of cos(theta) in a boundary echo, in [-2, 2]; 0 is neutral
+  std::string source;                 ///< where the numbers come from
+};
+
+/// Tissues by name. The table is a CSV file that a person may edit.
+class TissueTable
+{
+public:
+  /// Columns, in any order, by header: tissue, impedance_MRayl, sound_speed_m_per_s, attenuation_dB_per_cm_MHz,
+  /// mu0, sigma0, mu1, tau, gamma, source. Lines starting with '#' are comments; fields may be quoted.
+  /// Throws Error naming the file, the tissue and the column for a missing, non-finite or out-of-range number.
+  static TissueTable read(const std::string& path);
+
+  /// Checks the ranges above and that the name is new; throws Error naming the tissue.
+  void add(const Tissue& tissue);
+  const Tissue* find(const std::string& name) const;
+  const std::vector<Tissue>& tissues() const { return tissues_; }
+
+private:
+  std::vector<Tissue> tissues_;
+};
+
+} // namespace sono

@@ -1,0 +1,9 @@
+#pragma once
+
+/// Compiles a hot host loop for several instruction sets; the machine picks one when the program starts. The
+/// distribution's baseline is SSE2, a quarter of what these loops can use.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define SONO_SIMD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define SONO_SIMD_CLONES
+#endif
