@@ -1,0 +1,67 @@
+#pragma once
+
+#include "Kernel/HostDevice.h"
+#include "Kernel/Vec.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace sono
+{
+
+/// What the smoothed surface of a tissue looks like at one of its boundary voxels.
+struct BoundaryRecord
+{
+  Vec3f normal;     ///< unit, out of the tissue, local axes
+  float offset;     ///< distance from the voxel's centre to the surface along the normal, in mean voxel sizes
+  float confidence; ///< gradient of the smoothed occupancy relative to a plane's: 1 on a flat wall, 0 inside a thin one
+};
+
+/// Offsets are stored in steps of 1/256 voxel from -1/2 to 3/2: a voxel face, at 1/2, is exact.
+constexpr float recordOffsetSteps = 256.0f;
+
+SONO_HD inline float signNotZero(float x)
+{
+  return x >= 0.0f ? 1.0f : -1.0f;
+}
+
+/// 32 bits: octahedral normal 10 + 10 (0.1 degrees; 1022 steps hold the axes exactly), offset 9, confidence 3.
+/// 0 means "no record", which a real record never encodes to (its offset bits are 1 to 511).
+SONO_HD inline std::uint32_t encodeRecord(const BoundaryRecord& record)
+{
+  const Vec3f& n = record.normal;
+  const float scale = 1.0f / (fabsf(n.x) + fabsf(n.y) + fabsf(n.z));
+  float u = n.x * scale;
+  float v = n.y * scale;
+  if (n.z < 0.0f)
+  {
+    const float folded = (1.0f - fabsf(v)) * signNotZero(u);
+    v = (1.0f - fabsf(u)) * signNotZero(v);
+    u = folded;
+  }
+  const std::uint32_t iu = std::uint32_t((u * 0.5f + 0.5f) * 1022.0f + 0.5f);
+  const std::uint32_t iv = std::uint32_t((v * 0.5f + 0.5f) * 1022.0f + 0.5f);
+  const float d = fminf(fmaxf((record.offset + 0.5f) * recordOffsetSteps + 0.5f, 1.0f), 511.0f);
+  const std::uint32_t id = std::uint32_t(d);
+  const std::uint32_t ic = std::uint32_t(fminf(fmaxf(record.confidence, 0.0f), 1.0f) * 7.0f + 0.5f);
+  return iu | (iv << 10) | (id << 20) | (ic << 29);
+}
+
+SONO_HD inline BoundaryRecord decodeRecord(std::uint32_t bits)
+{
+  BoundaryRecord record;
+  const float u = float(bits & 1023u) * (2.0f / 1022.0f) - 1.0f;
+  const float v = float((bits >> 10) & 1023u) * (2.0f / 1022.0f) - 1.0f;
+  Vec3f n(u, v, 1.0f - fabsf(u) - fabsf(v));
+  if (n.z < 0.0f)
+  {
+    n.x = (1.0f - fabsf(v)) * signNotZero(u);
+    n.y = (1.0f - fabsf(u)) * signNotZero(v);
+  }
+  record.normal = glm::normalize(n);
+  record.offset = float((bits >> 20) & 511u) / recordOffsetSteps - 0.5f;
+  record.confidence = float(bits >> 29) * (1.0f / 7.0f);
+  return record;
+}
+
+} // namespace sono

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "Scene/SurfaceField.h"
+
+#include <openvdb/openvdb.h>
+
+namespace sono
+{
+
+/// Conversions between OpenVDB and NanoVDB; a file of their own because they compile for most of a minute.
+NanoGrid nanoFromOpen(openvdb::Int32Grid& grid);
+NanoGrid nanoFromOpen(openvdb::FloatGrid& grid);
+openvdb::FloatGrid::Ptr openFromNano(const NanoGrid& grid);
+
+} // namespace sono

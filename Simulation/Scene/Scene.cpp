@@ -1,0 +1,118 @@
+#include "Scene/Scene.h"
+
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <map>
+
+namespace sono
+{
+
+Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue)
+  : volume_(std::move(volume))
+{
+  volume_.placement.validate("the label map");
+  if (volume_.voxels.size() != volume_.placement.voxelCount())
+  {
+    throw Error("the label map has " + std::to_string(volume_.voxels.size()) + " voxels where its size says " +
+                std::to_string(volume_.placement.voxelCount()) + ": load it again");
+  }
+  std::map<std::string, int> indexOf;
+  std::vector<std::uint8_t> tissueOfLabel(65536, 0);
+  for (const LabelInfo& label : volume_.labels)
+  {
+    const Tissue* tissue = table.find(label.tissue);
+    if (!tissue)
+    {
+      throw Error("label " + std::to_string(label.id) + " ('" + label.name + "') has the tissue '" + label.tissue +
+                  "', which the tissue table does not hold: add it there or map the label to another");
+    }
+    const auto [entry, isNew] = indexOf.emplace(tissue->name, int(tissues_.size()));
+    if (isNew)
+    {
+      tissues_.push_back(*tissue);
+    }
+    if (tissues_.size() > 255)
+    {
+      throw Error("the label map uses more than 255 different tissues: map some labels to the same tissue");
+    }
+    tissueOfLabel[std::size_t(label.id)] = std::uint8_t(entry->second);
+  }
+  const auto outside = indexOf.find(outsideTissue);
+  outsideIndex_ = outside == indexOf.end() ? -1 : outside->second;
+
+  tissueVoxels_.resize(volume_.voxels.size());
+  const std::size_t slice = std::size_t(volume_.placement.size.x) * volume_.placement.size.y;
+  parallelFor(volume_.placement.size.z,
+              {},
+              [&](int k)
+              {
+                const std::uint16_t* from = volume_.voxels.data() + slice * k;
+                std::transform(from,
+                               from + slice,
+                               tissueVoxels_.data() + slice * k,
+                               [&](std::uint16_t id) { return tissueOfLabel[id]; });
+              });
+  surfaces_.resize(volume_.labels.size());
+}
+
+Scene::~Scene() = default;
+
+Vec3d Scene::localFromWorld(const Vec3d& world) const
+{
+  return (placement().indexFromWorld(world) + 0.5) * placement().spacingMm;
+}
+
+Vec3d Scene::worldFromLocal(const Vec3d& local) const
+{
+  return placement().worldFromIndex(local / placement().spacingMm - 0.5);
+}
+
+Mat3d Scene::rotationToLocal() const
+{
+  return glm::transpose(placement().direction);
+}
+
+const LabelGrid& Scene::labelGrid(const Progress& progress) const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!labelGrid_)
+  {
+    labelGrid_ = std::make_unique<LabelGrid>(buildLabelGrid(volume_, progress));
+  }
+  return *labelGrid_;
+}
+
+const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
+{
+  const LabelInfo* label = volume_.find(labelId);
+  if (!label)
+  {
+    throw Error("label " + std::to_string(labelId) + " does not occur in the label map: choose one that does");
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto& field = surfaces_[std::size_t(label - volume_.labels.data())];
+  if (!field)
+  {
+    field = std::make_unique<SurfaceField>(buildSurface(volume_, labelId, progress));
+  }
+  return *field;
+}
+
+std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
+{
+  VoxelBox clipped{ glm::max(box.first, Vec3i(0)), glm::min(box.last, placement().size) };
+  if (clipped.empty())
+  {
+    throw Error("the probe's fan does not reach the label map: move the probe onto the skin or increase the depth");
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!region_ || !(region_->box == clipped))
+  {
+    region_ = std::make_shared<TraceRegion>(
+      buildTraceRegion(tissueVoxels_.data(), placement().size, placement().spacingMm, clipped, progress));
+  }
+  return region_;
+}
+
+} // namespace sono

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "Labels/LabelVolume.h"
+#include "Progress.h"
+#include "Scene/SurfaceField.h"
+#include "Scene/TissueTable.h"
+#include "Scene/TraceRegion.h"
+#include "Scene/VoxelBox.h"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace sono
+{
+
+/// The anatomy as the simulator sees it: the label grid, the tissues of its labels, and, built on first need and
+/// kept, one narrow-band signed distance field per label and the tracer's cache of a region.
+/// Immutable to its users; the lazy parts are guarded, so several filters may share one Scene.
+///
+/// "Local" coordinates are millimetres along the grid's own axes with 0 at the outer corner of voxel (0,0,0):
+/// voxel (i,j,k) fills [i, i+1) x spacing.
+class Scene
+{
+public:
+  /// Every label needs a tissue of `table` (see assignTissues); `outsideTissue` names the tissue that counts as
+  /// acoustic coupling between the transducer and the body (usually "air").
+  /// Throws Error for an empty volume, a label without tissue, or more than 255 different tissues in use.
+  Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue);
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  const LabelVolume& volume() const { return volume_; }
+  const GridPlacement& placement() const { return volume_.placement; }
+  /// The tissues in use, in the order of the 8-bit tissue indices.
+  const std::vector<Tissue>& tissues() const { return tissues_; }
+  int outsideIndex() const { return outsideIndex_; }
+  /// One tissue index a voxel, i fastest.
+  const std::vector<std::uint8_t>& tissueVoxels() const { return tissueVoxels_; }
+
+  Vec3d localFromWorld(const Vec3d& world) const;
+  Vec3d worldFromLocal(const Vec3d& local) const;
+  Mat3d rotationToLocal() const; ///< world vectors to local ones
+
+  /// The label grid and one label's signed distance (mm, negative inside) as NanoVDB grids, built on first need.
+  const LabelGrid& labelGrid(const Progress& progress = {}) const;
+  const SurfaceField& surface(int labelId, const Progress& progress = {}) const;
+
+  /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
+  std::shared_ptr<const TraceRegion> traceRegion(const VoxelBox& box, const Progress& progress = {}) const;
+
+private:
+  LabelVolume volume_;
+  std::vector<Tissue> tissues_;
+  std::vector<std::uint8_t> tissueVoxels_;
+  int outsideIndex_ = -1;
+
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<LabelGrid> labelGrid_;
+  mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
+  mutable std::shared_ptr<const TraceRegion> region_;
+};
+
+} // namespace sono

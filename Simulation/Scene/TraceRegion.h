@@ -1,0 +1,35 @@
+#pragma once
+
+#include "Kernel/TissueCells.h"
+#include "Progress.h"
+#include "Scene/VoxelBox.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace sono
+{
+
+/// The tracer's cache of a box of the scene (what a probe's fan can reach): see TissueCells. Boundary records come from
+/// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic
+/// in mm (sigma = cube root of the voxel's volume), at voxels that touch another tissue with a face.
+struct TraceRegion
+{
+  VoxelBox box;
+  Vec3f spacing{ 1.0f, 1.0f, 1.0f };
+  std::vector<std::uint16_t> cell;
+  std::vector<std::uint32_t> record;
+  std::size_t boundaryVoxels = 0;
+
+  TissueCells view() const;
+  std::size_t bytes() const { return cell.size() * sizeof(cell[0]) + record.size() * sizeof(record[0]); }
+};
+
+/// `tissues` are the tissue indices of the whole volume of `size` voxels, i fastest; `box` lies inside it.
+TraceRegion buildTraceRegion(const std::uint8_t* tissues,
+                             const Vec3i& size,
+                             const Vec3d& spacingMm,
+                             const VoxelBox& box,
+                             const Progress& progress = {});
+
+} // namespace sono
