@@ -1,0 +1,57 @@
+#pragma once
+
+#include "Probe/ScanGeometry.h"
+#include "Progress.h"
+#include "Scene/Scene.h"
+#include "Trace/Trace.h"
+
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+namespace sono
+{
+
+struct EchoSettings
+{
+  double centreFrequencyMHz = 2.5;  ///< > 0, below half the sampling frequency
+  double fractionalBandwidth = 0.6; ///< at -6 dB, (0, 2)
+  double samplingMHz = 50.0;        ///< RF sampling frequency
+  double depthMm = 160.0;
+  double lateralSigmaMm = 1.0;     ///< Gaussian beam, > 0
+  double elevationalSigmaMm = 1.0; ///< > 0
+  double scattererCellMm = 0.5;    ///< edge h of the scatterer cells; density is mu1 / h^3
+  double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect plane reflector
+  std::uint64_t seed = 1;          ///< of the scatterers
+
+  /// Throws Error naming the parameter and its range.
+  void validate() const;
+  /// Radial distance of two RF samples, mm.
+  double sampleMm() const { return assumedSoundSpeedMmPerUs / (2.0 * samplingMHz); }
+  int sampleCount() const;
+};
+
+/// RF lines as demodulated IQ: the real RF at depth r is Re(iq exp(i 2 k r)), k = 2 pi f / c0; |iq| is the envelope.
+struct RfLines
+{
+  int lineCount = 0;
+  int sampleCount = 0;
+  double sampleMm = 0.0; ///< sample s lies at depth s * sampleMm
+  double centreFrequencyMHz = 0.0;
+  double samplingMHz = 0.0;
+  std::vector<std::complex<float>> iq; ///< lineCount x sampleCount
+
+  std::vector<float> rf() const;
+  std::vector<float> envelope() const;
+};
+
+/// COLE on the analytic signal (PHYSICS section 4; Gao 2009, Storve 2017): procedural, world-locked scatterers of
+/// each tissue weighted by the beam and the traced intensity, plus the traced boundary echoes, convolved with
+/// a Gaussian pulse.
+RfLines formRf(const Scene& scene,
+               const std::vector<ScanLine>& lines,
+               const TracedLines& traced,
+               const EchoSettings& settings,
+               const Progress& progress = {});
+
+} // namespace sono

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "Image/BMode.h"
+#include "Probe/ScanGeometry.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace sono
+{
+
+/// An image in the probe's plane: pixel (i, j) lies at lateral = lateralMinMm + i pixelMm, axial = axialMinMm + j
+/// pixelMm.
+struct PlaneImage
+{
+  int width = 0;
+  int height = 0;
+  double pixelMm = 0.0;
+  double lateralMinMm = 0.0;
+  double axialMinMm = 0.0;
+  std::vector<float> value;       ///< width x height, lateral fastest; 0 outside the sector
+  std::vector<std::uint8_t> mask; ///< 1 inside the sector
+};
+
+/// Bilinear scan conversion of lines x samples (`sampleMm` apart, the first at depth 0) onto square pixels that cover
+/// the sector's bounding box, centred laterally. The last sample holds for up to one sample more; depths that no
+/// sample reaches, and what lies beyond the geometry's depth, are outside. A single line is drawn one pixel wide.
+/// Throws Error when pixelMm is not positive or asks for more than 2^28 pixels, and when `values` is not
+/// lineCount x sampleCount.
+PlaneImage scanConvert(const ScanGeometry& geometry,
+                       const std::vector<float>& values,
+                       int sampleCount,
+                       double sampleMm,
+                       double pixelMm);
+
+} // namespace sono

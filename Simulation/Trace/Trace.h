@@ -1,0 +1,71 @@
+#pragma once
+
+#include "Kernel/Interface.h"
+#include "Probe/ScanGeometry.h"
+#include "Progress.h"
+#include "Scene/Scene.h"
+
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+namespace sono
+{
+
+/// Where the random numbers of a path come from.
+enum class Sampling
+{
+  Independent,   ///< Philox counters
+  LowDiscrepancy ///< Owen-scrambled Sobol pairs, one per bounce
+};
+
+struct TraceSettings
+{
+  InterfaceModel model = InterfaceModel::Acoustic;
+  Sampling sampling = Sampling::LowDiscrepancy;
+  int pathsPerLine = 1000; ///< 1 to 10^7
+  int maxCollisions = 7;   ///< boundaries a path may meet, 0 to 1000
+  double coherenceMm =
+    100.0; ///< C0 in w_R = C0 / (C0 + distance), >= 0; the paper's 0.1, read in metres as its other lengths are
+  bool deterministic = false;     ///< no Monte-Carlo: transmitted along the refracted direction, no spreading
+  double lobeMeanRad = 0.0;       ///< mu of the truncated normal
+  double lobeSigmaRad = 0.785398; ///< sigma, >= 0
+  double lobeMinRad = 0.0;        ///< a
+  double lobeMaxRad = 1.570796;   ///< b, in (a, pi/2]
+  double frequencyMHz = 2.5;      ///< > 0; sets attenuation and the phase of boundary echoes
+  double depthMm = 160.0;         ///< > 0
+  double radialBinMm = 0.25;      ///< width of an intensity sample along a line, > 0
+  double echoSampleMm = 0.0154;   ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
+  std::uint64_t seed = 1;
+
+  /// Throws Error naming the parameter and its range.
+  void validate() const;
+};
+
+/// What the tracer gives: for each line and radial bin the mean one-way intensity (1 at the transducer) and its
+/// Monte-Carlo standard error, and the boundary echoes as complex amplitudes on the echo grid: an echo of amplitude
+/// A at depth r adds A exp(-i 2 k (r - r_s)), split linearly between the two nearest samples s, k = 2 pi f / c0.
+struct TracedLines
+{
+  int lineCount = 0;
+  int binCount = 0;
+  double binMm = 0.0;               ///< bin b covers [b, b+1) * binMm
+  std::vector<float> intensity;     ///< lineCount x binCount
+  std::vector<float> standardError; ///< lineCount x binCount
+  int echoCount = 0;
+  double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
+  std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
+  std::uint64_t segments = 0;                    ///< path segments traced
+};
+
+/// Speed of sound that turns depth into time, as a scanner assumes it, mm per microsecond.
+constexpr double assumedSoundSpeedMmPerUs = 1.54;
+
+/// Traces every line on the CPU. The result depends on the settings alone, to the bit, not on the threads.
+/// Throws Error when no line meets the volume, Aborted when asked to stop.
+TracedLines trace(const Scene& scene,
+                  const std::vector<ScanLine>& lines,
+                  const TraceSettings& settings,
+                  const Progress& progress = {});
+
+} // namespace sono
