@@ -1,0 +1,25 @@
+#include "PhantomScene.h"
+
+#include "Labels/AssignTissues.h"
+#include "Progress.h"
+
+#include <string>
+#include <utility>
+
+namespace sono
+{
+
+std::unique_ptr<Scene> makePhantomScene(LabelVolume volume)
+{
+  const std::string data = SONOVDB_DATA_DIR;
+  const TissueTable table = TissueTable::read(data + "/tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(data + "/label_tissues.csv");
+  const auto unmatched = assignTissues(volume, map, table, "air");
+  if (!unmatched.empty())
+  {
+    throw Error("Label " + unmatched.front() + " of the phantom matches no row of " + data + "/label_tissues.csv.");
+  }
+  return std::make_unique<Scene>(std::move(volume), table, "air");
+}
+
+} // namespace sono

@@ -1,0 +1,232 @@
+#include "Image/BMode.h"
+#include "Image/PixelMath.h"
+#include "ImageTestTools.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace
+{
+
+using namespace sono;
+
+constexpr double pi = 3.141592653589793;
+
+/// No gain, reference 1, 60 dB: the settings whose grey levels a person can work out in the head.
+BModeSettings plainSettings()
+{
+  BModeSettings settings;
+  settings.tgcDbPerCm = 0.0;
+  settings.automaticReference = false;
+  settings.referenceAmplitude = 1.0;
+  settings.dynamicRangeDb = 60.0;
+  return settings;
+}
+
+std::vector<float> greyOf(const std::vector<float>& line, const BModeSettings& settings, double sampleMm = 1.0)
+{
+  return makeBMode(line, 1, static_cast<int>(line.size()), sampleMm, settings).grey;
+}
+
+double worstDecibelError(int firstExponent, int lastExponent)
+{
+  double worst = 0.0;
+  for (int exponent = firstExponent; exponent <= lastExponent; ++exponent)
+  {
+    for (int k = 0; k < 1000; ++k)
+    {
+      const float x = std::ldexp(1.0f + k / 1000.0f, exponent);
+      worst = std::max(worst, std::abs(fastDecibels(x) - 20.0 * std::log10(double(x))));
+    }
+  }
+  return worst;
+}
+
+TEST(PixelMath, DecibelsAgreeWithLog10)
+{
+  EXPECT_LT(worstDecibelError(-20, 19), 3e-5);
+  EXPECT_LT(worstDecibelError(-126, 127), 1e-4); // one float step at 760 dB is 6e-5
+}
+
+TEST(PixelMath, AngleAgreesWithAtan2)
+{
+  double worst = 0.0;
+  for (int k = -20000; k <= 20000; ++k)
+  {
+    const double angle = k * (pi / 2.0 / 20000.0);
+    const auto y = static_cast<float>(150.0 * std::sin(angle));
+    const auto x = static_cast<float>(150.0 * std::max(0.0, std::cos(angle)));
+    worst = std::max(worst, std::abs(fastAtan2RightHalf(y, x) - std::atan2(double(y), double(x))));
+  }
+  EXPECT_LT(worst, 2e-7);
+}
+
+TEST(BMode, GreyLevelsByHand)
+{
+  // 0, -20, -30, -60, -80 and +20 dB of a 60 dB range
+  const auto grey = greyOf({ 1.0f, 0.1f, 0.0316227766f, 0.001f, 0.0001f, 10.0f }, plainSettings());
+  const std::vector<float> expected{ 1.0f, 2.0f / 3.0f, 0.5f, 0.0f, 0.0f, 1.0f };
+  for (std::size_t s = 0; s < grey.size(); ++s)
+  {
+    EXPECT_NEAR(grey[s], expected[s], 2e-6) << s;
+  }
+}
+
+TEST(BMode, GainAndReferenceShiftTheScale)
+{
+  BModeSettings settings = plainSettings();
+  settings.gainDb = 15.0;
+  settings.referenceAmplitude = 100.0; // 40 dB
+  EXPECT_NEAR(greyOf({ 10.0f }, settings)[0], 1.0 + (20.0 + 15.0 - 40.0) / 60.0, 2e-6);
+}
+
+TEST(BMode, SlopeCompensatesExponentialDecay)
+{
+  BModeSettings settings = plainSettings();
+  settings.tgcDbPerCm = 1.5;
+  const double sampleMm = 0.0154;
+  std::vector<float> envelope(10390);
+  for (std::size_t s = 0; s < envelope.size(); ++s)
+  {
+    envelope[s] = static_cast<float>(0.1 * std::pow(10.0, -1.5 * (s * sampleMm / 10.0) / 20.0));
+  }
+  for (const float grey : greyOf(envelope, settings, sampleMm))
+  {
+    ASSERT_NEAR(grey, 2.0 / 3.0, 2e-6);
+  }
+}
+
+TEST(BMode, CurveIsLinearBetweenPointsAndConstantBeyond)
+{
+  BModeSettings settings = plainSettings();
+  settings.tgcCurve = { { 2.0, 0.0 }, { 4.0, 6.0 }, { 8.0, -6.0 } };
+  const std::vector<double> expectedDb{ 0.0, 0.0, 0.0, 3.0, 6.0, 3.0, 0.0, -3.0, -6.0, -6.0 };
+  const auto grey = greyOf(std::vector<float>(10, 0.1f), settings);
+  for (std::size_t s = 0; s < grey.size(); ++s)
+  {
+    EXPECT_NEAR(grey[s], 1.0 + (expectedDb[s] - 20.0) / 60.0, 2e-6) << s;
+  }
+}
+
+TEST(BMode, CurveAddsToTheSlope)
+{
+  BModeSettings settings = plainSettings();
+  settings.tgcDbPerCm = 2.0;
+  settings.tgcCurve = { { 0.0, 3.0 } };
+  EXPECT_NEAR(greyOf(std::vector<float>(21, 0.01f), settings)[20], 1.0 + (4.0 + 3.0 - 40.0) / 60.0, 2e-6);
+}
+
+TEST(BMode, RejectBlackensTheBottom)
+{
+  BModeSettings settings = plainSettings();
+  settings.rejectDb = 20.0; // levels below -40 dB
+  const auto grey = greyOf({ 0.0101f, 0.0099f, 0.1f, 1.0f }, settings);
+  EXPECT_NEAR(grey[0], (60.0 + 20.0 * std::log10(0.0101)) / 60.0, 2e-6);
+  EXPECT_EQ(grey[1], 0.0f);
+  EXPECT_NEAR(grey[2], 2.0 / 3.0, 2e-6);
+  EXPECT_EQ(grey[3], 1.0f);
+}
+
+TEST(BMode, AmplitudesThatAreNoneAreBlack)
+{
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> envelope{ nan, -nan, -1.0f, 0.0f, -0.0f, 1e-40f, -infinity, infinity, 1.0f };
+  for (const bool automatic : { false, true })
+  {
+    BModeSettings settings = plainSettings();
+    settings.automaticReference = automatic;
+    settings.tgcCurve = { { 0.0, 300.0 } }; // the strongest gain must not lift nothing to something
+    settings.gainDb = 300.0;
+    settings.dynamicRangeDb = 300.0;
+    const auto grey = greyOf(envelope, settings);
+    for (std::size_t s = 0; s < 7; ++s)
+    {
+      EXPECT_EQ(grey[s], 0.0f) << s;
+    }
+    EXPECT_EQ(grey[7], 1.0f);
+    EXPECT_EQ(grey[8], 1.0f);
+  }
+}
+
+TEST(BMode, AutomaticReferenceIsThePercentile)
+{
+  BModeSettings settings;
+  settings.tgcDbPerCm = 1.5;
+  settings.tgcCurve = { { 5.0, -3.0 }, { 40.0, 4.0 } };
+  settings.gainDb = 12.0; // leaves the reference alone
+  const double sampleMm = 0.05;
+  for (const int sampleCount : { 1, 7, 125, 1000, 1237 })
+  {
+    const int lineCount = 16;
+    const auto envelope = rayleighEnvelope(std::size_t(lineCount) * sampleCount, 7u + sampleCount);
+    std::vector<double> gained(envelope.size());
+    for (std::size_t k = 0; k < gained.size(); ++k)
+    {
+      const double depth = (k % sampleCount) * sampleMm;
+      const double curve = depth < 5.0 ? -3.0 : depth > 40.0 ? 4.0 : -3.0 + 7.0 * (depth - 5.0) / 35.0;
+      gained[k] = envelope[k] * std::pow(10.0, (0.15 * depth + curve) / 20.0);
+    }
+    std::sort(gained.begin(), gained.end());
+    const auto rank = static_cast<std::size_t>(std::ceil(0.999 * gained.size() - 1e-9));
+    const auto lines = makeBMode(envelope, lineCount, sampleCount, sampleMm, settings);
+    EXPECT_NEAR(lines.referenceAmplitude / gained[rank - 1], 1.0, 1e-6) << sampleCount;
+  }
+}
+
+TEST(BMode, AutomaticReferenceOfNearlyNothing)
+{
+  BModeSettings settings = plainSettings();
+  settings.automaticReference = true;
+  std::vector<float> envelope(5000, 0.0f);
+  EXPECT_EQ(makeBMode(envelope, 5, 1000, 1.0, settings).referenceAmplitude, 1.0);
+  envelope[4321] = 0.25f; // one bright point, fewer than one in a thousand
+  const auto lines = makeBMode(envelope, 5, 1000, 1.0, settings);
+  EXPECT_EQ(lines.referenceAmplitude, 0.25);
+  EXPECT_NEAR(lines.grey[4321], 1.0f, 2e-6);
+}
+
+TEST(BMode, GainStillActsWithAutomaticReference)
+{
+  BModeSettings settings = plainSettings();
+  settings.automaticReference = true;
+  const std::vector<float> envelope{ 1.0f, 0.01f };
+  const float before = greyOf(envelope, settings)[1];
+  settings.gainDb = 6.0;
+  EXPECT_NEAR(greyOf(envelope, settings)[1] - before, 0.1, 2e-6);
+}
+
+TEST(BMode, RefusesWhatMakesNoSense)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto with = [](const std::function<void(BModeSettings&)>& change)
+  {
+    return [change]
+    {
+      BModeSettings settings = plainSettings();
+      change(settings);
+      makeBMode({ 1.0f }, 1, 1, 1.0, settings);
+    };
+  };
+  expectError(with([&](auto& s) { s.tgcDbPerCm = nan; }), "tgcDbPerCm");
+  expectError(with([&](auto& s) { s.gainDb = 1e9; }), "gainDb");
+  expectError(with([&](auto& s) { s.referenceAmplitude = 0.0; }), "referenceAmplitude");
+  expectError(with([&](auto& s) { s.dynamicRangeDb = 0.0; }), "dynamicRangeDb");
+  expectError(with([&](auto& s) { s.dynamicRangeDb = nan; }), "dynamicRangeDb");
+  expectError(with([&](auto& s) { s.rejectDb = 60.0; }), "rejectDb");
+  expectError(with([&](auto& s) { s.rejectDb = -1.0; }), "rejectDb");
+  expectError(with([&](auto& s) { s.tgcCurve = { { 1.0, 0.0 }, { 1.0, 3.0 } }; }), "tgcCurve");
+  expectError(with([&](auto& s) { s.tgcCurve = { { nan, 0.0 } }; }), "tgcCurve");
+  expectError(with([&](auto& s) { s.tgcCurve = { { 1.0, nan } }; }), "tgcCurve");
+  expectError([] { makeBMode({}, 0, 1, 1.0, plainSettings()); }, "lineCount");
+  expectError([] { makeBMode({}, 1, 0, 1.0, plainSettings()); }, "sampleCount");
+  expectError([] { makeBMode({ 1.0f }, 1, 1, 0.0, plainSettings()); }, "sampleMm");
+  expectError([] { makeBMode({ 1.0f }, 1, 2, 1.0, plainSettings()); }, "envelope");
+}
+
+} // namespace

@@ -1,0 +1,42 @@
+# Plants one violation of each rule in a small tree and expects CheckLayers.cmake to name it; a clean tree must pass.
+#   cmake -DWORK=<scratch folder> -P TestCheckLayers.cmake
+cmake_minimum_required(VERSION 3.25)
+
+function(check_tree planted_file planted_include expect_violation)
+  file(REMOVE_RECURSE "${WORK}")
+  file(WRITE "${WORK}/Simulation/Trace/Trace.h" "#include <vector>\n// #include <vtkObject.h> in a comment\n")
+  file(WRITE "${WORK}/Simulation/Trace/Trace.cpp" "#include \"Trace/Trace.h\"\n#include <tbb/parallel_for.h>\n")
+  file(WRITE "${WORK}/Filters/SonoHelper.h" "#include \"Trace/Trace.h\"\n#include <vtkObject.h>\n")
+  file(WRITE "${WORK}/Plugin/Widget.h" "#include <QWidget>\n#include \"SonoHelper.h\"\n#include <pqView.h>\n")
+  file(APPEND "${WORK}/${planted_file}" "#include ${planted_include}\n")
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${WORK}" -P "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/CheckLayers.cmake"
+    RESULT_VARIABLE status ERROR_VARIABLE errors OUTPUT_QUIET)
+  string(REGEX REPLACE "[<>\"]" "" header "${planted_include}")
+  if(expect_violation AND (status EQUAL 0 OR NOT errors MATCHES "${planted_file} includes ${header}"))
+    message(SEND_ERROR "${planted_include} in ${planted_file} was not found: ${errors}")
+  elseif(NOT expect_violation AND NOT status EQUAL 0)
+    message(SEND_ERROR "${planted_include} in ${planted_file} was taken for a violation: ${errors}")
+  endif()
+endfunction()
+
+check_tree(Simulation/Trace/Trace.h "<vtkImageData.h>" TRUE)
+check_tree(Simulation/Trace/Trace.cpp "<QString>" TRUE)
+check_tree(Simulation/Trace/Trace.cpp "<QtCore/qglobal.h>" TRUE)
+check_tree(Simulation/Trace/Trace.cpp "\"pqView.h\"" TRUE)
+check_tree(Simulation/Trace/Trace.cpp "\"../../Filters/SonoHelper.h\"" TRUE)
+check_tree(Simulation/Trace/New.cu "\"Widget.h\"" TRUE)
+check_tree(Filters/SonoHelper.h "\"Widget.h\"" TRUE)
+check_tree(Filters/SonoHelper.h "<QObject>" TRUE)
+check_tree(Filters/vtkSonoNew.cxx "<openvdb/openvdb.h>" TRUE)
+check_tree(Filters/vtkSonoNew.cxx "<nanovdb/NanoVDB.h>" TRUE)
+check_tree(Filters/vtkSonoNew.cxx "<embree3/rtcore.h>" TRUE)
+check_tree(Filters/vtkSonoNew.cxx "<tbb/task_arena.h>" TRUE)
+check_tree(Filters/vtkSonoNew.cxx "<oneapi/tbb.h>" TRUE)
+check_tree(Plugin/Widget.h "<cuda_runtime.h>" TRUE)
+check_tree(Plugin/deep/Widget.cxx "<tbb/tbb.h>" TRUE)
+
+check_tree(Simulation/Trace/Trace.cpp "<openvdb/openvdb.h>" FALSE)
+check_tree(Filters/SonoHelper.h "<vtkSmartPointer.h>" FALSE)
+check_tree(Plugin/Widget.h "<vtkSMProxy.h>" FALSE)
+file(REMOVE_RECURSE "${WORK}")

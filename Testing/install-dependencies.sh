@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that SonoVDB needs to build, test and run. Returns at once when all are there.
+set -euo pipefail
+
+packages=(
+  # tools
+  g++ cmake ninja-build ccache
+  # ParaView 5.11 and what its CMake package asks for
+  paraview paraview-dev python3-paraview python3-numpy qtbase5-dev libqt5svg5-dev libqt5opengl5-dev qttools5-dev
+  libutfcpp-dev libxml2-dev libhdf5-openmpi-dev libogg-dev libtheora-dev libavformat-dev libavcodec-dev libavutil-dev
+  libswscale-dev libgl2ps-dev libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev
+  libfreetype-dev
+  # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
+  libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
+  nlohmann-json3-dev zlib1g-dev
+  # tests
+  libgtest-dev libbenchmark-dev libopenimageio-dev openimageio-tools xvfb openmpi-bin python3-mpi4py
+)
+
+fail()
+{
+  echo "$(basename "$0"): $*" >&2
+  exit 1
+}
+
+command -v dpkg-query > /dev/null || fail "dpkg-query was not found; this script knows Debian 12 only."
+
+declare -A installed=()
+while read -r name status; do
+  if [[ $status == installed ]]; then
+    installed[$name]=1
+  fi
+done < <(dpkg-query --show --showformat='${Package} ${db:Status-Status}\n' "${packages[@]}" 2> /dev/null || true)
+
+missing=()
+for package in "${packages[@]}"; do
+  if [[ -z ${installed[$package]:-} ]]; then
+    missing+=("$package")
+  fi
+done
+if ((${#missing[@]} == 0)); then
+  echo "All ${#packages[@]} packages are installed."
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo > /dev/null || fail "run it as root or install sudo, to install: ${missing[*]}"
+  as_root=(sudo)
+fi
+
+"${as_root[@]}" apt-get update
+
+unknown=()
+for package in "${missing[@]}"; do
+  policy="$(LC_ALL=C apt-cache policy "$package")"
+  if [[ ! $policy =~ "Candidate: "[^\(] ]]; then
+    unknown+=("$package")
+  fi
+done
+if ((${#unknown[@]} > 0)); then
+  fail "no package source offers ${unknown[*]}; add Debian 12 (bookworm) main to the sources of apt."
+fi
+
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
