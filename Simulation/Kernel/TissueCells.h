@@ -11,18 +11,24 @@ namespace sono
 
 /// A view of the tracer's cache of a region: one 16-bit word per voxel (low byte: tissue index, high byte: half-width
 /// of the largest cube around the voxel known to hold that tissue alone) and one boundary record per voxel. Local
-/// millimetres with 0 at the region's outer corner; i fastest.
+/// millimetres with 0 at the region's outer corner. Voxels lie in blocks of 4 x 4 x 2, one cache line of words each, so
+/// that a ray in any direction meets about three voxels a line.
 struct TissueCells
 {
   const std::uint16_t* cell = nullptr;
   const std::uint32_t* record = nullptr;
   Vec3i size{ 0, 0, 0 };
+  Vec3i blocks{ 0, 0, 0 };
   Vec3f spacing{ 1.0f, 1.0f, 1.0f };
   float meanSpacing = 1.0f; ///< cube root of the voxel's volume
 
-  SONO_HD std::size_t offset(const Vec3i& c) const
+  static Vec3i blocksFor(const Vec3i& size) { return { (size.x + 3) >> 2, (size.y + 3) >> 2, (size.z + 1) >> 1 }; }
+  SONO_HD std::size_t offset(const Vec3i& c) const { return offset(c.x, c.y, c.z); }
+  SONO_HD std::size_t offset(int x, int y, int z) const
   {
-    return std::size_t(c.x) + std::size_t(size.x) * (std::size_t(c.y) + std::size_t(size.y) * std::size_t(c.z));
+    const unsigned block =
+      unsigned(x >> 2) + unsigned(blocks.x) * (unsigned(y >> 2) + unsigned(blocks.y) * unsigned(z >> 1));
+    return (std::size_t(block) << 5) | unsigned((x & 3) | ((y & 3) << 2) | ((z & 1) << 4));
   }
   SONO_HD bool contains(const Vec3i& c) const
   {
@@ -60,6 +66,44 @@ SONO_HD inline float safeInverse(float d)
   return fabsf(d) < 1e-9f ? 0.0f : 1.0f / d;
 }
 
+SONO_HD inline float smaller(float a, float b)
+{
+  return a < b ? a : b;
+}
+SONO_HD inline float larger(float a, float b)
+{
+  return a > b ? a : b;
+}
+
+/// One axis of a march in voxel units. The face at which the ray leaves the cube [c - skip, c + skip] is
+/// c + sign * skip + step, and is met at t = (face - p) * inverse + never.
+struct AxisMarch
+{
+  float p;
+  float d;
+  float inverse;
+  float never; ///< huge where the ray runs along the face
+  int sign;
+  int step; ///< 1 when ascending, else 0
+
+  SONO_HD AxisMarch(float position, float direction)
+    : p(position)
+    , d(direction)
+    , inverse(safeInverse(direction))
+    , never(inverse == 0.0f ? 3e38f : 0.0f)
+    , sign(direction > 0.0f ? 1 : -1)
+    , step(direction > 0.0f ? 1 : 0)
+  {
+  }
+  SONO_HD float leave(int c, int skip) const { return (float(c + sign * skip + step) - p) * inverse + never; }
+  /// The cell at t, known to lie in the cube around c.
+  SONO_HD int cellAt(float t, int c, int skip) const
+  {
+    const int moved = int(floorf(p + t * d));
+    return moved < c - skip ? c - skip : (moved > c + skip ? c + skip : moved);
+  }
+};
+
 /// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
 /// t < ignoreUntil (hysteresis after a boundary; -1: none). Steps over uniform cubes at once.
 SONO_HD inline CellHit marchToBoundary(const TissueCells& cells,
@@ -69,70 +113,51 @@ SONO_HD inline CellHit marchToBoundary(const TissueCells& cells,
                                        float ignoreUntil,
                                        float tMax)
 {
-  const Vec3f p = ray.position / cells.spacing;
-  const Vec3f d = ray.direction / cells.spacing;
-  const Vec3f inverse(safeInverse(d.x), safeInverse(d.y), safeInverse(d.z));
-  const Vec3i side(d.x > 0.0f ? 1 : 0, d.y > 0.0f ? 1 : 0, d.z > 0.0f ? 1 : 0);
-  Vec3i c = ray.cell;
+  const AxisMarch ax(ray.position.x / cells.spacing.x, ray.direction.x / cells.spacing.x);
+  const AxisMarch ay(ray.position.y / cells.spacing.y, ray.direction.y / cells.spacing.y);
+  const AxisMarch az(ray.position.z / cells.spacing.z, ray.direction.z / cells.spacing.z);
+  int x = ray.cell.x;
+  int y = ray.cell.y;
+  int z = ray.cell.z;
   float t = 0.0f;
-  int skip = cells.contains(c) ? cells.cell[cells.offset(c)] >> 8 : 0;
+  int skip = cells.contains(ray.cell) ? cells.cell[cells.offset(x, y, z)] >> 8 : 0;
   // Each step leaves at least one plane of cells behind, so this bounds any ray.
   const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
-  CellHit hit{ tMax, c, c, -1, 0 };
-  for (int step = 0; step < maxSteps; ++step)
+  for (int count = 0; count < maxSteps; ++count)
   {
-    // The face through which the ray leaves the cube [c - skip, c + skip].
-    float exit = 3e38f;
-    int axis = 0;
-    for (int a = 0; a < 3; ++a)
+    const float tx = ax.leave(x, skip);
+    const float ty = ay.leave(y, skip);
+    const float tz = az.leave(z, skip);
+    const float first = smaller(tx, smaller(ty, tz));
+    t = larger(first, t);
+    if (t >= tMax)
     {
-      const int face = side[a] ? c[a] + skip + 1 : c[a] - skip;
-      const float ta = inverse[a] == 0.0f ? 3e38f : (float(face) - p[a]) * inverse[a];
-      if (ta < exit)
-      {
-        exit = ta;
-        axis = a;
-      }
+      break;
     }
-    exit = fmaxf(exit, t);
-    if (exit >= tMax)
-    {
-      hit.t = tMax;
-      return hit;
-    }
-    hit.before = c;
+    const int axis = tx == first ? 0 : (ty == first ? 1 : 2);
     if (skip > 0)
     {
-      for (int a = 0; a < 3; ++a)
-      {
-        if (a != axis)
-        {
-          const int moved = int(floorf(p[a] + exit * d[a]));
-          hit.before[a] = moved < c[a] - skip ? c[a] - skip : (moved > c[a] + skip ? c[a] + skip : moved);
-        }
-      }
-      hit.before[axis] = side[axis] ? c[axis] + skip : c[axis] - skip;
+      x = axis == 0 ? x + ax.sign * skip : ax.cellAt(t, x, skip);
+      y = axis == 1 ? y + ay.sign * skip : ay.cellAt(t, y, skip);
+      z = axis == 2 ? z + az.sign * skip : az.cellAt(t, z, skip);
     }
-    c = hit.before;
-    c[axis] += side[axis] ? 1 : -1;
-    t = exit;
-    hit.t = t;
-    hit.axis = axis;
-    if (!cells.contains(c))
+    const Vec3i before(x, y, z);
+    x += axis == 0 ? ax.sign : 0;
+    y += axis == 1 ? ay.sign : 0;
+    z += axis == 2 ? az.sign : 0;
+    if (!cells.contains(Vec3i(x, y, z)))
     {
-      return hit;
+      return { t, before, before, -1, axis };
     }
-    const std::uint32_t word = cells.cell[cells.offset(c)];
+    const std::uint32_t word = cells.cell[cells.offset(x, y, z)];
     const int tissue = int(word & 255u);
     if (tissue != current && (tissue != ignored || t >= ignoreUntil))
     {
-      hit.after = c;
-      hit.tissue = tissue;
-      return hit;
+      return { t, before, Vec3i(x, y, z), tissue, axis };
     }
     skip = int(word >> 8);
   }
-  return hit;
+  return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
 }
 
 /// The refined boundary between two face-adjacent cells.
@@ -149,8 +174,9 @@ struct RefinedHit
 /// normal says that the ray leaves rather than enters, the voxel face stands.
 SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay& ray, const CellHit& hit)
 {
-  Vec3f face(0.0f);
-  face[hit.axis] = ray.direction[hit.axis] > 0.0f ? 1.0f : -1.0f;
+  const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
+                   hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
+                   hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
   const std::uint32_t bitsA = cells.record[cells.offset(hit.before)];
   const std::uint32_t bitsB = cells.record[cells.offset(hit.after)];
   if ((bitsA | bitsB) == 0u)
@@ -161,7 +187,7 @@ SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay
   const BoundaryRecord b = decodeRecord(bitsB);
   const float confA = bitsA ? a.confidence : 0.0f;
   const float confB = bitsB ? b.confidence : 0.0f;
-  const float best = fmaxf(confA, confB);
+  const float best = larger(confA, confB);
   const float weightA = confA >= 0.6f * best ? 1.0f : 0.0f;
   const float weightB = confB >= 0.6f * best ? 1.0f : 0.0f;
   const Vec3f sum = a.normal * weightA - b.normal * weightB;
@@ -181,7 +207,7 @@ SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay
   const Vec3f point = (pointA * weightA + pointB * weightB) / (weightA + weightB);
   const float t = glm::dot(point - ray.position, n) / cosine;
   const float reach = cells.meanSpacing;
-  return { n, fmaxf(0.0f, fminf(fmaxf(t, hit.t - reach), hit.t + reach)) };
+  return { n, larger(0.0f, smaller(larger(t, hit.t - reach), hit.t + reach)) };
 }
 
 } // namespace sono

@@ -58,7 +58,7 @@ SONO_HD inline float remainingLength(const TraceView& view, const TraceLine& lin
   const float k = 2.0f * view.depthMm - path.length;
   const float towards = k + glm::dot(q, path.ray.direction);
   const float timely = towards > 0.0f ? (k * k - glm::dot(q, q)) / (2.0f * towards) : 0.0f;
-  return fmaxf(0.0f, fminf(t, timely));
+  return larger(0.0f, smaller(t, timely));
 }
 
 SONO_HD inline bool sameAcoustics(const TraceMedium& a, const TraceMedium& b)
@@ -96,7 +96,7 @@ SONO_HD inline bool advanceToBoundary(const TraceView& view,
       boundary.surface = refineBoundary(view.cells, path.ray, hit);
       boundary.from = path.tissue;
       boundary.to = hit.tissue;
-      boundary.cosine = fminf(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
+      boundary.cosine = smaller(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
       boundary.reflection =
         reflectionAt(view.model, medium.impedance, next.impedance, medium.speed, next.speed, boundary.cosine);
       return true;
@@ -151,7 +151,7 @@ SONO_HD inline void leaveBoundary(const TraceView& view,
   path.tissue = out.reflected ? boundary.from : boundary.to;
   path.ignored = out.reflected ? boundary.to : boundary.from;
   const float leaving = fabsf(glm::dot(out.direction, surface.normal));
-  path.ignoreUntil = view.cells.meanSpacing * fminf(8.0f, 0.8f / fmaxf(leaving, 0.1f));
+  path.ignoreUntil = view.cells.meanSpacing * smaller(8.0f, 0.8f / larger(leaving, 0.1f));
   path.intensity *= out.throughput;
   ++path.collisions;
 }
@@ -190,7 +190,7 @@ SONO_HD inline bool enterCells(const TissueCells& cells, const TraceLine& line, 
       near = t0;
       axis = a;
     }
-    far = fminf(far, t1);
+    far = smaller(far, t1);
   }
   if (near >= far)
   {

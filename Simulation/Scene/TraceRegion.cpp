@@ -170,6 +170,7 @@ TissueCells TraceRegion::view() const
   cells.cell = cell.data();
   cells.record = record.data();
   cells.size = box.size();
+  cells.blocks = TissueCells::blocksFor(cells.size);
   cells.spacing = spacing;
   cells.meanSpacing = std::cbrt(spacing.x * spacing.y * spacing.z);
   return cells;
@@ -186,8 +187,11 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues,
   region.spacing = Vec3f(spacingMm);
   const Vec3i n = box.size();
   const std::size_t count = std::size_t(n.x) * n.y * n.z;
-  region.cell.resize(count);
-  region.record.assign(count, 0u);
+  const Vec3i blocked = TissueCells::blocksFor(n);
+  const std::size_t stored = std::size_t(blocked.x) * blocked.y * blocked.z * 32;
+  region.cell.assign(stored, 0);
+  region.record.assign(stored, 0u);
+  const TissueCells layout = region.view();
   std::vector<std::uint8_t> boundary(count);
 
   const auto source = [&](int y, int z)
@@ -225,72 +229,68 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues,
   const Vec3i blocks = (n + (block - 1)) / block;
   std::atomic<std::size_t> boundaryVoxels{ 0 };
   const Progress baking = progress ? Progress([&](double f) { return progress(0.1 + 0.7 * f); }) : Progress{};
-  parallelFor(
-    blocks.y * blocks.z,
-    baking,
-    [&](int slab)
-    {
-      Worker& worker = workers.local();
-      std::array<bool, 256> present{};
-      for (int bx = 0; bx < blocks.x; ++bx)
-      {
-        const Vec3i corner(bx * block, (slab % blocks.y) * block, (slab / blocks.y) * block);
-        const Vec3i extent = glm::min(Vec3i(block), n - corner);
-        std::vector<std::uint8_t> found;
-        const auto forBoundary = [&](auto&& visit)
-        {
-          for (int z = 0; z < extent.z; ++z)
-          {
-            for (int y = 0; y < extent.y; ++y)
-            {
-              const std::size_t at = std::size_t(corner.x) +
-                                     std::size_t(n.x) * (std::size_t(corner.y + y) + std::size_t(n.y) * (corner.z + z));
-              const std::uint8_t* row =
-                source(box.first.y + corner.y + y, box.first.z + corner.z + z) + box.first.x + corner.x;
-              for (int x = 0; x < extent.x; ++x)
+  parallelFor(blocks.y * blocks.z,
+              baking,
+              [&](int slab)
               {
-                if (boundary[at + x])
+                Worker& worker = workers.local();
+                std::array<bool, 256> present{};
+                for (int bx = 0; bx < blocks.x; ++bx)
                 {
-                  visit(row[x], Vec3i(x, y, z));
+                  const Vec3i corner(bx * block, (slab % blocks.y) * block, (slab / blocks.y) * block);
+                  const Vec3i extent = glm::min(Vec3i(block), n - corner);
+                  std::vector<std::uint8_t> found;
+                  const auto forBoundary = [&](auto&& visit)
+                  {
+                    for (int z = 0; z < extent.z; ++z)
+                    {
+                      for (int y = 0; y < extent.y; ++y)
+                      {
+                        const std::size_t at =
+                          std::size_t(corner.x) +
+                          std::size_t(n.x) * (std::size_t(corner.y + y) + std::size_t(n.y) * (corner.z + z));
+                        const std::uint8_t* row =
+                          source(box.first.y + corner.y + y, box.first.z + corner.z + z) + box.first.x + corner.x;
+                        for (int x = 0; x < extent.x; ++x)
+                        {
+                          if (boundary[at + x])
+                          {
+                            visit(row[x], Vec3i(x, y, z));
+                          }
+                        }
+                      }
+                    }
+                  };
+                  forBoundary(
+                    [&](std::uint8_t tissue, const Vec3i&)
+                    {
+                      if (!present[tissue])
+                      {
+                        present[tissue] = true;
+                        found.push_back(tissue);
+                      }
+                    });
+                  for (std::uint8_t tissue : found)
+                  {
+                    present[tissue] = false;
+                    worker.voxels.clear();
+                    forBoundary(
+                      [&](std::uint8_t t, const Vec3i& v)
+                      {
+                        if (t == tissue)
+                        {
+                          worker.voxels.push_back(v);
+                        }
+                      });
+                    boundaryVoxels += worker.voxels.size();
+                    worker.baker.bake(tissue,
+                                      box.first + corner,
+                                      worker.voxels,
+                                      [&](const Vec3i& v, std::uint32_t bits)
+                                      { region.record[layout.offset(corner + v)] = bits; });
+                  }
                 }
-              }
-            }
-          }
-        };
-        forBoundary(
-          [&](std::uint8_t tissue, const Vec3i&)
-          {
-            if (!present[tissue])
-            {
-              present[tissue] = true;
-              found.push_back(tissue);
-            }
-          });
-        for (std::uint8_t tissue : found)
-        {
-          present[tissue] = false;
-          worker.voxels.clear();
-          forBoundary(
-            [&](std::uint8_t t, const Vec3i& v)
-            {
-              if (t == tissue)
-              {
-                worker.voxels.push_back(v);
-              }
-            });
-          boundaryVoxels += worker.voxels.size();
-          worker.baker.bake(
-            tissue,
-            box.first + corner,
-            worker.voxels,
-            [&](const Vec3i& v, std::uint32_t bits)
-            {
-              const Vec3i c = corner + v;
-              region.record[std::size_t(c.x) + std::size_t(n.x) * (std::size_t(c.y) + std::size_t(n.y) * c.z)] = bits;
-            });
-        }
-      }
-    });
+              });
   region.boundaryVoxels = boundaryVoxels;
 
   // Distances to the nearest voxel that touches another tissue, or to the border; one less is a uniform cube.
@@ -324,7 +324,7 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues,
                   for (int i = 0; i < n.x; ++i)
                   {
                     const int skip = std::max(0, int(distance[at + i]) - 1);
-                    region.cell[at + i] = std::uint16_t(row[i] | (skip << 8));
+                    region.cell[layout.offset(i, j, k)] = std::uint16_t(row[i] | (skip << 8));
                   }
                 }
               });

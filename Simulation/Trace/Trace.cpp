@@ -2,6 +2,7 @@
 
 #include "Kernel/TracePath.h"
 #include "ParallelFor.h"
+#include "Simd.h"
 #include "Trace/Deposit.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -87,7 +88,12 @@ TraceView makeView(const Scene& scene,
 }
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
-bool traceLine(const TraceView& view, const TraceLine& line, int index, int paths, LineTally& tally, TracedLines& out)
+SONO_SIMD_CLONES __attribute__((flatten)) bool traceLine(const TraceView& view,
+                                                         const TraceLine& line,
+                                                         int index,
+                                                         int paths,
+                                                         LineTally& tally,
+                                                         TracedLines& out)
 {
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   tally.start(line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount));
