@@ -4,8 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace sono
-{
+namespace sono {
 
 /// Called by long loops with the fraction done in [0, 1]; returning false asks the loop to stop.
 /// May be empty. It is called from one thread at a time, not necessarily the caller's.

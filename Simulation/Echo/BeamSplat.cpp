@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <array>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr int chunk = 64;
 
@@ -21,16 +19,8 @@ struct Splats
 };
 
 /// Where each scatterer falls and what it adds there; sample = -1 where the beam does not see it.
-SONO_SIMD_CLONES void weigh(const float* x,
-                            const float* y,
-                            const float* z,
-                            const float* amplitude,
-                            int count,
-                            const GaussianBeam& b,
-                            float perMm,
-                            float radPerSample,
-                            int samples,
-                            Splats& out)
+SONO_SIMD_CLONES void weigh(const float* x, const float* y, const float* z, const float* amplitude, int count,
+                            const GaussianBeam& b, float perMm, float radPerSample, int samples, Splats& out)
 {
   const float il = 1.0f / b.lateralSigmaMm;
   const float ie = 1.0f / b.elevationalSigmaMm;
@@ -86,15 +76,8 @@ void splat(const ScattererList& scatterers, const GaussianBeam& beam, LineSum& s
   for (int first = 0; first < scatterers.count(); first += chunk)
   {
     const int count = std::min(chunk, scatterers.count() - first);
-    weigh(scatterers.x.data() + first,
-          scatterers.y.data() + first,
-          scatterers.z.data() + first,
-          scatterers.amplitude.data() + first,
-          count,
-          beam,
-          1.0f / sum.sampleMm,
-          sum.radPerMm * sum.sampleMm,
-          samples,
+    weigh(scatterers.x.data() + first, scatterers.y.data() + first, scatterers.z.data() + first,
+          scatterers.amplitude.data() + first, count, beam, 1.0f / sum.sampleMm, sum.radPerMm * sum.sampleMm, samples,
           splats);
     for (int i = 0; i < count; ++i)
     {

@@ -4,8 +4,7 @@
 
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Scatterers side by side, local mm.
 struct ScattererList

@@ -9,11 +9,9 @@
 #include <cmath>
 #include <string>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
@@ -94,32 +92,20 @@ void addBoundaryEchoes(const TracedLines& traced, int line, LineSum& sum)
 
 void EchoSettings::validate() const
 {
-  require(centreFrequencyMHz > 0.0 && std::isfinite(centreFrequencyMHz),
-          "centre frequency (MHz)",
-          centreFrequencyMHz,
+  require(centreFrequencyMHz > 0.0 && std::isfinite(centreFrequencyMHz), "centre frequency (MHz)", centreFrequencyMHz,
           "more than 0");
-  require(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0,
-          "fractional bandwidth",
-          fractionalBandwidth,
+  require(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
           "more than 0 and below 2");
-  require(samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0,
-          "sampling frequency (MHz)",
-          samplingMHz,
+  require(samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
           "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
   require(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
-  require(lateralSigmaMm > 0.0 && lateralSigmaMm <= 50.0,
-          "lateral beam sigma (mm)",
-          lateralSigmaMm,
+  require(lateralSigmaMm > 0.0 && lateralSigmaMm <= 50.0, "lateral beam sigma (mm)", lateralSigmaMm,
           "more than 0 and at most 50");
-  require(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0,
-          "elevational beam sigma (mm)",
-          elevationalSigmaMm,
+  require(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0, "elevational beam sigma (mm)", elevationalSigmaMm,
           "more than 0 and at most 50");
   require(scattererCellMm >= 0.05 && scattererCellMm <= 10.0, "scatterer cell (mm)", scattererCellMm, "0.05 to 10");
-  require(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0,
-          "scatterer level (dB)",
-          scattererLevelDb,
-          "-200 to 200");
+  require(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0, "scatterer level (dB)",
+          scattererLevelDb, "-200 to 200");
 }
 
 int EchoSettings::sampleCount() const
@@ -136,40 +122,31 @@ std::vector<float> RfLines::rf() const
     carrier[std::size_t(s)] = std::complex<float>(std::polar(1.0, phase));
   }
   std::vector<float> out(iq.size());
-  parallelFor(lineCount,
-              {},
-              [&](int line)
-              {
-                const std::size_t row = std::size_t(line) * std::size_t(sampleCount);
-                for (std::size_t s = 0; s < carrier.size(); ++s)
-                {
-                  out[row + s] = iq[row + s].real() * carrier[s].real() - iq[row + s].imag() * carrier[s].imag();
-                }
-              });
+  parallelFor(lineCount, {}, [&](int line) {
+    const std::size_t row = std::size_t(line) * std::size_t(sampleCount);
+    for (std::size_t s = 0; s < carrier.size(); ++s)
+    {
+      out[row + s] = iq[row + s].real() * carrier[s].real() - iq[row + s].imag() * carrier[s].imag();
+    }
+  });
   return out;
 }
 
 std::vector<float> RfLines::envelope() const
 {
   std::vector<float> out(iq.size());
-  parallelFor(lineCount,
-              {},
-              [&](int line)
-              {
-                const std::size_t row = std::size_t(line) * std::size_t(sampleCount);
-                for (std::size_t s = row; s < row + std::size_t(sampleCount); ++s)
-                {
-                  out[s] = std::sqrt(iq[s].real() * iq[s].real() + iq[s].imag() * iq[s].imag());
-                }
-              });
+  parallelFor(lineCount, {}, [&](int line) {
+    const std::size_t row = std::size_t(line) * std::size_t(sampleCount);
+    for (std::size_t s = row; s < row + std::size_t(sampleCount); ++s)
+    {
+      out[s] = std::sqrt(iq[s].real() * iq[s].real() + iq[s].imag() * iq[s].imag());
+    }
+  });
   return out;
 }
 
-RfLines formRf(const Scene& scene,
-               const std::vector<ScanLine>& lines,
-               const TracedLines& traced,
-               const EchoSettings& settings,
-               const Progress& progress)
+RfLines formRf(const Scene& scene, const std::vector<ScanLine>& lines, const TracedLines& traced,
+               const EchoSettings& settings, const Progress& progress)
 {
   settings.validate();
   if (int(lines.size()) != traced.lineCount)
@@ -206,60 +183,51 @@ RfLines formRf(const Scene& scene,
   const ScattererBricks bricks(scene, settings.scattererCellMm, settings.seed);
   const Mat3d toLocal = scene.rotationToLocal();
   const int groups = (out.lineCount + groupLines - 1) / groupLines;
-  parallelFor(groups,
-              progress,
-              [&](int g)
-              {
-                const int first = g * groupLines;
-                const int last = std::min(first + groupLines, out.lineCount);
-                std::vector<BeamReach> group;
-                std::vector<LineSum> sums;
-                for (int l = first; l < last; ++l)
-                {
-                  const ScanLine& w = lines[std::size_t(l)];
-                  group.push_back({ { Vec3f(scene.localFromWorld(w.originMm)),
-                                      Vec3f(toLocal * w.axis),
-                                      Vec3f(toLocal * w.lateral),
-                                      Vec3f(toLocal * w.elevation),
-                                      float(settings.lateralSigmaMm),
-                                      float(settings.elevationalSigmaMm) },
-                                    std::min(visibleDepth(traced, l), float(settings.depthMm)) });
-                  sums.push_back({ std::vector<float>(samples, 0.0f),
-                                   std::vector<float>(samples, 0.0f),
-                                   float(out.sampleMm),
-                                   float(radPerMm) });
-                }
-                bricks.forGroup(group,
-                                [&](const ScattererList& list, std::size_t i) { splat(list, group[i].beam, sums[i]); });
+  parallelFor(groups, progress, [&](int g) {
+    const int first = g * groupLines;
+    const int last = std::min(first + groupLines, out.lineCount);
+    std::vector<BeamReach> group;
+    std::vector<LineSum> sums;
+    for (int l = first; l < last; ++l)
+    {
+      const ScanLine& w = lines[std::size_t(l)];
+      group.push_back(
+        { { Vec3f(scene.localFromWorld(w.originMm)), Vec3f(toLocal * w.axis), Vec3f(toLocal * w.lateral),
+            Vec3f(toLocal * w.elevation), float(settings.lateralSigmaMm), float(settings.elevationalSigmaMm) },
+          std::min(visibleDepth(traced, l), float(settings.depthMm)) });
+      sums.push_back(
+        { std::vector<float>(samples, 0.0f), std::vector<float>(samples, 0.0f), float(out.sampleMm), float(radPerMm) });
+    }
+    bricks.forGroup(group, [&](const ScattererList& list, std::size_t i) { splat(list, group[i].beam, sums[i]); });
 
-                std::vector<float> re(samples);
-                std::vector<float> im(samples);
-                for (int l = first; l < last; ++l)
-                {
-                  LineSum& sum = sums[std::size_t(l - first)];
-                  const std::vector<float> intensity = intensityAtSamples(traced, l, out.sampleCount, out.sampleMm);
-                  for (std::size_t s = 0; s < samples; ++s)
-                  {
-                    sum.re[s] *= scale * intensity[s];
-                    sum.im[s] *= scale * intensity[s];
-                  }
-                  addBoundaryEchoes(traced, l, sum);
-                  for (std::size_t s = 0; s < samples; ++s)
-                  {
-                    const float a = sum.re[s];
-                    const float b = sum.im[s];
-                    sum.re[s] = a * demodRe[s] - b * demodIm[s];
-                    sum.im[s] = a * demodIm[s] + b * demodRe[s];
-                  }
-                  convolve(sum.re.data(), out.sampleCount, envelope, re.data());
-                  convolve(sum.im.data(), out.sampleCount, envelope, im.data());
-                  std::complex<float>* row = out.iq.data() + std::size_t(l) * samples;
-                  for (std::size_t s = 0; s < samples; ++s)
-                  {
-                    row[s] = { re[s], im[s] };
-                  }
-                }
-              });
+    std::vector<float> re(samples);
+    std::vector<float> im(samples);
+    for (int l = first; l < last; ++l)
+    {
+      LineSum& sum = sums[std::size_t(l - first)];
+      const std::vector<float> intensity = intensityAtSamples(traced, l, out.sampleCount, out.sampleMm);
+      for (std::size_t s = 0; s < samples; ++s)
+      {
+        sum.re[s] *= scale * intensity[s];
+        sum.im[s] *= scale * intensity[s];
+      }
+      addBoundaryEchoes(traced, l, sum);
+      for (std::size_t s = 0; s < samples; ++s)
+      {
+        const float a = sum.re[s];
+        const float b = sum.im[s];
+        sum.re[s] = a * demodRe[s] - b * demodIm[s];
+        sum.im[s] = a * demodIm[s] + b * demodRe[s];
+      }
+      convolve(sum.re.data(), out.sampleCount, envelope, re.data());
+      convolve(sum.im.data(), out.sampleCount, envelope, im.data());
+      std::complex<float>* row = out.iq.data() + std::size_t(l) * samples;
+      for (std::size_t s = 0; s < samples; ++s)
+      {
+        row[s] = { re[s], im[s] };
+      }
+    }
+  });
   return out;
 }
 

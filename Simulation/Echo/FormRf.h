@@ -9,8 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 struct EchoSettings
 {
@@ -48,10 +47,7 @@ struct RfLines
 /// COLE on the analytic signal (PHYSICS section 4; Gao 2009, Storve 2017): procedural, world-locked scatterers of
 /// each tissue weighted by the beam and the traced intensity, plus the traced boundary echoes, convolved with
 /// a Gaussian pulse.
-RfLines formRf(const Scene& scene,
-               const std::vector<ScanLine>& lines,
-               const TracedLines& traced,
-               const EchoSettings& settings,
-               const Progress& progress = {});
+RfLines formRf(const Scene& scene, const std::vector<ScanLine>& lines, const TracedLines& traced,
+               const EchoSettings& settings, const Progress& progress = {});
 
 } // namespace sono

@@ -8,11 +8,9 @@
 #include <cmath>
 #include <string>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -80,8 +78,7 @@ void convolve(const float* in, int count, const std::vector<float>& envelope, fl
   const int first = std::min(half, count);
   const int last = std::max(first, count - half);
   convolveInterior(in, first, last, envelope.data(), taps, out);
-  const auto edge = [&](int s)
-  {
+  const auto edge = [&](int s) {
     float sum = 0.0f;
     for (int k = std::max(0, half - s); k < taps && s - half + k < count; ++k)
     {

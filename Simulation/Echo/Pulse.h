@@ -3,8 +3,7 @@
 #include <complex>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Standard deviation, in mm of depth, of the round trip's Gaussian envelope exp(-r^2 / (2 sigma^2)) for a pulse
 /// exp(-k t^2) cos(2 pi f t) with fractional bandwidth b at -6 dB: k = (pi f b)^2 / (4 ln 10^0.3), r = c0 t / 2

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr int brickCells = 4;
 

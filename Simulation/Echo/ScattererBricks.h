@@ -7,8 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// A beam and the depth to which it is needed.
 struct BeamReach

@@ -15,10 +15,8 @@
 #include <limits>
 #include <sstream>
 
-namespace sono
-{
-namespace
-{
+namespace sono {
+namespace {
 
 constexpr float smallestNormal = std::numeric_limits<float>::min();
 constexpr float largestFinite = std::numeric_limits<float>::max();
@@ -44,8 +42,8 @@ double curveGainDb(const std::vector<std::pair<double, double>>& curve, double d
   {
     return 0.0;
   }
-  const auto above = std::upper_bound(
-    curve.begin(), curve.end(), depthMm, [](double depth, const auto& point) { return depth < point.first; });
+  const auto above = std::upper_bound(curve.begin(), curve.end(), depthMm,
+                                      [](double depth, const auto& point) { return depth < point.first; });
   if (above == curve.begin())
   {
     return curve.front().second;
@@ -91,15 +89,13 @@ public:
     , lineCount_(lineCount)
   {
     tbb::enumerable_thread_specific<Histogram> partial([] { return Histogram(binCount, 0u); });
-    forEachLine(
-      [&](const float* line)
+    forEachLine([&](const float* line) {
+      auto& counts = partial.local();
+      for (std::size_t s = 0; s < factor_.size(); ++s)
       {
-        auto& counts = partial.local();
-        for (std::size_t s = 0; s < factor_.size(); ++s)
-        {
-          ++counts[gainedBits(line[s], factor_[s]) >> lowBits];
-        }
-      });
+        ++counts[gainedBits(line[s], factor_[s]) >> lowBits];
+      }
+    });
     for (const auto& counts : partial)
     {
       std::transform(counts.begin(), counts.end(), histogram_.begin(), histogram_.begin(), std::plus<>());
@@ -130,32 +126,28 @@ private:
   template<class Work>
   void forEachLine(const Work& work) const
   {
-    tbb::parallel_for(tbb::blocked_range<int>(0, lineCount_),
-                      [&](const tbb::blocked_range<int>& lines)
-                      {
-                        for (int l = lines.begin(); l < lines.end(); ++l)
-                        {
-                          work(envelope_.data() + l * factor_.size());
-                        }
-                      });
+    tbb::parallel_for(tbb::blocked_range<int>(0, lineCount_), [&](const tbb::blocked_range<int>& lines) {
+      for (int l = lines.begin(); l < lines.end(); ++l)
+      {
+        work(envelope_.data() + l * factor_.size());
+      }
+    });
   }
 
   std::vector<std::uint32_t> collect(std::uint32_t bin) const
   {
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> partial;
-    forEachLine(
-      [&](const float* line)
+    forEachLine([&](const float* line) {
+      auto& found = partial.local();
+      for (std::size_t s = 0; s < factor_.size(); ++s)
       {
-        auto& found = partial.local();
-        for (std::size_t s = 0; s < factor_.size(); ++s)
+        const std::uint32_t bits = gainedBits(line[s], factor_[s]);
+        if (bits >> lowBits == bin)
         {
-          const std::uint32_t bits = gainedBits(line[s], factor_[s]);
-          if (bits >> lowBits == bin)
-          {
-            found.push_back(bits);
-          }
+          found.push_back(bits);
         }
-      });
+      }
+    });
     std::vector<std::uint32_t> all;
     for (const auto& found : partial)
     {
@@ -173,11 +165,9 @@ private:
 double automaticReference(const std::vector<float>& envelope, int lineCount, const std::vector<double>& gainDb)
 {
   std::vector<float> factor(gainDb.size());
-  std::transform(gainDb.begin(),
-                 gainDb.end(),
-                 factor.begin(),
-                 [](double decibels)
-                 { return static_cast<float>(std::min(std::pow(10.0, decibels / 20.0), double(largestFinite))); });
+  std::transform(gainDb.begin(), gainDb.end(), factor.begin(), [](double decibels) {
+    return static_cast<float>(std::min(std::pow(10.0, decibels / 20.0), double(largestFinite)));
+  });
   const RankSearch search(envelope, factor, lineCount);
   const std::uint64_t count = envelope.size();
   const float percentile = search.find(count - count / 1000); // ceil(0.999 n) without rounding
@@ -226,27 +216,20 @@ void BModeSettings::validate() const
   require(within(tgcDbPerCm, -100.0, 100.0), "tgcDbPerCm", tgcDbPerCm, "in [-100, 100] dB/cm");
   require(within(gainDb, -300.0, 300.0), "gainDb", gainDb, "in [-300, 300] dB");
   require(automaticReference || (referenceAmplitude >= smallestNormal && referenceAmplitude <= largestFinite),
-          "referenceAmplitude",
-          referenceAmplitude,
-          "in [1.2e-38, 3.4e38]");
+          "referenceAmplitude", referenceAmplitude, "in [1.2e-38, 3.4e38]");
   require(dynamicRangeDb > 0.0 && dynamicRangeDb <= 300.0, "dynamicRangeDb", dynamicRangeDb, "in (0, 300] dB");
   require(rejectDb >= 0.0 && rejectDb < dynamicRangeDb, "rejectDb", rejectDb, "in [0, dynamicRangeDb) dB");
   double previousMm = -std::numeric_limits<double>::infinity();
   for (const auto& [depthMm, gain] : tgcCurve)
   {
-    require(std::isfinite(depthMm) && depthMm > previousMm,
-            "A depth of tgcCurve",
-            depthMm,
+    require(std::isfinite(depthMm) && depthMm > previousMm, "A depth of tgcCurve", depthMm,
             "finite and greater than the depth before it, in mm");
     require(within(gain, -300.0, 300.0), "A gain of tgcCurve", gain, "in [-300, 300] dB");
     previousMm = depthMm;
   }
 }
 
-BModeLines makeBMode(const std::vector<float>& envelope,
-                     int lineCount,
-                     int sampleCount,
-                     double sampleMm,
+BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm,
                      const BModeSettings& settings)
 {
   settings.validate();
@@ -261,25 +244,18 @@ BModeLines makeBMode(const std::vector<float>& envelope,
 
   const double constantDb = settings.gainDb - 20.0 * std::log10(result.referenceAmplitude) + settings.dynamicRangeDb;
   std::vector<float> offsetDb(sampleCount);
-  std::transform(gainDb.begin(),
-                 gainDb.end(),
-                 offsetDb.begin(),
+  std::transform(gainDb.begin(), gainDb.end(), offsetDb.begin(),
                  [&](double decibels) { return static_cast<float>(decibels + constantDb); });
 
   result.grey.resize(envelope.size());
-  tbb::parallel_for(tbb::blocked_range<int>(0, lineCount),
-                    [&](const tbb::blocked_range<int>& lines)
-                    {
-                      for (int l = lines.begin(); l < lines.end(); ++l)
-                      {
-                        const std::size_t first = std::size_t(l) * sampleCount;
-                        compressLine(envelope.data() + first,
-                                     offsetDb,
-                                     static_cast<float>(settings.dynamicRangeDb),
-                                     static_cast<float>(settings.rejectDb),
-                                     result.grey.data() + first);
-                      }
-                    });
+  tbb::parallel_for(tbb::blocked_range<int>(0, lineCount), [&](const tbb::blocked_range<int>& lines) {
+    for (int l = lines.begin(); l < lines.end(); ++l)
+    {
+      const std::size_t first = std::size_t(l) * sampleCount;
+      compressLine(envelope.data() + first, offsetDb, static_cast<float>(settings.dynamicRangeDb),
+                   static_cast<float>(settings.rejectDb), result.grey.data() + first);
+    }
+  });
   return result;
 }
 

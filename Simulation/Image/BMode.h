@@ -3,8 +3,7 @@
 #include <utility>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Depth-dependent gain and log compression (PHYSICS section 6).
 struct BModeSettings
@@ -39,10 +38,7 @@ struct BModeLines
 /// dB. `envelope` is lineCount x sampleCount. NaN, negative and subnormal envelopes are black, +infinity is white. The
 /// automatic reference is the envelope of rank ceil(0.999 n); where that is zero, the largest finite one; where all are
 /// zero, 1. Throws Error for settings out of range, counts below 1 and sizes that do not match.
-BModeLines makeBMode(const std::vector<float>& envelope,
-                     int lineCount,
-                     int sampleCount,
-                     double sampleMm,
+BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm,
                      const BModeSettings& settings);
 
 } // namespace sono

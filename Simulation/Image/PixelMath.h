@@ -6,8 +6,7 @@
 
 /// Short polynomials that a compiler can vectorise, in place of libm's calls. The coefficients are minimax fits
 /// (Lawson's iteration) with the end points pinned, so that neighbouring intervals join without a step.
-namespace sono
-{
+namespace sono {
 
 /// 20 log10(x) of a finite normal x > 0: to 3e-5 dB within +-120 dB, to 1e-4 dB at the ends of the float range.
 inline float fastDecibels(float x)

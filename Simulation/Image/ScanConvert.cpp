@@ -10,10 +10,8 @@
 #include <cmath>
 #include <sstream>
 
-namespace sono
-{
-namespace
-{
+namespace sono {
+namespace {
 
 constexpr double maxPixels = 268435456.0; // 2^28
 
@@ -83,8 +81,7 @@ Extent boundingBox(const ScanGeometry& geometry)
     return { geometry.widthMm / 2.0, 0.0, geometry.depthMm };
   }
   const double half = -map.firstUnit;
-  return { (map.faceRadiusMm + geometry.depthMm) * std::sin(half),
-           map.faceRadiusMm * (std::cos(half) - 1.0),
+  return { (map.faceRadiusMm + geometry.depthMm) * std::sin(half), map.faceRadiusMm * (std::cos(half) - 1.0),
            geometry.depthMm };
 }
 
@@ -191,10 +188,7 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
 
 } // namespace
 
-PlaneImage scanConvert(const ScanGeometry& geometry,
-                       const std::vector<float>& values,
-                       int sampleCount,
-                       double sampleMm,
+PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
                        double pixelMm)
 {
   validateSizes(geometry, values, sampleCount, sampleMm);
@@ -209,27 +203,24 @@ PlaneImage scanConvert(const ScanGeometry& geometry,
   {
     lateralMm[i] = static_cast<float>(image.lateralMinMm + i * pixelMm);
   }
-  tbb::parallel_for(tbb::blocked_range<int>(0, image.height, 8),
-                    [&](const tbb::blocked_range<int>& rows)
-                    {
-                      std::vector<float> line(image.width);
-                      std::vector<float> depthMm(image.width);
-                      for (int j = rows.begin(); j < rows.end(); ++j)
-                      {
-                        map.row(
-                          static_cast<float>(image.axialMinMm + j * pixelMm), lateralMm, line.data(), depthMm.data());
-                        float* value = image.value.data() + std::size_t(j) * image.width;
-                        std::uint8_t* mask = image.mask.data() + std::size_t(j) * image.width;
-                        for (int i = 0; i < image.width; ++i)
-                        {
-                          if (area.contains(line[i], depthMm[i]))
-                          {
-                            value[i] = samples.at(line[i], depthMm[i] * samplesPerMm);
-                            mask[i] = 1;
-                          }
-                        }
-                      }
-                    });
+  tbb::parallel_for(tbb::blocked_range<int>(0, image.height, 8), [&](const tbb::blocked_range<int>& rows) {
+    std::vector<float> line(image.width);
+    std::vector<float> depthMm(image.width);
+    for (int j = rows.begin(); j < rows.end(); ++j)
+    {
+      map.row(static_cast<float>(image.axialMinMm + j * pixelMm), lateralMm, line.data(), depthMm.data());
+      float* value = image.value.data() + std::size_t(j) * image.width;
+      std::uint8_t* mask = image.mask.data() + std::size_t(j) * image.width;
+      for (int i = 0; i < image.width; ++i)
+      {
+        if (area.contains(line[i], depthMm[i]))
+        {
+          value[i] = samples.at(line[i], depthMm[i] * samplesPerMm);
+          mask[i] = 1;
+        }
+      }
+    }
+  });
   return image;
 }
 

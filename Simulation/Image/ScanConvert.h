@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// An image in the probe's plane: pixel (i, j) lies at lateral = lateralMinMm + i pixelMm, axial = axialMinMm + j
 /// pixelMm.
@@ -27,10 +26,7 @@ struct PlaneImage
 /// sample reaches, and what lies beyond the geometry's depth, are outside. A single line is drawn one pixel wide.
 /// Throws Error when pixelMm is not positive or asks for more than 2^28 pixels, and when `values` is not
 /// lineCount x sampleCount.
-PlaneImage scanConvert(const ScanGeometry& geometry,
-                       const std::vector<float>& values,
-                       int sampleCount,
-                       double sampleMm,
+PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
                        double pixelMm);
 
 } // namespace sono

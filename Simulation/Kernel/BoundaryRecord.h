@@ -6,8 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace sono
-{
+namespace sono {
 
 /// What the smoothed surface of a tissue looks like at one of its boundary voxels.
 struct BoundaryRecord

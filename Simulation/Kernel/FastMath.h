@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace sono
-{
+namespace sono {
 
 /// exp(x) for x <= 0, relative error below 2e-7 (minimax polynomial of 2^f on [0, 1)); 0 below -87. Branch-free, so
 /// that host loops vectorise.

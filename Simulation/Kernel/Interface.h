@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
 /// What happens at a boundary: fluid acoustics, or the equations of Amadou et al. 2024 to the letter.
 /// The latter do not conserve energy: the branch's R or T is applied although the choice carries it already, and
@@ -67,13 +66,8 @@ SONO_HD inline Vec3f refractedDirection(const Vec3f& direction, const Vec3f& nor
 
 /// Draws the branch and its direction from the lobe around the mirror or refracted direction. A direction on the
 /// wrong side of the surface is mirrored across the tangent plane (PHYSICS section 2).
-SONO_HD inline Scattered scatterAt(InterfaceModel model,
-                                   const Lobe& lobe,
-                                   const Vec3f& direction,
-                                   const Vec3f& normal,
-                                   float cos1,
-                                   const Reflection& r,
-                                   const BounceSample& u)
+SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const Vec3f& direction, const Vec3f& normal,
+                                   float cos1, const Reflection& r, const BounceSample& u)
 {
   Scattered out;
   out.reflected = u.choice < r.reflectance || r.total;
@@ -100,8 +94,8 @@ SONO_HD inline Scattered scatterAt(InterfaceModel model,
 }
 
 /// Amplitude of the echo that a boundary returns along the beam, for unit intensity weight w_R left to the caller.
-SONO_HD inline float
-boundaryEcho(InterfaceModel model, float z1, float z2, float intensity, float cos1, float tau, float gamma)
+SONO_HD inline float boundaryEcho(InterfaceModel model, float z1, float z2, float intensity, float cos1, float tau,
+                                  float gamma)
 {
   const float r0 = fabsf(z2 - z1) / (z2 + z1);
   float shaped = tau == 1.0f ? intensity : powf(intensity, tau);

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
 /// The directional lobe around the mirror or refracted direction: phi ~ normal(mu, sigma) truncated to [a, b],
 /// theta ~ U(0, 2 pi) (Amadou 2024, section 2.4.3). Constants come from makeLobe in double precision.
@@ -17,15 +16,28 @@ struct Lobe
   float a = 0.0f;
   float b = 0.0f;
   float alpha = 0.0f;     ///< (a - mu) / sigma, after mirroring
-  float beta = 0.0f;      ///< (b - mu) / sigma, after mirroring
   float tailAlpha = 0.0f; ///< upper tail probability Q(alpha)
-  float tailBeta = 0.0f;  ///< Q(beta)
+  float tailBeta = 0.0f;  ///< Q(beta), beta = (b - mu) / sigma after mirroring
   float tailRatio = 0.0f; ///< Q(beta) / Q(alpha)
-  float density = 0.0f;   ///< factor of exp(-x^2/2) in psi
+  float density = 0.0f;   ///< psi at mu, extrapolated where mu is outside; in a far tail psi at alpha
   bool mirrored = false;  ///< the interval lies mostly below mu: sampled with the sign of x turned
 };
 
-/// Throws nothing; arguments are validated by TraceSettings::validate. sigma may be 0 or infinite in effect.
+/// From here on the upper tail is taken from its asymptotic series: Q itself would lose its digits, then underflow.
+constexpr float farTail = 5.0f;
+
+/// Mills' ratio Q(x) / phi(x) by Laplace's continued fraction, x >= farTail.
+inline double millsRatio(double x)
+{
+  double fraction = x;
+  for (int k = 60; k > 0; --k)
+  {
+    fraction = x + k / fraction;
+  }
+  return 1.0 / fraction;
+}
+
+/// Throws nothing; arguments are validated by TraceSettings::validate.
 inline Lobe makeLobe(double mu, double sigma, double a, double b)
 {
   Lobe lobe;
@@ -37,6 +49,8 @@ inline Lobe makeLobe(double mu, double sigma, double a, double b)
   {
     return lobe;
   }
+  // Above this it is uniform to 1e-4, and the tails would not resolve the interval.
+  sigma = std::fmin(sigma, 100.0);
   lobe.sigma = float(sigma);
   double alpha = (a - mu) / sigma;
   double beta = (b - mu) / sigma;
@@ -47,48 +61,53 @@ inline Lobe makeLobe(double mu, double sigma, double a, double b)
     alpha = -beta;
     beta = -t;
   }
+  lobe.alpha = float(alpha);
+  if (lobe.alpha >= farTail)
+  {
+    const double mills = millsRatio(alpha);
+    const double ratio = std::exp(-0.5 * (beta - alpha) * (beta + alpha)) * millsRatio(beta) / mills;
+    lobe.tailRatio = float(ratio);
+    lobe.density = float(1.0 / (sigma * mills * (1.0 - ratio)));
+    return lobe;
+  }
   const double tailAlpha = 0.5 * std::erfc(alpha / std::sqrt(2.0));
   const double tailBeta = 0.5 * std::erfc(beta / std::sqrt(2.0));
-  lobe.alpha = float(alpha);
-  lobe.beta = float(beta);
   lobe.tailAlpha = float(tailAlpha);
   lobe.tailBeta = float(tailBeta);
-  lobe.tailRatio = tailAlpha > 0.0 ? float(tailBeta / tailAlpha) : 0.0f;
-  lobe.density = tailAlpha > tailBeta
-                   ? float(1.0 / (sigma * std::sqrt(2.0 * 3.14159265358979323846) * (tailAlpha - tailBeta)))
-                   : 0.0f;
+  lobe.density = float(1.0 / (sigma * std::sqrt(2.0 * 3.14159265358979323846) * (tailAlpha - tailBeta)));
   return lobe;
 }
 
-/// Quantile of the upper normal tail beyond alpha >= 5, where Q itself would underflow: solves
-/// Q(x) / Q(alpha) = ratio with Mills' ratio Q(x) = phi(x) / x (1 - 1/x^2 + 3/x^4).
+/// Quantile of the upper normal tail beyond alpha >= farTail: x - alpha for Q(x) / Q(alpha) = ratio, with Mills' ratio
+/// Q(x) = phi(x) / x (1 - 1/x^2 + 3/x^4).
 SONO_HD inline float normalFarTail(float alpha, float ratio)
 {
   const float ia = 1.0f / (alpha * alpha);
-  const float millsAlpha = (1.0f - ia + 3.0f * ia * ia) / alpha;
+  const float seriesAlpha = (1.0f - ia + 3.0f * ia * ia) / alpha;
+  const float target = -logf(fmaxf(ratio, 1e-30f));
   // y = (x^2 - alpha^2) / 2 is well scaled where x itself would lose its digits.
-  float y = -logf(ratio);
-  float x = alpha;
+  float y = target;
   for (int i = 0; i < 4; ++i)
   {
-    x = sqrtf(alpha * alpha + 2.0f * y);
+    const float x = sqrtf(alpha * alpha + 2.0f * y);
     const float ix = 1.0f / (x * x);
-    y = -logf(ratio) + logf((1.0f - ix + 3.0f * ix * ix) / (x * millsAlpha));
+    y = fmaxf(0.0f, target + logf((1.0f - ix + 3.0f * ix * ix) / (x * seriesAlpha)));
   }
-  return x;
+  return 2.0f * y / (alpha + sqrtf(alpha * alpha + 2.0f * y));
 }
 
-/// x with upper tail probability q, q in (0, 1), single precision: Giles 2010 ("Approximating the erfinv
-/// function") evaluated from the smaller tail, so that both tails keep their relative precision.
+/// x with upper tail probability q in [0, 1], single precision, finite also at the ends: Giles 2010 ("Approximating the
+/// erfinv function") evaluated from the smaller tail, so that both tails keep their relative precision.
 SONO_HD inline float normalFromUpperTail(float q)
 {
   constexpr float tailFive = 2.86651572e-7f; // Q(5); the fit below ends there
   if (q < tailFive)
   {
-    return normalFarTail(5.0f, q / tailFive);
+    return 5.0f + normalFarTail(5.0f, q / tailFive);
   }
   const bool upper = q < 0.5f;
-  const float p = upper ? q : 1.0f - q; // the smaller tail
+  // The smaller tail; half a step of single precision where q has rounded to 1.
+  const float p = fmaxf(upper ? q : 1.0f - q, 2.98023224e-8f);
   float w = -logf(4.0f * p * (1.0f - p));
   float r;
   if (w < 5.0f)
@@ -129,25 +148,32 @@ SONO_HD inline float samplePolar(const Lobe& lobe, float u)
     return fminf(fmaxf(lobe.mu, lobe.a), lobe.b);
   }
   const float v = lobe.mirrored ? u : 1.0f - u; // fraction of the tail beyond, in both cases
-  float x;
-  if (lobe.alpha >= 5.0f)
+  float phi;
+  if (lobe.alpha >= farTail)
   {
-    x = normalFarTail(lobe.alpha, lobe.tailRatio + v * (1.0f - lobe.tailRatio));
+    const float excess = normalFarTail(lobe.alpha, lobe.tailRatio + v * (1.0f - lobe.tailRatio)) * lobe.sigma;
+    phi = lobe.mirrored ? lobe.b - excess : lobe.a + excess;
   }
   else
   {
-    x = normalFromUpperTail(lobe.tailBeta + v * (lobe.tailAlpha - lobe.tailBeta));
+    const float x = normalFromUpperTail(lobe.tailBeta + v * (lobe.tailAlpha - lobe.tailBeta));
+    phi = lobe.mu + (lobe.mirrored ? -x : x) * lobe.sigma;
   }
-  const float phi = lobe.mu + (lobe.mirrored ? -x : x) * lobe.sigma;
   return fminf(fmaxf(phi, lobe.a), lobe.b);
 }
 
-/// psi(phi) on [a, b]; 0 when the lobe is a mirror (it has no density then).
+/// psi(phi) for phi in [a, b]; 0 when the lobe is a mirror (it has no density then).
 SONO_HD inline float polarDensity(const Lobe& lobe, float phi)
 {
   if (lobe.sigma == 0.0f)
   {
     return 0.0f;
+  }
+  if (lobe.alpha >= farTail)
+  {
+    // x^2 - alpha^2 from the distance to the near end: the squares would cancel.
+    const float excess = (lobe.mirrored ? lobe.b - phi : phi - lobe.a) / lobe.sigma;
+    return lobe.density * expf(-excess * (lobe.alpha + 0.5f * excess));
   }
   const float x = (phi - lobe.mu) / lobe.sigma;
   return lobe.density * expf(-0.5f * x * x);

@@ -5,8 +5,7 @@
 
 #include <cstdint>
 
-namespace sono
-{
+namespace sono {
 
 /// Four random words.
 struct RandomWords
@@ -16,10 +15,7 @@ struct RandomWords
 
 /// Philox4x32-10, a counter-based generator (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3",
 /// SC 2011): the same key and counter give the same words on every device.
-SONO_HD inline RandomWords philox(std::uint64_t key,
-                                  std::uint32_t c0,
-                                  std::uint32_t c1,
-                                  std::uint32_t c2,
+SONO_HD inline RandomWords philox(std::uint64_t key, std::uint32_t c0, std::uint32_t c1, std::uint32_t c2,
                                   std::uint32_t c3)
 {
   std::uint32_t k0 = std::uint32_t(key);
@@ -38,10 +34,11 @@ SONO_HD inline RandomWords philox(std::uint64_t key,
   return { { c0, c1, c2, c3 } };
 }
 
-/// Uniform in the open interval (0, 1): 24 bits and a half, so neither end occurs in single precision.
+/// Uniform in the open interval (0, 1): 23 bits and a half fill the 24 of single precision, so that nothing is rounded
+/// and neither end occurs.
 SONO_HD inline float uniformFrom(std::uint32_t word)
 {
-  return (float(word >> 8) + 0.5f) * (1.0f / 16777216.0f);
+  return (float(word >> 9) + 0.5f) * (1.0f / 8388608.0f);
 }
 
 /// What one boundary consumes.
@@ -90,11 +87,8 @@ SONO_HD inline std::uint32_t sobolSecond(std::uint32_t index)
 }
 
 /// Stream keys: (seed; line, path, bounce, batch). A path's numbers depend on nothing else.
-SONO_HD inline BounceSample independentSample(std::uint64_t seed,
-                                              std::uint32_t line,
-                                              std::uint32_t batch,
-                                              std::uint32_t path,
-                                              std::uint32_t bounce)
+SONO_HD inline BounceSample independentSample(std::uint64_t seed, std::uint32_t line, std::uint32_t batch,
+                                              std::uint32_t path, std::uint32_t bounce)
 {
   const RandomWords w = philox(seed, line, path, bounce, batch);
   return { uniformFrom(w.v[0]), uniformFrom(w.v[1]), uniformFrom(w.v[2]) };
@@ -110,9 +104,7 @@ struct BounceScramble
   std::uint32_t azimuth;
 };
 
-SONO_HD inline BounceScramble makeBounceScramble(std::uint64_t seed,
-                                                 std::uint32_t line,
-                                                 std::uint32_t batch,
+SONO_HD inline BounceScramble makeBounceScramble(std::uint64_t seed, std::uint32_t line, std::uint32_t batch,
                                                  std::uint32_t bounce)
 {
   const RandomWords w = philox(seed, line, 0xfffffff0u, bounce, batch);
@@ -121,10 +113,12 @@ SONO_HD inline BounceScramble makeBounceScramble(std::uint64_t seed,
 
 /// Padded Sobol pairs: (polar, azimuth) is a scrambled (0,2)-sequence over the paths of a batch, `choice` a scrambled
 /// van der Corput sequence; each bounce visits the points in another order so that bounces stay uncorrelated.
+/// Scrambling the index itself (Burley 2020) maps aligned blocks of 2^k paths onto aligned blocks of the sequence,
+/// which keeps their stratification.
 SONO_HD inline BounceSample lowDiscrepancySample(const BounceScramble& s, std::uint32_t path)
 {
-  const std::uint32_t choiceIndex = reverseBits(owenScramble(reverseBits(path), s.shuffle ^ 0x9e3779b9u));
-  const std::uint32_t index = reverseBits(owenScramble(reverseBits(path), s.shuffle));
+  const std::uint32_t choiceIndex = owenScramble(path, s.shuffle ^ 0x9e3779b9u);
+  const std::uint32_t index = owenScramble(path, s.shuffle);
   return { uniformFrom(owenScramble(reverseBits(choiceIndex), s.choice)),
            uniformFrom(owenScramble(reverseBits(index), s.polar)),
            uniformFrom(owenScramble(sobolSecond(index), s.azimuth)) };

@@ -6,8 +6,7 @@
 
 #include <cstdint>
 
-namespace sono
-{
+namespace sono {
 
 /// How a tissue scatters (Burger et al. 2013): a cell holds a scatterer with probability `probability`, of amplitude
 /// normal(mean, sigma).
@@ -33,8 +32,7 @@ SONO_HD inline ScattererSeed scattererSeed(std::uint64_t seed, const Vec3i& cell
   const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z), 0x5ca77e4u);
   const float unit = 1.0f / 2097152.0f;
   const std::uint32_t z = ((w.v[0] & 0x7ffu) << 10) | (w.v[1] & 0x3ffu);
-  return { Vec3f(float(w.v[0] >> 11) * unit, float(w.v[1] >> 11) * unit, float(z) * unit),
-           uniformFrom(w.v[2]),
+  return { Vec3f(float(w.v[0] >> 11) * unit, float(w.v[1] >> 11) * unit, float(z) * unit), uniformFrom(w.v[2]),
            uniformFrom(w.v[3]) };
 }
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace sono
-{
+namespace sono {
 
 /// A view of the tracer's cache of a region: one 16-bit word per voxel (low byte: tissue index, high byte: half-width
 /// of the largest cube around the voxel known to hold that tissue alone) and one boundary record per voxel. Local
@@ -106,12 +105,8 @@ struct AxisMarch
 
 /// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
 /// t < ignoreUntil (hysteresis after a boundary; -1: none). Steps over uniform cubes at once.
-SONO_HD inline CellHit marchToBoundary(const TissueCells& cells,
-                                       const CellRay& ray,
-                                       int current,
-                                       int ignored,
-                                       float ignoreUntil,
-                                       float tMax)
+SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& ray, int current, int ignored,
+                                       float ignoreUntil, float tMax)
 {
   const AxisMarch ax(ray.position.x / cells.spacing.x, ray.direction.x / cells.spacing.x);
   const AxisMarch ay(ray.position.y / cells.spacing.y, ray.direction.y / cells.spacing.y);

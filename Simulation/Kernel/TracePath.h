@@ -1,9 +1,13 @@
 #pragma once
 
+#include "Kernel/CellSpace.h"
 #include "Kernel/TraceView.h"
 
-namespace sono
-{
+// One path through a space (see CellSpace), for one thread of any device. `Sink` takes what the path leaves behind:
+//   segment(const PathSegment&)             a straight piece inside one tissue
+//   echo(const Vec3f& point, float amplitude)  the echo of a boundary, before the coherence weight
+
+namespace sono {
 
 /// A path between two boundaries.
 struct PathState
@@ -11,7 +15,8 @@ struct PathState
   CellRay ray;
   float intensity = 1.0f;
   float length = 0.0f; ///< travelled since the transducer, mm
-  int tissue = 0;      ///< that the path is in
+  int tissue = 0;      ///< medium that the path is in
+  int target = -1;     ///< target that the path is in; the cells do not count there
   int ignored = -1;    ///< see marchToBoundary
   float ignoreUntil = 0.0f;
   int collisions = 0;
@@ -27,13 +32,22 @@ struct PathSegment
   float decayPerMm;
 };
 
+/// One side of a boundary.
+struct BoundarySide
+{
+  Vec3i cell;
+  int medium;
+  int target;
+};
+
 /// A boundary that a path met, ready for the choice of a branch.
 struct PathBoundary
 {
-  CellHit hit;
-  RefinedHit surface;
-  int from; ///< tissue indices
-  int to;
+  float restart;      ///< where the path goes on, mm along its ray: the voxel face
+  RefinedHit surface; ///< the sub-voxel surface
+  BoundarySide before;
+  BoundarySide after;
+  bool voxelFace; ///< a boundary between cells, which are a staircase; false: a target's surface
   float cosine;
   Reflection reflection;
 };
@@ -66,92 +80,145 @@ SONO_HD inline bool sameAcoustics(const TraceMedium& a, const TraceMedium& b)
   return a.impedance == b.impedance && a.speed == b.speed;
 }
 
-/// Follows the path to its next boundary and hands every segment to `sink.segment(PathSegment)`. Returns false when the
-/// path ends before one. Tissues with equal impedance and speed are no boundary: only the attenuation changes there.
-template<class Sink>
-SONO_HD inline bool advanceToBoundary(const TraceView& view,
-                                      const TraceLine& line,
-                                      PathState& path,
-                                      PathBoundary& boundary,
-                                      Sink& sink)
+/// Finds where the path leaves its medium, within tMax. Returns false when it does not; `travelled` is then how far it
+/// got.
+template<class Space>
+SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, const PathState& path, float tMax,
+                                 PathBoundary& boundary, float& travelled)
 {
-  // A march ends at a new tissue, which lies at least one cell on: the count bounds any path.
-  const int maxPieces = view.cells.size.x + view.cells.size.y + view.cells.size.z;
-  for (int piece = 0; piece < maxPieces; ++piece)
+  const CellRay& ray = path.ray;
+  boundary.before = { ray.cell, path.tissue, path.target };
+  TargetHit target{ tMax, Vec3f(0.0f), -1 };
+  if (space.targets.any())
   {
-    const float tMax = remainingLength(view, line, path);
-    const CellHit hit = marchToBoundary(view.cells, path.ray, path.tissue, path.ignored, path.ignoreUntil, tMax);
-    const TraceMedium& medium = view.media[path.tissue];
-    sink.segment(PathSegment{ path.ray.position, path.ray.direction, hit.t, path.intensity, medium.decayPerMm });
-    path.intensity *= expf(-medium.decayPerMm * hit.t);
-    path.length += hit.t;
-    if (hit.tissue < 0)
+    target = space.targets.nearest(ray.position, ray.direction, tMax, path.target >= 0);
+  }
+  const bool meetsTarget = target.target >= 0;
+  if (path.target < 0)
+  {
+    const CellHit hit =
+      space.toBoundary(ray, path.tissue, path.ignored, path.ignoreUntil, meetsTarget ? target.t : tMax);
+    travelled = hit.t;
+    if (hit.tissue >= 0)
+    {
+      boundary.restart = hit.t;
+      boundary.surface = space.refine(ray, hit);
+      boundary.before.cell = hit.before;
+      boundary.after = { hit.after, hit.tissue, -1 };
+      boundary.voxelFace = true;
+      return true;
+    }
+    if (!meetsTarget || hit.t < target.t)
     {
       return false;
     }
-    const TraceMedium& next = view.media[hit.tissue];
+  }
+  travelled = meetsTarget ? target.t : tMax;
+  if (!meetsTarget)
+  {
+    return false;
+  }
+  const Vec3i cell = space.cellAt(ray.position + ray.direction * target.t);
+  if (!space.contains(cell))
+  {
+    return false;
+  }
+  boundary.restart = target.t;
+  boundary.surface = { path.target < 0 ? -target.normal : target.normal, target.t };
+  boundary.before.cell = cell;
+  boundary.after = path.target < 0 ? BoundarySide{ cell, firstTargetMedium + target.target, target.target }
+                                   : BoundarySide{ cell, space.tissueAt(cell), -1 };
+  boundary.voxelFace = false;
+  return true;
+}
+
+/// Follows the path to its next boundary and hands every segment to the sink. Returns false when the path ends before
+/// one. Media with equal impedance and speed are no boundary: only the attenuation changes there.
+template<class Space, class Sink>
+SONO_HD inline bool advanceToBoundary(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
+                                      PathBoundary& boundary, Sink& sink)
+{
+  // Each piece ends at a new medium, at least one cell on: the count bounds any path.
+  const Vec3i size = space.size();
+  const int maxPieces = size.x + size.y + size.z;
+  for (int piece = 0; piece < maxPieces; ++piece)
+  {
+    float travelled = 0.0f;
+    const bool met =
+      findBoundary(space, view.firstTargetMedium, path, remainingLength(view, line, path), boundary, travelled);
+    const TraceMedium& medium = view.media[path.tissue];
+    sink.segment(PathSegment{ path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm });
+    path.intensity *= expf(-medium.decayPerMm * travelled);
+    path.length += travelled;
+    if (!met)
+    {
+      return false;
+    }
+    const TraceMedium& next = view.media[boundary.after.medium];
     if (!sameAcoustics(medium, next))
     {
-      boundary.hit = hit;
-      boundary.surface = refineBoundary(view.cells, path.ray, hit);
-      boundary.from = path.tissue;
-      boundary.to = hit.tissue;
       boundary.cosine = smaller(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
       boundary.reflection =
         reflectionAt(view.model, medium.impedance, next.impedance, medium.speed, next.speed, boundary.cosine);
       return true;
     }
-    path.ray.position += path.ray.direction * hit.t;
-    path.ray.cell = hit.after;
-    path.ignoreUntil -= hit.t;
-    path.tissue = hit.tissue;
+    path.ray.position += path.ray.direction * boundary.restart;
+    path.ray.cell = boundary.after.cell;
+    path.ignoreUntil -= boundary.restart;
+    path.tissue = boundary.after.medium;
+    path.target = boundary.after.target;
   }
   return false;
 }
 
-/// The echo of a boundary goes to `sink.echo(point, amplitude)` at the sub-voxel point.
+/// The echo of a boundary, at the sub-voxel point, shaped by the tissue behind it.
 template<class Sink>
-SONO_HD inline void depositBoundary(const TraceView& view,
-                                    const PathState& path,
-                                    const PathBoundary& boundary,
+SONO_HD inline void depositBoundary(const TraceView& view, const PathState& path, const PathBoundary& boundary,
                                     Sink& sink)
 {
-  const TraceMedium& from = view.media[boundary.from];
-  const TraceMedium& to = view.media[boundary.to];
+  const TraceMedium& from = view.media[boundary.before.medium];
+  const TraceMedium& to = view.media[boundary.after.medium];
   const float amplitude =
     boundaryEcho(view.model, from.impedance, to.impedance, path.intensity, boundary.cosine, to.tau, to.gamma);
   sink.echo(path.ray.position + path.ray.direction * boundary.surface.t, amplitude);
 }
 
+/// Without Monte-Carlo the path takes the stronger branch, mirrored or refracted, and carries its share.
+SONO_HD inline Scattered strongerBranch(const PathState& path, const PathBoundary& boundary)
+{
+  const Vec3f& d = path.ray.direction;
+  const Vec3f& n = boundary.surface.normal;
+  const Reflection& r = boundary.reflection;
+  const bool reflected = r.total || r.reflectance > 0.5f;
+  const Vec3f w = reflected ? mirrorDirection(d, n, boundary.cosine) : refractedDirection(d, n, boundary.cosine, r);
+  return { glm::normalize(w), reflected, reflected ? r.reflectance : 1.0f - r.reflectance };
+}
+
 /// Leaves the boundary along the branch drawn by `u`. The path restarts on the voxel face, in the cell it stays in, and
 /// does not see the tissue on the other side again for about one voxel along the normal.
-SONO_HD inline void leaveBoundary(const TraceView& view,
-                                  const PathBoundary& boundary,
-                                  const BounceSample& u,
-                                  PathState& path)
+SONO_HD inline void leaveBoundary(const TraceView& view, float meanSpacing, const PathBoundary& boundary,
+                                  const BounceSample& u, PathState& path)
 {
-  const RefinedHit& surface = boundary.surface;
-  Scattered out;
-  if (view.deterministic)
+  const Vec3f& normal = boundary.surface.normal;
+  const Scattered out = view.deterministic ? strongerBranch(path, boundary)
+                                           : scatterAt(view.model, view.lobe, path.ray.direction, normal,
+                                                       boundary.cosine, boundary.reflection, u);
+  const BoundarySide& side = out.reflected ? boundary.before : boundary.after;
+  path.ray.position += path.ray.direction * boundary.restart;
+  path.ray.direction = out.direction;
+  path.ray.cell = side.cell;
+  path.tissue = side.medium;
+  path.target = side.target;
+  if (boundary.voxelFace)
   {
-    const bool reflected = boundary.reflection.total || boundary.reflection.reflectance > 0.5f;
-    out = { reflected ? mirrorDirection(path.ray.direction, surface.normal, boundary.cosine)
-                      : refractedDirection(path.ray.direction, surface.normal, boundary.cosine, boundary.reflection),
-            reflected,
-            reflected ? boundary.reflection.reflectance : 1.0f - boundary.reflection.reflectance };
-    out.direction = glm::normalize(out.direction);
+    path.ignored = out.reflected ? boundary.after.medium : boundary.before.medium;
+    const float leaving = fabsf(glm::dot(out.direction, normal));
+    path.ignoreUntil = meanSpacing * smaller(8.0f, 0.8f / larger(leaving, 0.1f));
   }
   else
   {
-    out = scatterAt(view.model, view.lobe, path.ray.direction, surface.normal, boundary.cosine, boundary.reflection, u);
+    path.ignoreUntil -= boundary.restart;
   }
-  path.ray.position += path.ray.direction * boundary.hit.t;
-  path.ray.direction = out.direction;
-  path.ray.cell = out.reflected ? boundary.hit.before : boundary.hit.after;
-  path.tissue = out.reflected ? boundary.from : boundary.to;
-  path.ignored = out.reflected ? boundary.to : boundary.from;
-  const float leaving = fabsf(glm::dot(out.direction, surface.normal));
-  path.ignoreUntil = view.cells.meanSpacing * smaller(8.0f, 0.8f / larger(leaving, 0.1f));
   path.intensity *= out.throughput;
   ++path.collisions;
 }
@@ -159,16 +226,18 @@ SONO_HD inline void leaveBoundary(const TraceView& view,
 /// The way from the transducer to the first boundary, which every path of a line shares.
 struct LineStart
 {
-  bool enters; ///< whether the line meets the cells at all
+  bool enters; ///< whether the line meets the space at all
   bool meets;  ///< whether there is a first boundary
   PathState path;
   PathBoundary boundary;
 };
 
-/// Entry of a line into the cells: inside them, or where the axis first meets their box.
-SONO_HD inline bool enterCells(const TissueCells& cells, const TraceLine& line, float depthMm, PathState& path)
+/// Entry of a line into the space: inside it, or where the axis first meets its box.
+template<class Space>
+SONO_HD inline bool enterSpace(const Space& space, const TraceLine& line, float depthMm, PathState& path)
 {
-  const Vec3f extent = Vec3f(cells.size) * cells.spacing;
+  const Vec3i size = space.size();
+  const Vec3f extent = Vec3f(size) * space.spacing();
   float near = 0.0f;
   float far = depthMm;
   int axis = -1;
@@ -198,34 +267,33 @@ SONO_HD inline bool enterCells(const TissueCells& cells, const TraceLine& line, 
   }
   path.ray.position = line.origin + line.axis * near;
   path.ray.direction = line.axis;
-  path.ray.cell = glm::clamp(cells.cellAt(path.ray.position), Vec3i(0), cells.size - 1);
+  path.ray.cell = glm::clamp(space.cellAt(path.ray.position), Vec3i(0), size - 1);
   if (axis >= 0)
   {
-    path.ray.cell[axis] = line.axis[axis] > 0.0f ? 0 : cells.size[axis] - 1;
+    path.ray.cell[axis] = line.axis[axis] > 0.0f ? 0 : size[axis] - 1;
   }
   path.length = near;
   return true;
 }
 
 /// Traces what all paths of a line share. Whatever lies between the face and the first tissue that is not the outside
-/// tissue is acoustic coupling: it neither reflects nor attenuates.
-template<class Sink>
-SONO_HD inline LineStart startLine(const TraceView& view, const TraceLine& line, Sink& sink)
+/// tissue is acoustic coupling: it neither reflects nor attenuates, and targets in it are not seen.
+template<class Space, class Sink>
+SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, const TraceLine& line, Sink& sink)
 {
   LineStart start;
   start.meets = false;
   PathState& path = start.path;
-  start.enters = enterCells(view.cells, line, view.depthMm, path);
+  start.enters = enterSpace(space, line, view.depthMm, path);
   if (!start.enters)
   {
     return start;
   }
   sink.segment(PathSegment{ line.origin, line.axis, path.length, 1.0f, 0.0f });
-  path.tissue = view.cells.tissueAt(path.ray.cell);
+  path.tissue = space.tissueAt(path.ray.cell);
   if (path.tissue == view.outsideTissue)
   {
-    const float tMax = remainingLength(view, line, path);
-    const CellHit hit = marchToBoundary(view.cells, path.ray, path.tissue, -1, 0.0f, tMax);
+    const CellHit hit = space.toBoundary(path.ray, path.tissue, -1, 0.0f, remainingLength(view, line, path));
     sink.segment(PathSegment{ path.ray.position, line.axis, hit.t, 1.0f, 0.0f });
     if (hit.tissue < 0)
     {
@@ -236,7 +304,18 @@ SONO_HD inline LineStart startLine(const TraceView& view, const TraceLine& line,
     path.length += hit.t;
     path.tissue = hit.tissue;
   }
-  start.meets = advanceToBoundary(view, line, path, start.boundary, sink) && view.maxCollisions > 0;
+  if (space.targets.any())
+  {
+    // Inside a target when the next surface, of either kind, is one that the line leaves.
+    const TargetHit entered = space.targets.nearest(path.ray.position, line.axis, 3e38f, false);
+    const TargetHit left = space.targets.nearest(path.ray.position, line.axis, 3e38f, true);
+    if (left.target >= 0 && (entered.target < 0 || left.t < entered.t))
+    {
+      path.target = left.target;
+      path.tissue = view.firstTargetMedium + left.target;
+    }
+  }
+  start.meets = advanceToBoundary(view, space, line, path, start.boundary, sink) && view.maxCollisions > 0;
   if (start.meets)
   {
     depositBoundary(view, path, start.boundary, sink);
@@ -261,21 +340,34 @@ SONO_HD inline BounceSample drawBounce(const TraceView& view, const PathKey& key
   return independentSample(view.seed, key.line, key.batch, key.path, bounce);
 }
 
+/// Russian roulette: a path too faint to be seen lives on with a probability in proportion, at the intensity it then
+/// stands for. The mean is unchanged.
+SONO_HD inline bool survivesRoulette(const TraceView& view, const PathKey& key, PathState& path)
+{
+  if (path.intensity >= view.rouletteIntensity)
+  {
+    return true;
+  }
+  const float u =
+    uniformFrom(philox(view.seed, key.line, key.path, std::uint32_t(path.collisions), key.batch | 0x80000000u).v[0]);
+  const bool survives = u * view.rouletteIntensity < path.intensity;
+  path.intensity = view.rouletteIntensity;
+  return survives;
+}
+
 /// One path, from the first boundary on; it ends where it meets a boundary more than maxCollisions allow.
-template<class Sink>
-SONO_HD inline void tracePath(const TraceView& view,
-                              const TraceLine& line,
-                              const LineStart& start,
-                              const PathKey& key,
-                              Sink& sink)
+template<class Space, class Sink>
+SONO_HD inline void tracePath(const TraceView& view, const Space& space, const TraceLine& line, const LineStart& start,
+                              const PathKey& key, Sink& sink)
 {
   PathState path = start.path;
   PathBoundary boundary = start.boundary;
+  const float meanSpacing = space.meanSpacing();
   for (;;)
   {
-    leaveBoundary(view, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
-    if (path.intensity <= 0.0f || !advanceToBoundary(view, line, path, boundary, sink) ||
-        path.collisions >= view.maxCollisions)
+    leaveBoundary(view, meanSpacing, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
+    if (!(path.intensity > 0.0f) || !survivesRoulette(view, key, path) ||
+        !advanceToBoundary(view, space, line, path, boundary, sink) || path.collisions >= view.maxCollisions)
     {
       return;
     }

@@ -2,12 +2,11 @@
 
 #include "Kernel/Interface.h"
 #include "Kernel/Lobe.h"
-#include "Kernel/TissueCells.h"
+#include "Kernel/Vec.h"
 
 #include <cstdint>
 
-namespace sono
-{
+namespace sono {
 
 /// A tissue as the tracer needs it.
 struct TraceMedium
@@ -26,12 +25,13 @@ struct TraceLine
   Vec3f axis;
 };
 
-/// Everything a path needs, trivially copyable.
+/// Everything a path needs beside the space it runs through, trivially copyable.
 struct TraceView
 {
-  TissueCells cells;
-  const TraceMedium* media = nullptr; ///< by tissue index
+  const TraceMedium* media = nullptr; ///< by tissue index, then one for each target
+  int firstTargetMedium = 0;
   int outsideTissue = -1;
+  float rouletteIntensity = 1e-5f; ///< fainter paths survive with probability intensity / this
   InterfaceModel model = InterfaceModel::Acoustic;
   Lobe lobe;
   bool lowDiscrepancy = true;

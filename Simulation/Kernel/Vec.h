@@ -7,8 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-namespace sono
-{
+namespace sono {
 
 using Vec2f = glm::vec2;
 using Vec3f = glm::vec3;

@@ -6,11 +6,9 @@
 #include <cctype>
 #include <cstddef>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 bool sameLetter(char a, char b)
 {
@@ -85,9 +83,7 @@ std::string LabelTissueMap::find(const std::string& labelName) const
   return {};
 }
 
-std::vector<std::string> assignTissues(LabelVolume& volume,
-                                       const LabelTissueMap& map,
-                                       const TissueTable& table,
+std::vector<std::string> assignTissues(LabelVolume& volume, const LabelTissueMap& map, const TissueTable& table,
                                        const std::string& fallback)
 {
   if (!table.find(fallback))

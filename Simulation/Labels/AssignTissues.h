@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Which tissue a label name stands for: rows of (pattern, tissue), first match wins. A pattern is compared
 /// with the whole name, without regard to case; `*` stands for any run of characters.
@@ -30,9 +29,7 @@ private:
 /// Fills LabelInfo::tissue where it is empty. Labels that no pattern matches fall to `fallback`; their names
 /// are returned, for one warning. Throws Error when a tissue (of the map, a label or the fallback) is not in
 /// the table, naming the label and the tissue.
-std::vector<std::string> assignTissues(LabelVolume& volume,
-                                       const LabelTissueMap& map,
-                                       const TissueTable& table,
+std::vector<std::string> assignTissues(LabelVolume& volume, const LabelTissueMap& map, const TissueTable& table,
                                        const std::string& fallback);
 
 } // namespace sono

@@ -6,11 +6,9 @@
 #include <charconv>
 #include <fstream>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 std::string trimmed(const std::string& text)
 {

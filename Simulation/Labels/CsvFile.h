@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// A comma-separated table with a header line. Empty lines and lines starting with '#' are skipped, fields may be
 /// quoted ("" inside quotes is one quote), spaces around a field are dropped, missing last fields are empty.

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// How the numbers of a file become label ids, and how to name one of them in a message.
 struct LabelConversion

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr double orthonormalTolerance = 1e-3;
 
@@ -56,9 +54,7 @@ void GridPlacement::validate(const std::string& what) const
   }
 }
 
-GridPlacement placementFromAffine(const Vec3i& size,
-                                  const Mat3d& columns,
-                                  const Vec3d& originMm,
+GridPlacement placementFromAffine(const Vec3i& size, const Mat3d& columns, const Vec3d& originMm,
                                   const std::string& what)
 {
   GridPlacement placement;
@@ -85,8 +81,8 @@ GridPlacement placementFromAffine(const Vec3i& size,
 
 const LabelInfo* LabelVolume::find(int id) const
 {
-  const auto at = std::lower_bound(
-    labels.begin(), labels.end(), id, [](const LabelInfo& label, int wanted) { return label.id < wanted; });
+  const auto at = std::lower_bound(labels.begin(), labels.end(), id,
+                                   [](const LabelInfo& label, int wanted) { return label.id < wanted; });
   return at != labels.end() && at->id == id ? &*at : nullptr;
 }
 

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Where a voxel grid stands in the world. World coordinates are LPS millimetres (x to the patient's left,
 /// y posterior, z superior), as in DICOM and NRRD. The CENTRE of voxel (i,j,k) lies at
@@ -36,9 +35,7 @@ struct GridPlacement
 /// A placement from the world steps of one voxel along i, j, k (`columns`, mm). Rounding in the file is removed: the
 /// direction is orthonormal to double precision. Throws Error naming `what` when the steps are zero, not finite, or
 /// sheared (not at right angles within 1e-3).
-GridPlacement placementFromAffine(const Vec3i& size,
-                                  const Mat3d& columns,
-                                  const Vec3d& originMm,
+GridPlacement placementFromAffine(const Vec3i& size, const Mat3d& columns, const Vec3d& originMm,
                                   const std::string& what);
 
 /// One label of a label map.

@@ -14,11 +14,9 @@
 #include <set>
 #include <stdexcept>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 namespace fs = std::filesystem;
 

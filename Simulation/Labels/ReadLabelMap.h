@@ -4,8 +4,7 @@
 
 #include <string>
 
-namespace sono
-{
+namespace sono {
 
 /// Reads a label map and places it in the world (LPS mm): NIfTI-1/2 (.nii, .nii.gz; sform before qform, RAS
 /// flipped to LPS; with neither, only the spacing counts and i, j, k are taken as L, P, S) and NRRD (.nrrd, .nhdr,

@@ -9,11 +9,9 @@
 #include <algorithm>
 #include <memory>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr std::uint64_t maxVoxels = std::uint64_t(1) << 32;
 
@@ -114,10 +112,7 @@ GridPlacement placementOf(const nifti_image& image, const std::string& path)
   return placementFromAffine(size, columns, origin, path);
 }
 
-void appendNumbers(const LabelConversion& conversion,
-                   int datatype,
-                   const void* data,
-                   std::size_t count,
+void appendNumbers(const LabelConversion& conversion, int datatype, const void* data, std::size_t count,
                    std::vector<std::uint16_t>& labels)
 {
   switch (datatype)
@@ -220,17 +215,8 @@ Image makeImage(const std::string& path, const LabelVolume& volume)
   image->sto_xyz = affine;
   image->sform_code = NIFTI_XFORM_SCANNER_ANAT;
   image->qform_code = NIFTI_XFORM_SCANNER_ANAT;
-  nifti_dmat44_to_quatern(affine,
-                          &image->quatern_b,
-                          &image->quatern_c,
-                          &image->quatern_d,
-                          &image->qoffset_x,
-                          &image->qoffset_y,
-                          &image->qoffset_z,
-                          &image->dx,
-                          &image->dy,
-                          &image->dz,
-                          &image->qfac);
+  nifti_dmat44_to_quatern(affine, &image->quatern_b, &image->quatern_c, &image->quatern_d, &image->qoffset_x,
+                          &image->qoffset_y, &image->qoffset_z, &image->dx, &image->dy, &image->dz, &image->qfac);
   std::copy_n(&image->dx, 3, image->pixdim + 1);
   image->pixdim[0] = image->qfac;
   image->xyz_units = NIFTI_UNITS_MM;

@@ -4,8 +4,7 @@
 
 #include <string>
 
-namespace sono
-{
+namespace sono {
 
 /// Reads a NIfTI-1 or NIfTI-2 label map (.nii, .nii.gz) with the names and colours of a label table in its header
 /// extensions; `labels` holds those, also of ids that no voxel carries. Throws Error as readLabelMap does.

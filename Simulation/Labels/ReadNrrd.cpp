@@ -16,11 +16,9 @@
 #include <sstream>
 #include <utility>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 /// teem collects its messages in one global place.
 std::mutex teemMutex;
@@ -249,10 +247,8 @@ void makeIdsUnique(std::vector<Segment>& segments)
   }
 }
 
-std::vector<std::uint16_t> flattenLayers(const std::vector<std::uint16_t>& numbers,
-                                         std::size_t layerCount,
-                                         bool layersFirst,
-                                         const std::vector<Segment>& segments,
+std::vector<std::uint16_t> flattenLayers(const std::vector<std::uint16_t>& numbers, std::size_t layerCount,
+                                         bool layersFirst, const std::vector<Segment>& segments,
                                          const std::string& path)
 {
   std::map<std::pair<int, int>, std::size_t> rankOf; // (layer, value) to 1 + position in the list of segments
@@ -284,11 +280,9 @@ std::vector<std::uint16_t> flattenLayers(const std::vector<std::uint16_t>& numbe
     }
   }
   std::vector<std::uint16_t> labels(voxelCount);
-  std::transform(winner.begin(),
-                 winner.end(),
-                 labels.begin(),
-                 [&segments](std::size_t rank)
-                 { return rank == 0 ? std::uint16_t(0) : std::uint16_t(segments[rank - 1].label.id); });
+  std::transform(winner.begin(), winner.end(), labels.begin(), [&segments](std::size_t rank) {
+    return rank == 0 ? std::uint16_t(0) : std::uint16_t(segments[rank - 1].label.id);
+  });
   return labels;
 }
 

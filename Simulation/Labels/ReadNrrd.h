@@ -4,8 +4,7 @@
 
 #include <string>
 
-namespace sono
-{
+namespace sono {
 
 /// Reads an NRRD label map (.nrrd, .nhdr, .seg.nrrd) with the segment names and colours of its key/value pairs;
 /// `labels` holds those, also of ids that no voxel carries. Overlapping layers (4-D) are flattened: where segments

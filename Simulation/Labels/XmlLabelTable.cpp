@@ -3,11 +3,9 @@
 
 #include <utility>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 /// The value of an attribute inside a start tag; empty when it is not there.
 std::string attribute(const std::string& tag, const std::string& name)

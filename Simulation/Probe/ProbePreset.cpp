@@ -7,11 +7,9 @@
 #include <fstream>
 #include <set>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 using Json = nlohmann::json;
 
@@ -118,8 +116,7 @@ ScanGeometry readGeometry(PresetReader& reader)
 {
   ScanGeometry geometry;
   const std::string kind = reader.text("scan");
-  reader.require("scan",
-                 kind == "linear" || kind == "phased_sector" || kind == "curvilinear",
+  reader.require("scan", kind == "linear" || kind == "phased_sector" || kind == "curvilinear",
                  "\"linear\", \"phased_sector\" or \"curvilinear\"");
   geometry.kind = kind == "linear"          ? ScanKind::Linear
                   : kind == "phased_sector" ? ScanKind::PhasedSector

@@ -7,11 +7,9 @@
 #include <limits>
 #include <sstream>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr double radiansPerDegree = 3.14159265358979323846 / 180.0;
 

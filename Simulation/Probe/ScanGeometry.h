@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// How the scan lines are laid out in the image plane.
 enum class ScanKind

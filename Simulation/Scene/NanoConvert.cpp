@@ -5,11 +5,9 @@
 #include <nanovdb/util/NanoToOpenVDB.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 template<class OpenGrid>
 NanoGrid convert(OpenGrid& grid)

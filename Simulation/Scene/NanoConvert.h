@@ -4,8 +4,7 @@
 
 #include <openvdb/openvdb.h>
 
-namespace sono
-{
+namespace sono {
 
 /// Conversions between OpenVDB and NanoVDB; a file of their own because they compile for most of a minute.
 NanoGrid nanoFromOpen(openvdb::Int32Grid& grid);

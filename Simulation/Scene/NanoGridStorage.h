@@ -7,8 +7,7 @@
 #include <nanovdb/util/GridHandle.h>
 #include <nanovdb/util/HostBuffer.h>
 
-namespace sono
-{
+namespace sono {
 
 struct NanoGrid::Storage
 {

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <map>
 
-namespace sono
-{
+namespace sono {
 
 Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue)
   : volume_(std::move(volume))
@@ -43,16 +42,11 @@ Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTi
 
   tissueVoxels_.resize(volume_.voxels.size());
   const std::size_t slice = std::size_t(volume_.placement.size.x) * volume_.placement.size.y;
-  parallelFor(volume_.placement.size.z,
-              {},
-              [&](int k)
-              {
-                const std::uint16_t* from = volume_.voxels.data() + slice * k;
-                std::transform(from,
-                               from + slice,
-                               tissueVoxels_.data() + slice * k,
-                               [&](std::uint16_t id) { return tissueOfLabel[id]; });
-              });
+  parallelFor(volume_.placement.size.z, {}, [&](int k) {
+    const std::uint16_t* from = volume_.voxels.data() + slice * k;
+    std::transform(from, from + slice, tissueVoxels_.data() + slice * k,
+                   [&](std::uint16_t id) { return tissueOfLabel[id]; });
+  });
   surfaces_.resize(volume_.labels.size());
 }
 

@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// The anatomy as the simulator sees it: the label grid, the tissues of its labels, and, built on first need and
 /// kept, one narrow-band signed distance field per label and the tracer's cache of a region.

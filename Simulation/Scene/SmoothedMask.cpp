@@ -5,18 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 /// out[i] = sum over k of weight[k] in[i + k stride], for `length` contiguous i.
-SONO_SIMD_CLONES void weightedSum(const float* in,
-                                  std::ptrdiff_t stride,
-                                  const float* weight,
-                                  int taps,
-                                  int length,
+SONO_SIMD_CLONES void weightedSum(const float* in, std::ptrdiff_t stride, const float* weight, int taps, int length,
                                   float* out)
 {
   for (int i = 0; i < length; ++i)
@@ -63,10 +57,7 @@ GaussianAxes makeGaussian(const Vec3d& spacingMm, double sigmaMm)
 }
 
 template<class Voxel>
-void MaskSmoother<Voxel>::smooth(Voxel value,
-                                 const Vec3i& first,
-                                 const Vec3i& count,
-                                 const GaussianAxes& gaussian,
+void MaskSmoother<Voxel>::smooth(Voxel value, const Vec3i& first, const Vec3i& count, const GaussianAxes& gaussian,
                                  float* out)
 {
   const Vec3i r = gaussian.radius;
@@ -95,26 +86,14 @@ void MaskSmoother<Voxel>::smooth(Voxel value,
   }
   for (int k = 0; k < count.z; ++k)
   {
-    weightedSum(indicator_.data() + k * plane,
-                plane,
-                gaussian.weight[2].data(),
-                2 * r.z + 1,
-                int(plane),
+    weightedSum(indicator_.data() + k * plane, plane, gaussian.weight[2].data(), 2 * r.z + 1, int(plane),
                 alongZ_.data() + k * plane);
-    weightedSum(alongZ_.data() + k * plane,
-                wide.x,
-                gaussian.weight[1].data(),
-                2 * r.y + 1,
-                wide.x * count.y,
+    weightedSum(alongZ_.data() + k * plane, wide.x, gaussian.weight[1].data(), 2 * r.y + 1, wide.x * count.y,
                 alongY_.data() + std::ptrdiff_t(k) * wide.x * count.y);
   }
   for (int row = 0; row < count.y * count.z; ++row)
   {
-    weightedSum(alongY_.data() + std::ptrdiff_t(row) * wide.x,
-                1,
-                gaussian.weight[0].data(),
-                2 * r.x + 1,
-                count.x,
+    weightedSum(alongY_.data() + std::ptrdiff_t(row) * wide.x, 1, gaussian.weight[0].data(), 2 * r.x + 1, count.x,
                 out + std::ptrdiff_t(row) * count.x);
   }
 }

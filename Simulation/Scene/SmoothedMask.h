@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// A Gaussian of one width in mm, integrated over the voxels along each axis, cut at 2.6 sigma or more and normalised
 /// to 1.

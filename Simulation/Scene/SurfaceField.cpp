@@ -16,11 +16,9 @@
 #include <cmath>
 #include <mutex>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr int leafEdge = 8; // of OpenVDB's leaf nodes
 
@@ -60,34 +58,30 @@ std::pair<Vec3i, Vec3i> labelBounds(const LabelVolume& volume, int labelId)
   std::mutex mutex;
   Vec3i first = n;
   Vec3i last(0);
-  parallelFor(n.z,
-              {},
-              [&](int k)
-              {
-                Vec3i lo = n;
-                Vec3i hi(0);
-                for (int j = 0; j < n.y; ++j)
-                {
-                  const std::uint16_t* row =
-                    volume.voxels.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-                  const std::uint16_t* end = row + n.x;
-                  const std::uint16_t* left = std::find(row, end, std::uint16_t(labelId));
-                  if (left == end)
-                  {
-                    continue;
-                  }
-                  const std::uint16_t* right = end;
-                  while (right[-1] != labelId)
-                  {
-                    --right;
-                  }
-                  lo = glm::min(lo, Vec3i(int(left - row), j, k));
-                  hi = glm::max(hi, Vec3i(int(right - row), j + 1, k + 1));
-                }
-                const std::lock_guard<std::mutex> lock(mutex);
-                first = glm::min(first, lo);
-                last = glm::max(last, hi);
-              });
+  parallelFor(n.z, {}, [&](int k) {
+    Vec3i lo = n;
+    Vec3i hi(0);
+    for (int j = 0; j < n.y; ++j)
+    {
+      const std::uint16_t* row = volume.voxels.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+      const std::uint16_t* end = row + n.x;
+      const std::uint16_t* left = std::find(row, end, std::uint16_t(labelId));
+      if (left == end)
+      {
+        continue;
+      }
+      const std::uint16_t* right = end;
+      while (right[-1] != labelId)
+      {
+        --right;
+      }
+      lo = glm::min(lo, Vec3i(int(left - row), j, k));
+      hi = glm::max(hi, Vec3i(int(right - row), j + 1, k + 1));
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    first = glm::min(first, lo);
+    last = glm::max(last, hi);
+  });
   return { first, last };
 }
 
@@ -188,29 +182,25 @@ SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress
   tbb::enumerable_thread_specific<MaskSmoother<std::uint16_t>> smoothers(
     [&] { return MaskSmoother<std::uint16_t>(volume.voxels.data(), placement.size); });
   std::vector<std::vector<Leaf>> rows(std::size_t(leaves.y) * leaves.z);
-  parallelFor(leaves.y * leaves.z,
-              progress,
-              [&](int row)
-              {
-                for (int x = 0; x < leaves.x; ++x)
-                {
-                  const Vec3i origin = (low + Vec3i(x, row % leaves.y, row / leaves.y)) * leafEdge;
-                  if (!mixed(volume, labelId, origin - gaussian.radius, origin + leafEdge + gaussian.radius))
-                  {
-                    continue;
-                  }
-                  Leaf leaf;
-                  leaf.origin = origin;
-                  smoothers.local().smooth(
-                    std::uint16_t(labelId), origin, Vec3i(leafEdge), gaussian, leaf.value.data());
-                  for (float& v : leaf.value)
-                  {
-                    const float d = float(field.smoothingMm) * normalFromUpperTail(std::clamp(v, 1e-4f, 1.0f - 1e-4f));
-                    v = std::clamp(d, -float(field.bandMm), float(field.bandMm));
-                  }
-                  rows[std::size_t(row)].push_back(leaf);
-                }
-              });
+  parallelFor(leaves.y * leaves.z, progress, [&](int row) {
+    for (int x = 0; x < leaves.x; ++x)
+    {
+      const Vec3i origin = (low + Vec3i(x, row % leaves.y, row / leaves.y)) * leafEdge;
+      if (!mixed(volume, labelId, origin - gaussian.radius, origin + leafEdge + gaussian.radius))
+      {
+        continue;
+      }
+      Leaf leaf;
+      leaf.origin = origin;
+      smoothers.local().smooth(std::uint16_t(labelId), origin, Vec3i(leafEdge), gaussian, leaf.value.data());
+      for (float& v : leaf.value)
+      {
+        const float d = float(field.smoothingMm) * normalFromUpperTail(std::clamp(v, 1e-4f, 1.0f - 1e-4f));
+        v = std::clamp(d, -float(field.bandMm), float(field.bandMm));
+      }
+      rows[std::size_t(row)].push_back(leaf);
+    }
+  });
 
   auto grid = openvdb::FloatGrid::create(float(field.bandMm));
   grid->setName("sdf_" + std::to_string(labelId));

@@ -8,8 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Opaque owner of one NanoVDB grid; NanoVDB itself is included by the .cpp files of Scene/ only.
 class NanoGrid

@@ -5,11 +5,9 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr double ascendingRadiusMm = 12.5;
 constexpr double descendingRadiusMm = 10.5;

@@ -5,8 +5,7 @@
 
 #include <array>
 
-namespace sono
-{
+namespace sono {
 
 /// The aorta behind its valve: ascending part and arch, then down beside the spine (world LPS mm).
 class ThoraxAorta

@@ -2,13 +2,11 @@
 
 #include "Scene/ThoraxShapes.h"
 
-namespace sono
-{
+namespace sono {
 
 using namespace shapes;
 
-namespace
-{
+namespace {
 
 constexpr double halfWidthMm = 143.0;
 constexpr double halfDepthMm = 103.0;
@@ -134,8 +132,9 @@ ThoraxLabel spine(const Vec3d& p)
 /// Height of the diaphragm's upper surface: right dome, left dome and the central tendon below the heart.
 double diaphragmMm(const Vec3d& p)
 {
-  const auto dome = [&p](double x, double y, double top)
-  { return top - 0.012 * ((p.x - x) * (p.x - x) + 0.8 * (p.y - y) * (p.y - y)); };
+  const auto dome = [&p](double x, double y, double top) {
+    return top - 0.012 * ((p.x - x) * (p.x - x) + 0.8 * (p.y - y) * (p.y - y));
+  };
   const double domes = -smoothUnion(-dome(-58.0, -10.0, -4.0), -dome(66.0, 12.0, -24.0), 12.0);
   return -smoothUnion(-domes, -dome(12.0, -50.0, -40.0), 12.0) + 1.5 * std::sin(0.05 * p.x + 0.04 * p.y);
 }
@@ -151,8 +150,7 @@ ThoraxLabel abdomen(const Vec3d& p, double belowDiaphragmMm)
     return Stomach;
   }
   const double liver = smoothUnion(ellipsoid(p - Vec3d(-68.0, 5.0, -75.0), Vec3d(85.0, 90.0, 85.0)),
-                                   ellipsoid(p - Vec3d(5.0, -45.0, -75.0), Vec3d(70.0, 50.0, 42.0)),
-                                   25.0);
+                                   ellipsoid(p - Vec3d(5.0, -45.0, -75.0), Vec3d(70.0, 50.0, 42.0)), 25.0);
   return liver < 0.0 ? Liver : VisceralFat;
 }
 
@@ -162,8 +160,7 @@ ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Ve
   const bool mediastinum = std::abs(p.x - 3.0) < halfWidth + 2.0 * std::sin(0.06 * p.z);
   // The cardiac notch: between the apex, the right ventricle and the chest wall there is no lung.
   const double notch = smoothUnion(capsule(q, Vec3d(0.0, 0.0, 0.0), Vec3d(4.0, 0.0, 62.0), 25.0, 41.0),
-                                   ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)),
-                                   10.0);
+                                   ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)), 10.0);
   const double hilum =
     ellipsoid(Vec3d(std::abs(p.x - 3.0), p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0));
   if (mediastinum || hilum < 0.0 || heart.outsideMm < 2.0 || notch < 0.0)

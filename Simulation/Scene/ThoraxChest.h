@@ -4,8 +4,7 @@
 #include "Scene/ThoraxHeart.h"
 #include "Scene/ThoraxLabels.h"
 
-namespace sono
-{
+namespace sono {
 
 /// Box that holds the torso with a margin of air at its sides; above and below the torso goes on (world LPS mm).
 Vec3d thoraxBoxLowMm();

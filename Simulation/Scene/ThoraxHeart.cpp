@@ -2,13 +2,11 @@
 
 #include "Scene/ThoraxShapes.h"
 
-namespace sono
-{
+namespace sono {
 
 using namespace shapes;
 
-namespace
-{
+namespace {
 
 // Depths of the valve planes; the tricuspid valve sits nearer to the apex, as in every normal heart.
 const Vec3d mitralCentre(0.0, 0.0, 113.0);
@@ -79,8 +77,7 @@ double annulusTube(const Valve& valve, const Vec3d& p, double apicalMm, double a
 Vec3d warped(const Vec3d& p)
 {
   return p + Vec3d(0.9 * std::sin(0.11 * p.z + 0.06 * p.y) + 0.5 * std::sin(0.17 * p.z + 1.0),
-                   0.9 * std::sin(0.10 * p.z - 0.08 * p.x + 2.0),
-                   0.7 * std::sin(0.09 * p.x + 0.10 * p.y + 0.5));
+                   0.9 * std::sin(0.10 * p.z - 0.08 * p.x + 2.0), 0.7 * std::sin(0.09 * p.x + 0.10 * p.y + 0.5));
 }
 
 /// Every surface of the heart at one point.

@@ -3,8 +3,7 @@
 #include "Kernel/Vec.h"
 #include "Scene/ThoraxLabels.h"
 
-namespace sono
-{
+namespace sono {
 
 /// The heart's own frame is that of the apical four-chamber view: x lateral (towards the left ventricle's free
 /// wall), y elevation (inferior and posterior), z depth from the skin, in mm. The image plane is y = 0.

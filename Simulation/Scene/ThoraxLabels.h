@@ -2,8 +2,7 @@
 
 #include <cstdint>
 
-namespace sono
-{
+namespace sono {
 
 /// Label ids of the bundled anatomy; names and colours stand in ThoraxPhantom.cpp. Ribs 1 to 10 of a side have
 /// consecutive ids from RibLeft1 and RibRight1.

@@ -14,11 +14,9 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 /// The heart's frame in the world: origin on the skin over the apex, columns lateral, elevation, axial.
 struct HeartFrame
@@ -172,21 +170,19 @@ LabelVolume makeThoraxPhantom(double spacingMm)
   volume.placement = placementFor(spacingMm);
   volume.voxels.resize(volume.placement.voxelCount());
   const Vec3i size = volume.placement.size;
-  tbb::parallel_for(tbb::blocked_range<int>(0, size.z),
-                    [&](const tbb::blocked_range<int>& slices)
-                    {
-                      for (int k = slices.begin(); k < slices.end(); ++k)
-                      {
-                        std::uint16_t* voxel = volume.voxels.data() + std::size_t(k) * size.x * size.y;
-                        for (int j = 0; j < size.y; ++j)
-                        {
-                          for (int i = 0; i < size.x; ++i)
-                          {
-                            *voxel++ = anatomy.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
-                          }
-                        }
-                      }
-                    });
+  tbb::parallel_for(tbb::blocked_range<int>(0, size.z), [&](const tbb::blocked_range<int>& slices) {
+    for (int k = slices.begin(); k < slices.end(); ++k)
+    {
+      std::uint16_t* voxel = volume.voxels.data() + std::size_t(k) * size.x * size.y;
+      for (int j = 0; j < size.y; ++j)
+      {
+        for (int i = 0; i < size.x; ++i)
+        {
+          *voxel++ = anatomy.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
+        }
+      }
+    }
+  });
   volume.labels = labelsOf(volume.voxels);
   return volume;
 }

@@ -3,8 +3,7 @@
 #include "Labels/LabelVolume.h"
 #include "Probe/ScanGeometry.h"
 
-namespace sono
-{
+namespace sono {
 
 /// The bundled anatomy: a parametric adult thorax (outside, skin, subcutaneous fat, muscle, ribs, sternum,
 /// spine, lungs, mediastinal fat, pericardium, myocardium with septum, four blood-filled chambers, mitral,

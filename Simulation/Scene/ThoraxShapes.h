@@ -7,8 +7,7 @@
 
 /// Implicit shapes of the bundled anatomy: functions that are negative inside and near the surface equal the
 /// distance in mm (exact for capsules and planes, first order for ellipsoids).
-namespace sono::shapes
-{
+namespace sono::shapes {
 
 /// Ellipsoid with semi-axes `radii` along the coordinate axes; `p` relative to its centre. First-order distance
 /// k0 (k0 - 1) / k1 with k0 = |p/r|, k1 = |p/r^2| (Quilez 2008).

@@ -7,11 +7,9 @@
 #include <limits>
 #include <sstream>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 /// One number of a tissue: its column, where it is kept, and its range.
 struct Property

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Acoustic and scattering properties of one tissue.
 struct Tissue

@@ -12,25 +12,17 @@
 #include <atomic>
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 constexpr int block = 8;        // edge of the blocks that are smoothed together, voxels
 constexpr int maxDistance = 64; // of the skip map
 
 /// 1 where a voxel of the row has a face neighbour of another tissue. Neighbours outside the volume do not count.
-SONO_SIMD_CLONES void markBoundaryRow(const std::uint8_t* row,
-                                      const std::uint8_t* yBelow,
-                                      const std::uint8_t* yAbove,
-                                      const std::uint8_t* zBelow,
-                                      const std::uint8_t* zAbove,
-                                      int first,
-                                      int count,
-                                      int width,
-                                      std::uint8_t* out)
+SONO_SIMD_CLONES void markBoundaryRow(const std::uint8_t* row, const std::uint8_t* yBelow, const std::uint8_t* yAbove,
+                                      const std::uint8_t* zBelow, const std::uint8_t* zAbove, int first, int count,
+                                      int width, std::uint8_t* out)
 {
   for (int i = 0; i < count; ++i)
   {
@@ -47,10 +39,7 @@ SONO_SIMD_CLONES void markBoundaryRow(const std::uint8_t* row,
 }
 
 /// One row of a Chebyshev distance sweep: distance = min(distance, 1 + min over the given earlier rows at x-1..x+1).
-SONO_SIMD_CLONES void sweepRow(std::uint8_t* row,
-                               const std::uint8_t* const* earlier,
-                               int rows,
-                               int count,
+SONO_SIMD_CLONES void sweepRow(std::uint8_t* row, const std::uint8_t* const* earlier, int rows, int count,
                                std::uint8_t* scratch)
 {
   std::copy(earlier[0], earlier[0] + count, scratch + 1);
@@ -74,8 +63,9 @@ SONO_SIMD_CLONES void sweepRow(std::uint8_t* row,
 void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n)
 {
   std::vector<std::uint8_t> scratch(std::size_t(n.x) + 2);
-  const auto row = [&](int y, int z)
-  { return distance.data() + std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * z); };
+  const auto row = [&](int y, int z) {
+    return distance.data() + std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * z);
+  };
   for (int pass = 0; pass < 2; ++pass)
   {
     const int step = pass == 0 ? -1 : 1;
@@ -85,9 +75,8 @@ void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n)
       for (int jj = 1; jj + 1 < n.y; ++jj)
       {
         const int j = pass == 0 ? jj : n.y - 1 - jj;
-        const std::uint8_t* earlier[4] = {
-          row(j + step, k), row(j - 1, k + step), row(j, k + step), row(j + 1, k + step)
-        };
+        const std::uint8_t* earlier[4] = { row(j + step, k), row(j - 1, k + step), row(j, k + step),
+                                           row(j + 1, k + step) };
         std::uint8_t* out = row(j, k);
         sweepRow(out, earlier, 4, n.x, scratch.data());
         if (pass == 0)
@@ -137,8 +126,9 @@ public:
 private:
   BoundaryRecord recordAt(const Vec3i& v) const
   {
-    const auto coarse = [&](int x, int y, int z)
-    { return coarse_[std::size_t(v.x + 1 + x + (block + 2) * (v.y + 1 + y + (block + 2) * (v.z + 1 + z)))]; };
+    const auto coarse = [&](int x, int y, int z) {
+      return coarse_[std::size_t(v.x + 1 + x + (block + 2) * (v.y + 1 + y + (block + 2) * (v.z + 1 + z)))];
+    };
     const Vec3d gradient((coarse(1, 0, 0) - coarse(-1, 0, 0)) / (2.0 * spacing_.x),
                          (coarse(0, 1, 0) - coarse(0, -1, 0)) / (2.0 * spacing_.y),
                          (coarse(0, 0, 1) - coarse(0, 0, -1)) / (2.0 * spacing_.z));
@@ -176,11 +166,8 @@ TissueCells TraceRegion::view() const
   return cells;
 }
 
-TraceRegion buildTraceRegion(const std::uint8_t* tissues,
-                             const Vec3i& size,
-                             const Vec3d& spacingMm,
-                             const VoxelBox& box,
-                             const Progress& progress)
+TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
+                             const VoxelBox& box, const Progress& progress)
 {
   TraceRegion region;
   region.box = box;
@@ -194,30 +181,19 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues,
   const TissueCells layout = region.view();
   std::vector<std::uint8_t> boundary(count);
 
-  const auto source = [&](int y, int z)
-  {
+  const auto source = [&](int y, int z) {
     return tissues + std::size_t(size.x) *
                        (std::size_t(std::clamp(y, 0, size.y - 1)) + std::size_t(size.y) * std::clamp(z, 0, size.z - 1));
   };
-  parallelFor(n.z,
-              {},
-              [&](int k)
-              {
-                const int z = box.first.z + k;
-                for (int j = 0; j < n.y; ++j)
-                {
-                  const int y = box.first.y + j;
-                  markBoundaryRow(source(y, z),
-                                  source(y - 1, z),
-                                  source(y + 1, z),
-                                  source(y, z - 1),
-                                  source(y, z + 1),
-                                  box.first.x,
-                                  n.x,
-                                  size.x,
-                                  boundary.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k));
-                }
-              });
+  parallelFor(n.z, {}, [&](int k) {
+    const int z = box.first.z + k;
+    for (int j = 0; j < n.y; ++j)
+    {
+      const int y = box.first.y + j;
+      markBoundaryRow(source(y, z), source(y - 1, z), source(y + 1, z), source(y, z - 1), source(y, z + 1), box.first.x,
+                      n.x, size.x, boundary.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k));
+    }
+  });
   report(progress, 0.1);
 
   struct Worker
@@ -229,68 +205,56 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues,
   const Vec3i blocks = (n + (block - 1)) / block;
   std::atomic<std::size_t> boundaryVoxels{ 0 };
   const Progress baking = progress ? Progress([&](double f) { return progress(0.1 + 0.7 * f); }) : Progress{};
-  parallelFor(blocks.y * blocks.z,
-              baking,
-              [&](int slab)
+  parallelFor(blocks.y * blocks.z, baking, [&](int slab) {
+    Worker& worker = workers.local();
+    std::array<bool, 256> present{};
+    for (int bx = 0; bx < blocks.x; ++bx)
+    {
+      const Vec3i corner(bx * block, (slab % blocks.y) * block, (slab / blocks.y) * block);
+      const Vec3i extent = glm::min(Vec3i(block), n - corner);
+      std::vector<std::uint8_t> found;
+      const auto forBoundary = [&](auto&& visit) {
+        for (int z = 0; z < extent.z; ++z)
+        {
+          for (int y = 0; y < extent.y; ++y)
+          {
+            const std::size_t at = std::size_t(corner.x) +
+                                   std::size_t(n.x) * (std::size_t(corner.y + y) + std::size_t(n.y) * (corner.z + z));
+            const std::uint8_t* row =
+              source(box.first.y + corner.y + y, box.first.z + corner.z + z) + box.first.x + corner.x;
+            for (int x = 0; x < extent.x; ++x)
+            {
+              if (boundary[at + x])
               {
-                Worker& worker = workers.local();
-                std::array<bool, 256> present{};
-                for (int bx = 0; bx < blocks.x; ++bx)
-                {
-                  const Vec3i corner(bx * block, (slab % blocks.y) * block, (slab / blocks.y) * block);
-                  const Vec3i extent = glm::min(Vec3i(block), n - corner);
-                  std::vector<std::uint8_t> found;
-                  const auto forBoundary = [&](auto&& visit)
-                  {
-                    for (int z = 0; z < extent.z; ++z)
-                    {
-                      for (int y = 0; y < extent.y; ++y)
-                      {
-                        const std::size_t at =
-                          std::size_t(corner.x) +
-                          std::size_t(n.x) * (std::size_t(corner.y + y) + std::size_t(n.y) * (corner.z + z));
-                        const std::uint8_t* row =
-                          source(box.first.y + corner.y + y, box.first.z + corner.z + z) + box.first.x + corner.x;
-                        for (int x = 0; x < extent.x; ++x)
-                        {
-                          if (boundary[at + x])
-                          {
-                            visit(row[x], Vec3i(x, y, z));
-                          }
-                        }
-                      }
-                    }
-                  };
-                  forBoundary(
-                    [&](std::uint8_t tissue, const Vec3i&)
-                    {
-                      if (!present[tissue])
-                      {
-                        present[tissue] = true;
-                        found.push_back(tissue);
-                      }
-                    });
-                  for (std::uint8_t tissue : found)
-                  {
-                    present[tissue] = false;
-                    worker.voxels.clear();
-                    forBoundary(
-                      [&](std::uint8_t t, const Vec3i& v)
-                      {
-                        if (t == tissue)
-                        {
-                          worker.voxels.push_back(v);
-                        }
-                      });
-                    boundaryVoxels += worker.voxels.size();
-                    worker.baker.bake(tissue,
-                                      box.first + corner,
-                                      worker.voxels,
-                                      [&](const Vec3i& v, std::uint32_t bits)
-                                      { region.record[layout.offset(corner + v)] = bits; });
-                  }
-                }
-              });
+                visit(row[x], Vec3i(x, y, z));
+              }
+            }
+          }
+        }
+      };
+      forBoundary([&](std::uint8_t tissue, const Vec3i&) {
+        if (!present[tissue])
+        {
+          present[tissue] = true;
+          found.push_back(tissue);
+        }
+      });
+      for (std::uint8_t tissue : found)
+      {
+        present[tissue] = false;
+        worker.voxels.clear();
+        forBoundary([&](std::uint8_t t, const Vec3i& v) {
+          if (t == tissue)
+          {
+            worker.voxels.push_back(v);
+          }
+        });
+        boundaryVoxels += worker.voxels.size();
+        worker.baker.bake(tissue, box.first + corner, worker.voxels,
+                          [&](const Vec3i& v, std::uint32_t bits) { region.record[layout.offset(corner + v)] = bits; });
+      }
+    }
+  });
   region.boundaryVoxels = boundaryVoxels;
 
   // Distances to the nearest voxel that touches another tissue, or to the border; one less is a uniform cube.
@@ -313,21 +277,18 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues,
   }
   chebyshevDistance(distance, n);
   report(progress, 0.95);
-  parallelFor(n.z,
-              {},
-              [&](int k)
-              {
-                for (int j = 0; j < n.y; ++j)
-                {
-                  const std::size_t at = std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-                  const std::uint8_t* row = source(box.first.y + j, box.first.z + k) + box.first.x;
-                  for (int i = 0; i < n.x; ++i)
-                  {
-                    const int skip = std::max(0, int(distance[at + i]) - 1);
-                    region.cell[layout.offset(i, j, k)] = std::uint16_t(row[i] | (skip << 8));
-                  }
-                }
-              });
+  parallelFor(n.z, {}, [&](int k) {
+    for (int j = 0; j < n.y; ++j)
+    {
+      const std::size_t at = std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+      const std::uint8_t* row = source(box.first.y + j, box.first.z + k) + box.first.x;
+      for (int i = 0; i < n.x; ++i)
+      {
+        const int skip = std::max(0, int(distance[at + i]) - 1);
+        region.cell[layout.offset(i, j, k)] = std::uint16_t(row[i] | (skip << 8));
+      }
+    }
+  });
   report(progress, 1.0);
   return region;
 }

@@ -7,8 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// The tracer's cache of a box of the scene (what a probe's fan can reach): see TissueCells. Boundary records come from
 /// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic
@@ -26,10 +25,7 @@ struct TraceRegion
 };
 
 /// `tissues` are the tissue indices of the whole volume of `size` voxels, i fastest; `box` lies inside it.
-TraceRegion buildTraceRegion(const std::uint8_t* tissues,
-                             const Vec3i& size,
-                             const Vec3d& spacingMm,
-                             const VoxelBox& box,
-                             const Progress& progress = {});
+TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
+                             const VoxelBox& box, const Progress& progress = {});
 
 } // namespace sono

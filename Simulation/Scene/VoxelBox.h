@@ -2,8 +2,7 @@
 
 #include "Kernel/Vec.h"
 
-namespace sono
-{
+namespace sono {
 
 /// Box of voxel indices, first inclusive, last exclusive.
 struct VoxelBox

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sono
-{
+namespace sono {
 
-namespace
-{
+namespace {
 
 /// A segment seen from its line: depth r(s) = r0 + mu s; squared distance from the axis a + 2 b s + c s^2.
 struct BeamSegment
@@ -119,8 +117,9 @@ void LineTally::segment(const PathSegment& s)
   const int binLow = std::min(int(low / binMm_), last);
   const int binHigh = std::min(int(high / binMm_), last);
   const float inverseMu = 1.0f / mu;
-  const auto part = [&](int bin, float from, float to)
-  { bins_[std::size_t(bin)] += meanOver(g, from, to, inverseMu) * (to - from) / binMm_; };
+  const auto part = [&](int bin, float from, float to) {
+    bins_[std::size_t(bin)] += meanOver(g, from, to, inverseMu) * (to - from) / binMm_;
+  };
   if (binLow == binHigh)
   {
     part(binLow, low, high);

@@ -5,8 +5,7 @@
 #include <complex>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// What the paths of one line leave on its main beam, on the CPU. A path deposits where it crosses the plane at r,
 /// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin.

@@ -4,13 +4,13 @@
 #include "Probe/ScanGeometry.h"
 #include "Progress.h"
 #include "Scene/Scene.h"
+#include "Trace/Targets.h"
 
 #include <complex>
 #include <cstdint>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// Where the random numbers of a path come from.
 enum class Sampling
@@ -36,6 +36,7 @@ struct TraceSettings
   double depthMm = 160.0;         ///< > 0
   double radialBinMm = 0.25;      ///< width of an intensity sample along a line, > 0
   double echoSampleMm = 0.0154;   ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
+  double rouletteDb = -100.0;     ///< paths fainter than this (20 log10 of the intensity) play Russian roulette, <= 0
   std::uint64_t seed = 1;
 
   /// Throws Error naming the parameter and its range.
@@ -61,11 +62,24 @@ struct TracedLines
 /// Speed of sound that turns depth into time, as a scanner assumes it, mm per microsecond.
 constexpr double assumedSoundSpeedMmPerUs = 1.54;
 
-/// Traces every line on the CPU. The result depends on the settings alone, to the bit, not on the threads.
-/// Throws Error when no line meets the volume, Aborted when asked to stop.
-TracedLines trace(const Scene& scene,
-                  const std::vector<ScanLine>& lines,
-                  const TraceSettings& settings,
-                  const Progress& progress = {});
+/// Traces every line on the CPU. The result depends on the arguments alone, to the bit, not on the threads.
+/// Throws Error when no line meets the volume or a target is not closed, Aborted when asked to stop.
+TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                  const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
+
+/// One path for display: its corners in world mm, the intensity on arrival at each and the boundaries met before it.
+struct RecordedPath
+{
+  int line = 0;
+  std::vector<Vec3d> pointMm;
+  std::vector<float> intensity;
+  std::vector<int> bounce;
+};
+
+/// The corners of `count` of the paths that trace() would follow with the same arguments, chosen evenly over lines and
+/// paths.
+std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<ScanLine>& lines,
+                                      const TraceSettings& settings, int count,
+                                      const std::vector<TargetSurface>& targets = {});
 
 } // namespace sono

@@ -1,0 +1,125 @@
+#include "Trace/TraceSetup.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+void require(bool ok, const char* parameter, double value, const char* range)
+{
+  if (!ok)
+  {
+    throw Error(std::string(parameter) + " is " + std::to_string(value) + ": it must be " + range);
+  }
+}
+
+/// What the fan can reach: the half balls of radius `depthMm` in front of each line's origin, in voxels.
+VoxelBox reach(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm)
+{
+  const Mat3d toLocal = scene.rotationToLocal();
+  Vec3d low(1e30);
+  Vec3d high(-1e30);
+  for (const ScanLine& line : lines)
+  {
+    const Vec3d origin = scene.localFromWorld(line.originMm);
+    const Vec3d axis = toLocal * line.axis;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double across = std::sqrt(std::max(0.0, 1.0 - axis[a] * axis[a]));
+      high[a] = std::max(high[a], origin[a] + depthMm * (axis[a] >= 0.0 ? 1.0 : across));
+      low[a] = std::min(low[a], origin[a] - depthMm * (axis[a] <= 0.0 ? 1.0 : across));
+    }
+  }
+  const Vec3d spacing = scene.placement().spacingMm;
+  const Vec3d size(scene.placement().size);
+  return { Vec3i(glm::clamp(glm::floor(low / spacing), Vec3d(0.0), size)),
+           Vec3i(glm::clamp(glm::ceil(high / spacing) + 1.0, Vec3d(0.0), size)) };
+}
+
+TraceMedium makeMedium(const Tissue& tissue, double frequencyMHz)
+{
+  TraceMedium m;
+  m.impedance = float(tissue.impedanceMRayl);
+  m.speed = float(tissue.soundSpeedMPerS);
+  // Intensity falls by 10^(-a f l / 10), l in cm.
+  m.decayPerMm = float(tissue.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0);
+  m.tau = float(tissue.tau);
+  m.gamma = float(tissue.gamma);
+  return m;
+}
+
+TraceView makeView(const TraceSettings& settings, const Scene& scene)
+{
+  TraceView view;
+  view.firstTargetMedium = int(scene.tissues().size());
+  view.outsideTissue = scene.outsideIndex();
+  view.model = settings.model;
+  view.lobe = makeLobe(settings.lobeMeanRad, settings.lobeSigmaRad, settings.lobeMinRad, settings.lobeMaxRad);
+  view.lowDiscrepancy = settings.sampling == Sampling::LowDiscrepancy;
+  view.deterministic = settings.deterministic;
+  view.maxCollisions = settings.maxCollisions;
+  view.coherenceMm = float(settings.coherenceMm);
+  view.depthMm = float(settings.depthMm);
+  // The deterministic path has nothing to play with.
+  view.rouletteIntensity = settings.deterministic ? 0.0f : float(std::pow(10.0, settings.rouletteDb / 20.0));
+  view.seed = settings.seed;
+  return view;
+}
+
+} // namespace
+
+void TraceSettings::validate() const
+{
+  require(pathsPerLine >= 1 && pathsPerLine <= 10000000, "paths per line", pathsPerLine, "1 to 10,000,000");
+  require(maxCollisions >= 0 && maxCollisions <= 1000, "maximum collisions", maxCollisions, "0 to 1000");
+  require(coherenceMm >= 0.0 && std::isfinite(coherenceMm), "beam coherence C0 (mm)", coherenceMm, "0 or more");
+  require(std::isfinite(lobeMeanRad), "lobe mean (rad)", lobeMeanRad, "a finite angle");
+  require(lobeSigmaRad >= 0.0 && std::isfinite(lobeSigmaRad), "lobe sigma (rad)", lobeSigmaRad, "0 or more");
+  require(lobeMinRad >= 0.0 && lobeMinRad < lobeMaxRad, "lobe minimum (rad)", lobeMinRad,
+          "0 or more and below the maximum");
+  require(lobeMaxRad <= 1.5708, "lobe maximum (rad)", lobeMaxRad, "at most pi/2");
+  require(frequencyMHz > 0.0 && std::isfinite(frequencyMHz), "frequency (MHz)", frequencyMHz, "more than 0");
+  require(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
+  require(radialBinMm > 0.0 && radialBinMm <= depthMm, "radial bin (mm)", radialBinMm,
+          "more than 0 and at most the depth");
+  require(depthMm / radialBinMm <= 1e5, "radial bin (mm)", radialBinMm, "at least 1/100,000 of the depth");
+  require(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
+          "more than 0 and at least a millionth of the depth");
+  require(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
+}
+
+TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,
+                       const std::vector<TargetSurface>& targetSurfaces, const Progress& progress)
+{
+  settings.validate();
+  if (worldLines.empty())
+  {
+    throw Error("the probe has no scan lines: set the number of lines to 1 or more");
+  }
+  region = scene.traceRegion(reach(scene, worldLines, settings.depthMm), progress);
+  const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
+  cornerWorldMm = scene.worldFromLocal(corner);
+  const Mat3d toLocal = scene.rotationToLocal();
+  toWorld = scene.placement().direction;
+  targets = std::make_unique<TargetScene>(targetSurfaces, toLocal, cornerWorldMm);
+  for (const Tissue& tissue : scene.tissues())
+  {
+    media.push_back(makeMedium(tissue, settings.frequencyMHz));
+  }
+  for (const TargetSurface& target : targetSurfaces)
+  {
+    TissueTable().add(target.tissue); // checks the ranges
+    media.push_back(makeMedium(target.tissue, settings.frequencyMHz));
+  }
+  view = makeView(settings, scene);
+  view.media = media.data();
+  for (const ScanLine& line : worldLines)
+  {
+    lines.push_back({ Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) });
+  }
+  paths = settings.deterministic ? 1 : settings.pathsPerLine;
+}
+
+} // namespace sono

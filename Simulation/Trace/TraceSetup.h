@@ -1,0 +1,43 @@
+#pragma once
+
+#include "Kernel/TraceView.h"
+#include "Trace/Trace.h"
+
+#include <memory>
+#include <vector>
+
+namespace sono {
+
+/// Everything that tracing needs, made once from the scene and the settings and held while paths run.
+struct TraceSetup
+{
+  TraceSetup(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+             const std::vector<TargetSurface>& targets, const Progress& progress);
+
+  CellSpace<EmbreeTargets> space() const { return { region->view(), { targets.get(), !targets->empty() } }; }
+  Vec3d worldFromRegion(const Vec3f& p) const { return toWorld * Vec3d(p) + cornerWorldMm; }
+
+  std::shared_ptr<const TraceRegion> region;
+  std::unique_ptr<TargetScene> targets;
+  std::vector<TraceMedium> media;
+  TraceView view;
+  std::vector<TraceLine> lines;
+  Mat3d toWorld;
+  Vec3d cornerWorldMm;
+  int paths;
+};
+
+/// Paths of a line are traced in this many batches at most; the spread of their means gives the standard error.
+constexpr int batchCount = 8;
+
+struct PathRange
+{
+  int first;
+  int last;
+};
+inline PathRange batchRange(int paths, int batches, int batch)
+{
+  return { int(std::int64_t(paths) * batch / batches), int(std::int64_t(paths) * (batch + 1) / batches) };
+}
+
+} // namespace sono
