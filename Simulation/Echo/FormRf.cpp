@@ -1,12 +1,14 @@
 #include "Echo/FormRf.h"
 
-#include "Echo/BeamSplat.h"
+#include "Echo/LineFinisher.h"
 #include "Echo/Pulse.h"
-#include "Echo/ScattererBricks.h"
+#include "Echo/TissueScatterers.h"
 #include "ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace sono {
@@ -26,66 +28,82 @@ void require(bool ok, const char* parameter, double value, const std::string& ra
 
 /// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
 /// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * pi sL sE * sqrt(pi) sr.
-float scattererScale(const EchoSettings& s, double pulseSigma)
+double scattererScale(const EchoSettings& s)
 {
+  const double pulseSigma = pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth);
   const double seen = pi * s.lateralSigmaMm * s.elevationalSigmaMm * std::sqrt(pi) * pulseSigma /
                       (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
-  return float(std::pow(10.0, s.scattererLevelDb / 20.0) / std::sqrt(seen));
+  return std::pow(10.0, s.scattererLevelDb / 20.0) / std::sqrt(seen);
 }
 
-/// Intensity at each RF sample, linear between the centres of the tracer's bins.
-std::vector<float> intensityAtSamples(const TracedLines& traced, int line, int samples, double sampleMm)
+void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings)
 {
-  const float* bins = traced.intensity.data() + std::size_t(line) * std::size_t(traced.binCount);
-  std::vector<float> out(static_cast<std::size_t>(samples));
-  for (int s = 0; s < samples; ++s)
+  if (lines.empty())
   {
-    const double position = std::clamp(s * sampleMm / traced.binMm - 0.5, 0.0, double(traced.binCount - 1));
-    const int b = std::min(int(position), std::max(0, traced.binCount - 2));
-    const float f = float(position - b);
-    out[std::size_t(s)] = traced.binCount > 1 ? bins[b] * (1.0f - f) + bins[b + 1] * f : bins[0];
+    throw Error("the probe has no scan lines: give it at least one");
   }
-  return out;
-}
-
-/// Depth below which the line has no intensity left that a float image could show.
-float visibleDepth(const TracedLines& traced, int line)
-{
-  const float* bins = traced.intensity.data() + std::size_t(line) * std::size_t(traced.binCount);
-  int b = traced.binCount;
-  while (b > 0 && bins[b - 1] < 1e-9f)
+  if (double(lines.size()) * settings.sampleCount() > 5e8)
   {
-    --b;
+    throw Error("the number of scan lines is " + std::to_string(lines.size()) +
+                ": at this depth and sampling their samples do not fit; use fewer lines or a lower sampling frequency");
   }
-  return b == 0 ? 0.0f : float((b + 1) * traced.binMm);
+  if (!sources.traced)
+  {
+    return;
+  }
+  const TracedLines& traced = *sources.traced;
+  if (lines.size() != std::size_t(traced.lineCount))
+  {
+    throw Error("the probe has " + std::to_string(lines.size()) + " scan lines but " +
+                std::to_string(traced.lineCount) + " were traced: trace again with this probe");
+  }
+  if (traced.binCount < 1 || !(traced.binMm > 0.0) ||
+      traced.intensity.size() != lines.size() * std::size_t(traced.binCount) || traced.echoCount < 0 ||
+      (traced.echoCount > 0 && !(traced.echoSampleMm > 0.0)) ||
+      traced.boundaryEcho.size() != lines.size() * std::size_t(traced.echoCount))
+  {
+    throw Error("the traced lines do not have the intensities and echoes that they announce: trace again");
+  }
 }
 
-/// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
-void addBoundaryEchoes(const TracedLines& traced, int line, LineSum& sum)
+/// The beams of the lines [first, last) in the coordinates of their scatterers.
+std::vector<BeamReach> makeBeams(const std::vector<ScanLine>& lines, int first, int last, const EchoSettings& settings,
+                                 const LineFinisher& finisher, const std::function<Vec3d(const Vec3d&)>& toFrame,
+                                 const Mat3d& rotation)
 {
-  const std::complex<float>* echo = traced.boundaryEcho.data() + std::size_t(line) * std::size_t(traced.echoCount);
-  const int samples = int(sum.re.size());
-  for (int e = 0; e < traced.echoCount; ++e)
+  std::vector<BeamReach> beams;
+  for (int l = first; l < last; ++l)
   {
-    if (echo[e] == std::complex<float>{})
+    const ScanLine& w = lines[std::size_t(l)];
+    beams.push_back(
+      { { Vec3f(toFrame(w.originMm)), Vec3f(rotation * w.axis), Vec3f(rotation * w.lateral),
+          Vec3f(rotation * w.elevation), float(settings.lateralSigmaMm), float(settings.elevationalSigmaMm) },
+        finisher.reachMm(l) });
+  }
+  return beams;
+}
+
+void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+{
+  TissueScatterers::Buffer buffer;
+  forSeenBricks(tissues.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    const ScattererView scatterers = tissues.generate(brick, buffer);
+    for (const std::size_t i : seeing)
     {
-      continue;
+      splat(scatterers, beams[i].beam, sums[i]);
     }
-    const double position = e * traced.echoSampleMm / double(sum.sampleMm);
-    const int s = int(std::floor(position + 1e-6));
-    const float fraction = std::max(0.0f, float(position - s));
-    for (int i = 0; i < 2; ++i)
+  });
+}
+
+void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+{
+  forSeenBricks(points.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    const ScattererView scatterers = points.brick(brick);
+    for (const std::size_t i : seeing)
     {
-      const float share = i == 0 ? 1.0f - fraction : fraction;
-      if (share > 0.0f && s + i < samples)
-      {
-        const float phase = sum.radPerMm * sum.sampleMm * (fraction - float(i));
-        const std::complex<float> v = echo[e] * std::polar(share, -phase);
-        sum.re[std::size_t(s + i)] += v.real();
-        sum.im[std::size_t(s + i)] += v.imag();
-      }
+      splat(scatterers, beams[i].beam, sums[i]);
     }
-  }
+  });
 }
 
 } // namespace
@@ -145,90 +163,53 @@ std::vector<float> RfLines::envelope() const
   return out;
 }
 
-RfLines formRf(const Scene& scene, const std::vector<ScanLine>& lines, const TracedLines& traced,
-               const EchoSettings& settings, const Progress& progress)
+RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
+               const Progress& progress)
 {
   settings.validate();
-  if (int(lines.size()) != traced.lineCount)
-  {
-    throw Error("the probe has " + std::to_string(lines.size()) + " scan lines but " +
-                std::to_string(traced.lineCount) + " were traced: trace again with this probe");
-  }
+  requireConsistent(sources, lines, settings);
   RfLines out;
-  out.lineCount = traced.lineCount;
+  out.lineCount = int(lines.size());
   out.sampleCount = settings.sampleCount();
   out.sampleMm = settings.sampleMm();
   out.centreFrequencyMHz = settings.centreFrequencyMHz;
   out.samplingMHz = settings.samplingMHz;
-  if (double(out.lineCount) * out.sampleCount > 5e8)
+
+  const LineFinisher finisher(settings, sources.traced);
+  std::optional<TissueScatterers> tissues;
+  if (sources.scene)
   {
-    throw Error("the number of scan lines is " + std::to_string(out.lineCount) +
-                ": at this depth and sampling their samples do not fit; use fewer lines or a lower sampling frequency");
+    tissues.emplace(*sources.scene, settings.scattererCellMm, scattererScale(settings), settings.seed);
   }
   out.iq.resize(std::size_t(out.lineCount) * std::size_t(out.sampleCount));
-
-  const double pulseSigma = pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth);
-  const std::vector<float> envelope = pulseEnvelope(pulseSigma, out.sampleMm);
-  const float scale = scattererScale(settings, pulseSigma);
-  const double radPerMm = 4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs;
-  const std::size_t samples = std::size_t(out.sampleCount);
-  std::vector<float> demodRe(samples);
-  std::vector<float> demodIm(samples);
-  for (std::size_t s = 0; s < samples; ++s)
-  {
-    demodRe[s] = float(std::cos(radPerMm * double(s) * out.sampleMm));
-    demodIm[s] = float(-std::sin(radPerMm * double(s) * out.sampleMm));
-  }
-
-  const ScattererBricks bricks(scene, settings.scattererCellMm, settings.seed);
-  const Mat3d toLocal = scene.rotationToLocal();
-  const int groups = (out.lineCount + groupLines - 1) / groupLines;
-  parallelFor(groups, progress, [&](int g) {
-    const int first = g * groupLines;
+  const auto formGroup = [&](int group) {
+    const int first = group * groupLines;
     const int last = std::min(first + groupLines, out.lineCount);
-    std::vector<BeamReach> group;
-    std::vector<LineSum> sums;
+    std::vector<LineSum> sums(std::size_t(last - first), finisher.emptySum());
+    if (tissues)
+    {
+      const Scene& scene = *sources.scene;
+      const auto toLocal = [&](const Vec3d& world) { return scene.localFromWorld(world); };
+      addTissues(*tissues, makeBeams(lines, first, last, settings, finisher, toLocal, scene.rotationToLocal()), sums);
+    }
+    if (sources.points)
+    {
+      const auto toPoints = [&](const Vec3d& world) { return world - sources.points->originMm(); };
+      addPoints(*sources.points, makeBeams(lines, first, last, settings, finisher, toPoints, Mat3d(1.0)), sums);
+    }
     for (int l = first; l < last; ++l)
     {
-      const ScanLine& w = lines[std::size_t(l)];
-      group.push_back(
-        { { Vec3f(scene.localFromWorld(w.originMm)), Vec3f(toLocal * w.axis), Vec3f(toLocal * w.lateral),
-            Vec3f(toLocal * w.elevation), float(settings.lateralSigmaMm), float(settings.elevationalSigmaMm) },
-          std::min(visibleDepth(traced, l), float(settings.depthMm)) });
-      sums.push_back(
-        { std::vector<float>(samples, 0.0f), std::vector<float>(samples, 0.0f), float(out.sampleMm), float(radPerMm) });
+      finisher.finish(l, sums[std::size_t(l - first)], out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
-    bricks.forGroup(group, [&](const ScattererList& list, std::size_t i) { splat(list, group[i].beam, sums[i]); });
-
-    std::vector<float> re(samples);
-    std::vector<float> im(samples);
-    for (int l = first; l < last; ++l)
-    {
-      LineSum& sum = sums[std::size_t(l - first)];
-      const std::vector<float> intensity = intensityAtSamples(traced, l, out.sampleCount, out.sampleMm);
-      for (std::size_t s = 0; s < samples; ++s)
-      {
-        sum.re[s] *= scale * intensity[s];
-        sum.im[s] *= scale * intensity[s];
-      }
-      addBoundaryEchoes(traced, l, sum);
-      for (std::size_t s = 0; s < samples; ++s)
-      {
-        const float a = sum.re[s];
-        const float b = sum.im[s];
-        sum.re[s] = a * demodRe[s] - b * demodIm[s];
-        sum.im[s] = a * demodIm[s] + b * demodRe[s];
-      }
-      convolve(sum.re.data(), out.sampleCount, envelope, re.data());
-      convolve(sum.im.data(), out.sampleCount, envelope, im.data());
-      std::complex<float>* row = out.iq.data() + std::size_t(l) * samples;
-      for (std::size_t s = 0; s < samples; ++s)
-      {
-        row[s] = { re[s], im[s] };
-      }
-    }
-  });
+  };
+  parallelFor((out.lineCount + groupLines - 1) / groupLines, progress, formGroup);
   return out;
+}
+
+RfLines formRf(const Scene& scene, const std::vector<ScanLine>& lines, const TracedLines& traced,
+               const EchoSettings& settings, const Progress& progress)
+{
+  return formRf({ &scene, &traced, nullptr }, lines, settings, progress);
 }
 
 } // namespace sono

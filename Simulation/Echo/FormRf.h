@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Echo/PointScatterers.h"
 #include "Probe/ScanGeometry.h"
 #include "Progress.h"
 #include "Scene/Scene.h"
@@ -16,12 +17,12 @@ struct EchoSettings
   double centreFrequencyMHz = 2.5;  ///< > 0, below half the sampling frequency
   double fractionalBandwidth = 0.6; ///< at -6 dB, (0, 2)
   double samplingMHz = 50.0;        ///< RF sampling frequency
-  double depthMm = 160.0;
-  double lateralSigmaMm = 1.0;     ///< Gaussian beam, > 0
-  double elevationalSigmaMm = 1.0; ///< > 0
-  double scattererCellMm = 0.5;    ///< edge h of the scatterer cells; density is mu1 / h^3
-  double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect plane reflector
-  std::uint64_t seed = 1;          ///< of the scatterers
+  double depthMm = 160.0;           ///< > 0
+  double lateralSigmaMm = 1.0;      ///< Gaussian beam, > 0
+  double elevationalSigmaMm = 1.0;  ///< > 0
+  double scattererCellMm = 0.5;     ///< edge h of the scatterer cells; density is mu1 / h^3
+  double scattererLevelDb = -30.0;  ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect plane reflector
+  std::uint64_t seed = 1;           ///< of the scatterers
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
@@ -44,9 +45,22 @@ struct RfLines
   std::vector<float> envelope() const;
 };
 
-/// COLE on the analytic signal (PHYSICS section 4; Gao 2009, Storve 2017): procedural, world-locked scatterers of
-/// each tissue weighted by the beam and the traced intensity, plus the traced boundary echoes, convolved with
-/// a Gaussian pulse.
+/// What echoes, and how much of the pulse reaches it. Nothing is owned; null means none of it.
+struct EchoSources
+{
+  const Scene* scene = nullptr;        ///< procedural, world-locked scatterers of its tissues
+  const TracedLines* traced = nullptr; ///< intensity and boundary echoes; null: intensity 1 everywhere, no boundaries
+  const PointScatterers* points = nullptr; ///< explicit scatterers; their amplitudes are not scaled by scattererLevelDb
+};
+
+/// COLE on the analytic signal (PHYSICS section 4; Gao 2009, Storve 2017): scatterers weighted by the beam and the
+/// traced intensity, plus the traced boundary echoes, convolved with a Gaussian pulse. What lies behind the transducer
+/// does not echo. The result depends on the arguments alone, to the bit, not on the threads.
+/// Throws Error naming the parameter that is out of range, Aborted when asked to stop.
+RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
+               const Progress& progress = {});
+
+/// The usual case: a scene and its traced lines.
 RfLines formRf(const Scene& scene, const std::vector<ScanLine>& lines, const TracedLines& traced,
                const EchoSettings& settings, const Progress& progress = {});
 

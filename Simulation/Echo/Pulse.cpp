@@ -14,31 +14,28 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-SONO_SIMD_CLONES void convolveInterior(const float* in, int first, int last, const float* kernel, int taps, float* out)
+SONO_SIMD_CLONES void weightedSums(const float* in, const float* kernel, int taps, int count, float* out)
 {
-  constexpr int tile = 32; // sums of a tile stay in registers
-  const int half = taps / 2;
-  int s = first;
-  for (; s + tile <= last; s += tile)
+  constexpr int tile = 64; // the sums of a tile stay in registers
+  int s = 0;
+  for (; s + tile <= count; s += tile)
   {
     float sum[tile] = {};
-    const float* from = in + s - half;
     for (int k = 0; k < taps; ++k)
     {
-      const float w = kernel[k];
       for (int i = 0; i < tile; ++i)
       {
-        sum[i] += w * from[k + i];
+        sum[i] += kernel[k] * in[s + k + i];
       }
     }
     std::copy(sum, sum + tile, out + s);
   }
-  for (; s < last; ++s)
+  for (; s < count; ++s)
   {
     float sum = 0.0f;
     for (int k = 0; k < taps; ++k)
     {
-      sum += kernel[k] * in[s - half + k];
+      sum += kernel[k] * in[s + k];
     }
     out[s] = sum;
   }
@@ -71,29 +68,9 @@ std::vector<float> pulseEnvelope(double sigmaMm, double sampleMm)
   return envelope;
 }
 
-void convolve(const float* in, int count, const std::vector<float>& envelope, float* out)
+void convolve(const float* in, const std::vector<float>& envelope, int count, float* out)
 {
-  const int taps = int(envelope.size());
-  const int half = taps / 2;
-  const int first = std::min(half, count);
-  const int last = std::max(first, count - half);
-  convolveInterior(in, first, last, envelope.data(), taps, out);
-  const auto edge = [&](int s) {
-    float sum = 0.0f;
-    for (int k = std::max(0, half - s); k < taps && s - half + k < count; ++k)
-    {
-      sum += envelope[std::size_t(k)] * in[s - half + k];
-    }
-    out[s] = sum;
-  };
-  for (int s = 0; s < first; ++s)
-  {
-    edge(s);
-  }
-  for (int s = last; s < count; ++s)
-  {
-    edge(s);
-  }
+  weightedSums(in, envelope.data(), int(envelope.size()), count, out);
 }
 
 } // namespace sono

@@ -15,7 +15,7 @@ double pulseSigmaMm(double centreFrequencyMHz, double fractionalBandwidth);
 /// pulse is shorter than the samples can carry.
 std::vector<float> pulseEnvelope(double sigmaMm, double sampleMm);
 
-/// out[s] = sum over k of envelope[k] in[s + k - half], zero beyond the ends. `in` and `out` differ.
-void convolve(const float* in, int count, const std::vector<float>& envelope, float* out);
+/// out[s] = sum over k of envelope[k] in[s + k] for s in [0, count); `in` has count + envelope.size() - 1 samples.
+void convolve(const float* in, const std::vector<float>& envelope, int count, float* out);
 
 } // namespace sono

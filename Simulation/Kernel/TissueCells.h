@@ -162,11 +162,53 @@ struct RefinedHit
   float t;      ///< sub-voxel distance along the ray
 };
 
+/// How far the surface of either side of a boundary is trusted, 0 or 1.
+struct SideWeights
+{
+  float before;
+  float after;
+};
+
+/// The normal from tissue `from` to `to` at a point of their boundary, interpolated between the records of the eight
+/// voxels around the point. A voxel's own record holds at its centre; a curved surface turns away from it.
+/// Returns `fallback` where the records disagree.
+SONO_HD inline Vec3f interpolateNormal(const TissueCells& cells, const Vec3f& point, int from, int to,
+                                       const SideWeights& weights, const Vec3f& fallback)
+{
+  const Vec3f g = point / cells.spacing - 0.5f;
+  const Vec3f low(floorf(g.x), floorf(g.y), floorf(g.z));
+  const Vec3f f = g - low;
+  Vec3f sum(0.0f);
+  float total = 0.0f;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const Vec3i o(corner & 1, (corner >> 1) & 1, corner >> 2);
+    const Vec3i cell = Vec3i(low) + o;
+    if (!cells.contains(cell))
+    {
+      continue;
+    }
+    const std::uint32_t bits = cells.record[cells.offset(cell)];
+    const int tissue = cells.tissueAt(cell);
+    if (bits == 0u || (tissue != from && tissue != to))
+    {
+      continue;
+    }
+    const BoundaryRecord record = decodeRecord(bits);
+    const float side = tissue == from ? weights.before : -weights.after;
+    const float w = record.confidence * (o.x ? f.x : 1.0f - f.x) * (o.y ? f.y : 1.0f - f.y) * (o.z ? f.z : 1.0f - f.z);
+    sum += record.normal * (w * side);
+    total += w * fabsf(side);
+  }
+  const float length = glm::length(sum);
+  return length > 0.5f * total ? sum / length : fallback;
+}
+
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
 /// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.6 of it (a thin
 /// wall has lost its own surface, its thick neighbour has not); else the normals are averaged. The point moves
-/// along the ray to the plane of the records, by one voxel at most. Where no record is trustworthy, or the smooth
-/// normal says that the ray leaves rather than enters, the voxel face stands.
+/// along the ray to the plane of the records, by one voxel at most; there the normal is interpolated. Where no record
+/// is trustworthy, or the smooth normal says that the ray leaves rather than enters, the voxel face stands.
 SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay& ray, const CellHit& hit)
 {
   const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
@@ -200,9 +242,12 @@ SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay
   const Vec3f pointA = (Vec3f(hit.before) + 0.5f) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
   const Vec3f pointB = (Vec3f(hit.after) + 0.5f) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
   const Vec3f point = (pointA * weightA + pointB * weightB) / (weightA + weightB);
-  const float t = glm::dot(point - ray.position, n) / cosine;
   const float reach = cells.meanSpacing;
-  return { n, larger(0.0f, smaller(larger(t, hit.t - reach), hit.t + reach)) };
+  const float plane = glm::dot(point - ray.position, n) / cosine;
+  const float t = larger(0.0f, smaller(larger(plane, hit.t - reach), hit.t + reach));
+  const Vec3f smooth = interpolateNormal(cells, ray.position + ray.direction * t, cells.tissueAt(hit.before),
+                                         hit.tissue, { weightA, weightB }, n);
+  return { glm::dot(ray.direction, smooth) < 0.01f ? n : smooth, t };
 }
 
 } // namespace sono

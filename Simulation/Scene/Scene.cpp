@@ -17,7 +17,7 @@ Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTi
                 std::to_string(volume_.placement.voxelCount()) + ": load it again");
   }
   std::map<std::string, int> indexOf;
-  std::vector<std::uint8_t> tissueOfLabel(65536, 0);
+  tissueOfLabel_.assign(65536, 0);
   for (const LabelInfo& label : volume_.labels)
   {
     const Tissue* tissue = table.find(label.tissue);
@@ -35,7 +35,7 @@ Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTi
     {
       throw Error("the label map uses more than 255 different tissues: map some labels to the same tissue");
     }
-    tissueOfLabel[std::size_t(label.id)] = std::uint8_t(entry->second);
+    tissueOfLabel_[std::size_t(label.id)] = std::uint8_t(entry->second);
   }
   const auto outside = indexOf.find(outsideTissue);
   outsideIndex_ = outside == indexOf.end() ? -1 : outside->second;
@@ -45,7 +45,7 @@ Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTi
   parallelFor(volume_.placement.size.z, {}, [&](int k) {
     const std::uint16_t* from = volume_.voxels.data() + slice * k;
     std::transform(from, from + slice, tissueVoxels_.data() + slice * k,
-                   [&](std::uint16_t id) { return tissueOfLabel[id]; });
+                   [&](std::uint16_t id) { return tissueOfLabel_[id]; });
   });
   surfaces_.resize(volume_.labels.size());
 }

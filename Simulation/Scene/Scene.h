@@ -37,6 +37,8 @@ public:
   /// The tissues in use, in the order of the 8-bit tissue indices.
   const std::vector<Tissue>& tissues() const { return tissues_; }
   int outsideIndex() const { return outsideIndex_; }
+  /// Tissue index of each label id (65536 entries; 0 where the id does not occur).
+  const std::vector<std::uint8_t>& tissueOfLabel() const { return tissueOfLabel_; }
   /// One tissue index a voxel, i fastest.
   const std::vector<std::uint8_t>& tissueVoxels() const { return tissueVoxels_; }
 
@@ -54,6 +56,7 @@ public:
 private:
   LabelVolume volume_;
   std::vector<Tissue> tissues_;
+  std::vector<std::uint8_t> tissueOfLabel_;
   std::vector<std::uint8_t> tissueVoxels_;
   int outsideIndex_ = -1;
 

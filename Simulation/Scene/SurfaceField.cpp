@@ -22,12 +22,6 @@ namespace {
 
 constexpr int leafEdge = 8; // of OpenVDB's leaf nodes
 
-void initializeOpenVDB()
-{
-  static std::once_flag once;
-  std::call_once(once, [] { openvdb::initialize(); });
-}
-
 /// Index to world as OpenVDB writes it: row vectors, points multiplied from the left.
 openvdb::math::Transform::Ptr worldTransform(const GridPlacement& placement)
 {
@@ -131,7 +125,7 @@ float SurfaceField::at(const Vec3i& ijk) const
 
 LabelGrid buildLabelGrid(const LabelVolume& volume, const Progress& progress)
 {
-  initializeOpenVDB();
+  openvdb::initialize(); // does nothing after the first time
   auto grid = openvdb::Int32Grid::create(0);
   grid->setName("labels");
   grid->setTransform(worldTransform(volume.placement));
@@ -161,7 +155,7 @@ LabelGrid buildLabelGrid(const LabelVolume& volume, const Progress& progress)
 
 SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress& progress)
 {
-  initializeOpenVDB();
+  openvdb::initialize(); // does nothing after the first time
   const GridPlacement& placement = volume.placement;
   SurfaceField field;
   field.labelId = labelId;
@@ -237,7 +231,7 @@ SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress
 
 TriangleSurface meshSurface(const LabelVolume& volume, const SurfaceField& field)
 {
-  initializeOpenVDB();
+  openvdb::initialize(); // does nothing after the first time
   const auto grid = openFromNano(field.sdf);
   // In index space: OpenVDB's mesher would apply the grid's transform, of which NanoVDB keeps single precision.
   grid->setTransform(openvdb::math::Transform::createLinearTransform());

@@ -1,5 +1,6 @@
 #include "Trace/Trace.h"
 
+#include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
 #include "ParallelFor.h"
 #include "Simd.h"
@@ -17,11 +18,10 @@ namespace sono {
 namespace {
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
-SONO_SIMD_CLONES __attribute__((flatten)) bool traceLine(const TraceSetup& setup, int index, LineTally& tally,
-                                                         TracedLines& out)
+template <class Space>
+inline bool traceLineIn(const Space& space, const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
 {
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
-  const CellSpace<EmbreeTargets> space = setup.space();
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
   tally.start(line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount));
@@ -74,6 +74,17 @@ SONO_SIMD_CLONES __attribute__((flatten)) bool traceLine(const TraceSetup& setup
   return true;
 }
 
+SONO_SIMD_CLONES __attribute__((flatten)) bool traceLine(const TraceSetup& setup, int index, LineTally& tally,
+                                                         TracedLines& out)
+{
+  return traceLineIn(setup.space(), setup, index, tally, out);
+}
+
+bool traceLineByNanoVDB(const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
+{
+  return traceLineIn(setup.nanoSpace(), setup, index, tally, out);
+}
+
 } // namespace
 
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
@@ -103,7 +114,9 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   std::atomic<bool> anyEnters{ false };
   const Progress tracing = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
   parallelFor(out.lineCount, tracing, [&](int i) {
-    if (traceLine(setup, i, tallies.local(), out))
+    const bool enters = settings.march == March::NanoVDB ? traceLineByNanoVDB(setup, i, tallies.local(), out)
+                                                         : traceLine(setup, i, tallies.local(), out);
+    if (enters)
     {
       anyEnters = true;
     }

@@ -19,8 +19,16 @@ enum class Sampling
   LowDiscrepancy ///< Owen-scrambled Sobol pairs, one per bounce
 };
 
+/// How boundaries are found. Both give the same image.
+enum class March
+{
+  RegionCache, ///< dense cells of what the fan reaches, with a skip map: fast
+  NanoVDB      ///< the scene's label grid itself: the reference, several times slower
+};
+
 struct TraceSettings
 {
+  March march = March::RegionCache;
   InterfaceModel model = InterfaceModel::Acoustic;
   Sampling sampling = Sampling::LowDiscrepancy;
   int pathsPerLine = 1000; ///< 1 to 10^7

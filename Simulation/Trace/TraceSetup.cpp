@@ -1,5 +1,8 @@
 #include "Trace/TraceSetup.h"
 
+#include "Kernel/NanoSpace.h"
+#include "Scene/NanoGridStorage.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -113,6 +116,11 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     TissueTable().add(target.tissue); // checks the ranges
     media.push_back(makeMedium(target.tissue, settings.frequencyMHz));
   }
+  if (settings.march == March::NanoVDB)
+  {
+    labels = &scene.labelGrid(progress);
+    tissueOfLabel = scene.tissueOfLabel().data();
+  }
   view = makeView(settings, scene);
   view.media = media.data();
   for (const ScanLine& line : worldLines)
@@ -120,6 +128,15 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     lines.push_back({ Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) });
   }
   paths = settings.deterministic ? 1 : settings.pathsPerLine;
+}
+
+NanoSpace<EmbreeTargets> TraceSetup::nanoSpace() const
+{
+  return { labels->grid.storage->handle.grid<std::int32_t>(),
+           tissueOfLabel,
+           region->box.first,
+           region->view(),
+           { targets.get(), !targets->empty() } };
 }
 
 } // namespace sono

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/CellSpace.h"
 #include "Kernel/TraceView.h"
 #include "Trace/Trace.h"
 
@@ -8,6 +9,9 @@
 
 namespace sono {
 
+template<class Targets>
+struct NanoSpace;
+
 /// Everything that tracing needs, made once from the scene and the settings and held while paths run.
 struct TraceSetup
 {
@@ -15,10 +19,13 @@ struct TraceSetup
              const std::vector<TargetSurface>& targets, const Progress& progress);
 
   CellSpace<EmbreeTargets> space() const { return { region->view(), { targets.get(), !targets->empty() } }; }
+  NanoSpace<EmbreeTargets> nanoSpace() const;
   Vec3d worldFromRegion(const Vec3f& p) const { return toWorld * Vec3d(p) + cornerWorldMm; }
 
   std::shared_ptr<const TraceRegion> region;
   std::unique_ptr<TargetScene> targets;
+  const LabelGrid* labels = nullptr; ///< for the NanoVDB march only
+  const std::uint8_t* tissueOfLabel = nullptr;
   std::vector<TraceMedium> media;
   TraceView view;
   std::vector<TraceLine> lines;

@@ -1,0 +1,151 @@
+#include "Echo/BrickWalk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+/// A beam with what the tests of a brick's centre need.
+struct Seer
+{
+  BeamReach reach;
+  std::size_t index;
+  float radius; ///< the centre of a seen brick is no further from the axis
+  float axial;  ///< half a brick's extent along the beam's three directions
+  float lateral;
+  float elevation;
+};
+
+float halfExtent(const Vec3f& direction, float edge)
+{
+  return 0.5f * edge * (std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z));
+}
+
+std::vector<Seer> makeSeers(const std::vector<BeamReach>& group, float edge)
+{
+  std::vector<Seer> seers;
+  for (std::size_t i = 0; i < group.size(); ++i)
+  {
+    const GaussianBeam& b = group[i].beam;
+    if (group[i].depthMm > 0.0f)
+    {
+      const float cut = beamCutSigma * std::max(b.lateralSigmaMm, b.elevationalSigmaMm);
+      seers.push_back({ group[i], i, cut + 0.5f * edge * std::sqrt(3.0f), halfExtent(b.axis, edge),
+                        halfExtent(b.lateral, edge), halfExtent(b.elevation, edge) });
+    }
+  }
+  return seers;
+}
+
+bool sees(const Seer& s, const Vec3f& centre)
+{
+  const GaussianBeam& b = s.reach.beam;
+  const Vec3f q = centre - b.origin;
+  const float r = glm::dot(q, b.axis);
+  const float dl = std::max(0.0f, std::fabs(glm::dot(q, b.lateral)) - s.lateral) / b.lateralSigmaMm;
+  const float de = std::max(0.0f, std::fabs(glm::dot(q, b.elevation)) - s.elevation) / b.elevationalSigmaMm;
+  return r > -s.axial && r < s.reach.depthMm + s.axial && dl * dl + de * de < beamCutSigma * beamCutSigma;
+}
+
+/// The axis that the beams follow most.
+int mainAxis(const std::vector<Seer>& seers)
+{
+  Vec3f heading(0.0f);
+  for (const Seer& s : seers)
+  {
+    heading += glm::abs(s.reach.beam.axis);
+  }
+  return heading.x >= heading.y && heading.x >= heading.z ? 0 : (heading.y >= heading.z ? 1 : 2);
+}
+
+/// The box around all that the beams see, inside the grid's.
+void clipBox(const std::vector<Seer>& seers, Vec3f& low, Vec3f& high)
+{
+  Vec3f seenLow(1e30f);
+  Vec3f seenHigh(-1e30f);
+  for (const Seer& s : seers)
+  {
+    const Vec3f from = s.reach.beam.origin;
+    const Vec3f to = from + s.reach.beam.axis * s.reach.depthMm;
+    seenLow = glm::min(seenLow, glm::min(from, to) - s.radius);
+    seenHigh = glm::max(seenHigh, glm::max(from, to) + s.radius);
+  }
+  low = glm::max(low, seenLow);
+  high = glm::min(high, seenHigh);
+}
+
+/// The part of a beam's axis inside the slab low <= x[axis] <= high, as depths; empty when from > to.
+Vec2f clipToSlab(const BeamReach& b, int axis, float low, float high)
+{
+  const float o = b.beam.origin[axis];
+  const float d = b.beam.axis[axis];
+  if (std::fabs(d) < 1e-6f)
+  {
+    return o < low || o > high ? Vec2f(1.0f, -1.0f) : Vec2f(0.0f, b.depthMm);
+  }
+  const float t0 = (low - o) / d;
+  const float t1 = (high - o) / d;
+  return { std::max(0.0f, std::min(t0, t1)), std::min(b.depthMm, std::max(t0, t1)) };
+}
+
+} // namespace
+
+void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
+                   const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit)
+{
+  const float edge = grid.edgeMm;
+  const std::vector<Seer> seers = makeSeers(group, edge);
+  const int axis = mainAxis(seers);
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  Vec3f low = grid.lowMm;
+  Vec3f high = grid.highMm;
+  clipBox(seers, low, high);
+
+  std::vector<std::size_t> seeing;
+  for (int layer = int(std::floor(low[axis] / edge)); float(layer) * edge < high[axis]; ++layer)
+  {
+    Vec2f first(1e30f);
+    Vec2f last(-1e30f);
+    for (const Seer& s : seers)
+    {
+      const Vec2f part = clipToSlab(s.reach, axis, float(layer) * edge - s.radius, float(layer + 1) * edge + s.radius);
+      // Between the two ends of the part the axis is straight: its bounds are theirs.
+      for (int end = 0; end < 2 && part[0] <= part[1]; ++end)
+      {
+        const Vec3f p = s.reach.beam.origin + s.reach.beam.axis * part[end];
+        first = glm::min(first, Vec2f(p[u], p[v]) - s.radius);
+        last = glm::max(last, Vec2f(p[u], p[v]) + s.radius);
+      }
+    }
+    first = glm::max(first, Vec2f(low[u], low[v]));
+    last = glm::min(last, Vec2f(high[u], high[v]));
+    for (int j = int(std::floor(first.x / edge)); float(j) * edge < last.x; ++j)
+    {
+      for (int k = int(std::floor(first.y / edge)); float(k) * edge < last.y; ++k)
+      {
+        Vec3i brick;
+        brick[axis] = layer;
+        brick[u] = j;
+        brick[v] = k;
+        const Vec3f centre = (Vec3f(brick) + 0.5f) * edge;
+        seeing.clear();
+        for (const Seer& s : seers)
+        {
+          if (sees(s, centre))
+          {
+            seeing.push_back(s.index);
+          }
+        }
+        if (!seeing.empty())
+        {
+          visit(brick, seeing);
+        }
+      }
+    }
+  }
+}
+
+} // namespace sono

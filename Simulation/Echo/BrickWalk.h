@@ -1,0 +1,32 @@
+#pragma once
+
+#include "Echo/BeamSplat.h"
+#include "Kernel/Vec.h"
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace sono {
+
+/// A beam and the depth to which it is needed.
+struct BeamReach
+{
+  GaussianBeam beam;
+  float depthMm; ///< <= 0: not needed at all
+};
+
+/// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.
+struct BrickGrid
+{
+  float edgeMm = 1.0f;
+  Vec3f lowMm{ 0.0f };
+  Vec3f highMm{ 0.0f };
+};
+
+/// Calls visit(brick, beams) for every brick that a beam of the group may see, in a fixed order, with the beams that
+/// may see it (indices into the group, ascending). Neighbouring beams make a good group: they share their bricks.
+void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
+                   const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit);
+
+} // namespace sono

@@ -1,0 +1,131 @@
+#include "Echo/LineFinisher.h"
+
+#include "Echo/Pulse.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr float darkIntensity = 1e-8f; // -160 dB
+
+} // namespace
+
+LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* traced)
+  : traced_(traced)
+  , samples_(settings.sampleCount())
+  , sampleMm_(settings.sampleMm())
+  , radPerMm_(4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs)
+  , envelope_(pulseEnvelope(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth), sampleMm_))
+{
+  half_ = int(envelope_.size() / 2);
+  for (int s = 0; s < samples_ + half_; ++s)
+  {
+    const double phase = radPerMm_ * s * sampleMm_;
+    carrierRe_.push_back(float(std::cos(phase)));
+    carrierIm_.push_back(float(-std::sin(phase)));
+    if (traced)
+    {
+      // Linear between the centres of the tracer's bins.
+      const double position = std::clamp(s * sampleMm_ / traced->binMm - 0.5, 0.0, double(traced->binCount - 1));
+      const int bin = std::min(int(position), std::max(0, traced->binCount - 2));
+      bin_.push_back(bin);
+      binShare_.push_back(float(position - bin));
+    }
+  }
+}
+
+LineSum LineFinisher::emptySum() const
+{
+  return { std::vector<float>(2 * carrierRe_.size(), 0.0f), float(sampleMm_), radPerMm_ };
+}
+
+float LineFinisher::reachMm(int line) const
+{
+  const double deepest = (samples_ + half_) * sampleMm_;
+  if (!traced_)
+  {
+    return float(deepest);
+  }
+  const float* bins = traced_->intensity.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  int b = traced_->binCount;
+  while (b > 0 && !(bins[b - 1] > darkIntensity))
+  {
+    --b;
+  }
+  // The last bin's intensity holds below it, for the pulse's half.
+  return b == 0 ? 0.0f : float(std::min(deepest, b == traced_->binCount ? deepest : (b + 0.5) * traced_->binMm));
+}
+
+void LineFinisher::applyIntensity(int line, LineSum& sum) const
+{
+  const float* bins = traced_->intensity.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  const int step = traced_->binCount > 1 ? 1 : 0;
+  for (std::size_t s = 0; s < bin_.size(); ++s)
+  {
+    const float* bin = bins + bin_[s];
+    const float intensity = bin[0] + (bin[step] - bin[0]) * binShare_[s];
+    sum.iq[2 * s] *= intensity;
+    sum.iq[2 * s + 1] *= intensity;
+  }
+}
+
+/// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
+void LineFinisher::addBoundaryEchoes(int line, LineSum& sum) const
+{
+  const std::complex<float>* echo = traced_->boundaryEcho.data() + std::size_t(line) * std::size_t(traced_->echoCount);
+  for (int e = 0; e < traced_->echoCount; ++e)
+  {
+    if (echo[e] == std::complex<float>{})
+    {
+      continue;
+    }
+    const double position = e * traced_->echoSampleMm / sampleMm_;
+    const int s = int(std::floor(position + 1e-6)); // on a common grid, exactly the sample
+    const double fraction = std::max(0.0, position - s);
+    for (int i = 0; i < 2; ++i)
+    {
+      const double share = i == 0 ? 1.0 - fraction : fraction;
+      if (share > 0.0 && s + i < sum.sampleCount())
+      {
+        const double phase = radPerMm_ * sampleMm_ * (fraction - i);
+        const std::complex<float> v = echo[e] * std::complex<float>(std::polar(share, -phase));
+        sum.iq[2 * std::size_t(s + i)] += v.real();
+        sum.iq[2 * std::size_t(s + i) + 1] += v.imag();
+      }
+    }
+  }
+}
+
+void LineFinisher::finish(int line, LineSum& sum, std::complex<float>* iq) const
+{
+  if (traced_)
+  {
+    applyIntensity(line, sum);
+    addBoundaryEchoes(line, sum);
+  }
+  // In baseband the phases no longer depend on the sample: the pulse is its envelope. Nothing lies above the first.
+  const std::size_t half = std::size_t(half_);
+  std::vector<float> re(half + carrierRe_.size(), 0.0f);
+  std::vector<float> im(half + carrierRe_.size(), 0.0f);
+  for (std::size_t s = 0; s < carrierRe_.size(); ++s)
+  {
+    const float a = sum.iq[2 * s];
+    const float b = sum.iq[2 * s + 1];
+    re[half + s] = a * carrierRe_[s] - b * carrierIm_[s];
+    im[half + s] = a * carrierIm_[s] + b * carrierRe_[s];
+  }
+  std::vector<float> outRe(static_cast<std::size_t>(samples_));
+  std::vector<float> outIm(static_cast<std::size_t>(samples_));
+  convolve(re.data(), envelope_, samples_, outRe.data());
+  convolve(im.data(), envelope_, samples_, outIm.data());
+  for (std::size_t s = 0; s < outRe.size(); ++s)
+  {
+    iq[s] = { outRe[s], outIm[s] };
+  }
+}
+
+} // namespace sono

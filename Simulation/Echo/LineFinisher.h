@@ -1,0 +1,42 @@
+#pragma once
+
+#include "Echo/BeamSplat.h"
+#include "Echo/FormRf.h"
+
+#include <complex>
+#include <vector>
+
+namespace sono {
+
+/// Turns a line's scatterer sum into IQ: times the traced intensity, plus the traced boundary echoes, convolved with
+/// the pulse. The sum goes half a pulse deeper than the line, since what lies there still echoes into it.
+class LineFinisher
+{
+public:
+  /// `traced` may be null (intensity 1, no boundaries); it must outlive this. Throws Error when the sampling cannot
+  /// carry the pulse.
+  LineFinisher(const EchoSettings& settings, const TracedLines* traced);
+
+  LineSum emptySum() const;
+  /// Depth, mm, below which scatterers cannot be seen in this line.
+  float reachMm(int line) const;
+  /// Writes the settings' sampleCount() samples; the sum is used up.
+  void finish(int line, LineSum& sum, std::complex<float>* iq) const;
+
+private:
+  void applyIntensity(int line, LineSum& sum) const;
+  void addBoundaryEchoes(int line, LineSum& sum) const;
+
+  const TracedLines* traced_;
+  int samples_;
+  int half_; // samples of the pulse's half
+  double sampleMm_;
+  double radPerMm_;
+  std::vector<float> envelope_;
+  std::vector<float> carrierRe_; // of the demodulation, for each sample of a sum
+  std::vector<float> carrierIm_;
+  std::vector<int> bin_; // of the traced intensity before each sample, and the share of the one behind it
+  std::vector<float> binShare_;
+};
+
+} // namespace sono

@@ -1,0 +1,15 @@
+#pragma once
+
+namespace sono {
+
+/// Scatterers side by side, positions in mm along the axes of their source. Owned elsewhere.
+struct ScattererView
+{
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  const float* amplitude = nullptr;
+  int count = 0;
+};
+
+} // namespace sono

@@ -1,0 +1,249 @@
+#include "TestScenes.h"
+
+#include "Trace/Trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace {
+
+using namespace sono;
+using namespace sono::test;
+
+/// A closed box.
+TargetSurface makeBox(const std::string& name, const Tissue& tissue, const Vec3d& low, const Vec3d& high)
+{
+  TargetSurface box{ name, tissue, {}, {} };
+  for (int i = 0; i < 8; ++i)
+  {
+    box.pointsMm.push_back({ i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z });
+  }
+  box.triangles = { { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 }, { 4, 7, 6 }, { 0, 1, 5 }, { 0, 5, 4 },
+                    { 2, 6, 7 }, { 2, 7, 3 }, { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 } };
+  return box;
+}
+
+const std::vector<Tissue> tissues = { makeTissue("muscle", 1.7, 1580, 0.8), makeTissue("fat", 1.38, 1450, 0.6),
+                                      makeTissue("blood", 1.61, 1570, 0.2) };
+
+/// Muscle with a slab of fat across z from 40 to 46 mm, as voxels or bare.
+std::unique_ptr<Scene> slabScene(bool slab)
+{
+  return makeScene(Vec3i(60, 60, 100), Vec3d(1.0), tissues,
+                   [=](const Vec3d& p) { return slab && p.z > 40.0 && p.z < 46.0 ? 1 : (p.z > 80.0 ? 2 : 0); });
+}
+
+TraceSettings plainSettings()
+{
+  TraceSettings s;
+  s.depthMm = 95.0;
+  s.frequencyMHz = 2.0;
+  s.maxCollisions = 20;
+  s.pathsPerLine = 4000;
+  return s;
+}
+
+void expectNear(const std::vector<float>& a, const std::vector<float>& b, double tolerance)
+{
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    ASSERT_NEAR(a[i], b[i], tolerance) << i;
+  }
+}
+
+TEST(Targets, SlabAsTriangleSurfaceIsTheSlabInVoxels)
+{
+  TraceSettings s = plainSettings();
+  s.deterministic = true;
+  const std::vector<ScanLine> lines = { makeLine({ 30.3, 30.2, 0.0 }, { 0, 0, 1 }),
+                                        makeLine({ 12.3, 30.2, 0.0 }, { 0.3, 0.1, 1 }) };
+  const auto voxels = trace(*slabScene(true), lines, s);
+  const auto box = makeBox("slab", tissues[1], { -20.0, -20.0, 40.0 }, { 80.0, 80.0, 46.0 });
+  const auto triangles = trace(*slabScene(false), lines, s, {}, { box });
+  expectNear(voxels.intensity, triangles.intensity, 2e-4);
+  for (std::size_t i = 0; i < voxels.boundaryEcho.size(); ++i)
+  {
+    // Voxel records hold positions to 1/256 voxel: 2e-3 mm is 0.03 rad.
+    ASSERT_LT(std::abs(voxels.boundaryEcho[i] - triangles.boundaryEcho[i]), 0.04 * 0.11) << i;
+  }
+}
+
+TEST(Targets, TrianglesTurnedInsideOutAreTheSameTarget)
+{
+  auto box = makeBox("slab", tissues[1], { -20.0, -20.0, 40.0 }, { 80.0, 80.0, 46.0 });
+  const std::vector<ScanLine> lines = { makeLine({ 30.3, 30.2, 0.0 }, { 0.1, 0.2, 1 }) };
+  const auto scene = slabScene(false);
+  const auto one = trace(*scene, lines, plainSettings(), {}, { box });
+  for (auto& t : box.triangles)
+  {
+    std::swap(t[1], t[2]);
+  }
+  EXPECT_EQ(one.intensity, trace(*scene, lines, plainSettings(), {}, { box }).intensity);
+}
+
+TEST(Targets, LineThatStartsInsideLeavesThroughTheFarSide)
+{
+  TraceSettings s = plainSettings();
+  s.deterministic = true;
+  const auto box = makeBox("probe cover", tissues[1], { 20.0, 20.0, -5.0 }, { 40.0, 40.0, 10.0 });
+  const auto traced = trace(*slabScene(false), { makeLine({ 30.3, 30.2, 1.0 }, { 0, 0, 1 }) }, s, {}, { box });
+  // 9 mm of fat, then muscle.
+  const double r0 = (1.7 - 1.38) / (1.7 + 1.38);
+  const double expected =
+    (1.0 - r0 * r0) * std::pow(10.0, -(0.6 * 2.0 * 0.9 + 0.8 * 2.0 * (20.125 - 9.0) / 10.0) / 10.0);
+  EXPECT_NEAR(traced.intensity[std::size_t(20.0 / traced.binMm)], expected, 1e-5);
+}
+
+TEST(Targets, InsideATargetTheLabelMapDoesNotCount)
+{
+  TraceSettings s = plainSettings();
+  s.deterministic = true;
+  // The box covers the slab of fat wholly where the line runs.
+  const auto box = makeBox("cover", tissues[2], { 20.0, 20.0, 30.0 }, { 40.0, 40.0, 60.0 });
+  const std::vector<ScanLine> line = { makeLine({ 30.3, 30.2, 0.0 }, { 0, 0, 1 }) };
+  EXPECT_EQ(trace(*slabScene(true), line, s, {}, { box }).intensity,
+            trace(*slabScene(false), line, s, {}, { box }).intensity);
+}
+
+TEST(Targets, OpenOrBrokenSurfacesAreRefusedByName)
+{
+  const auto scene = slabScene(false);
+  const std::vector<ScanLine> line = { makeLine({ 30.3, 30.2, 0.0 }, { 0, 0, 1 }) };
+  const auto message = [&](const TargetSurface& target) {
+    try
+    {
+      trace(*scene, line, plainSettings(), {}, { target });
+    }
+    catch (const Error& e)
+    {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  auto box = makeBox("needle", tissues[1], Vec3d(20.0), Vec3d(40.0));
+  EXPECT_EQ(message(box), "");
+  box.triangles.pop_back();
+  EXPECT_NE(message(box).find("'needle' is not a closed surface"), std::string::npos);
+  box = makeBox("needle", tissues[1], Vec3d(20.0), Vec3d(40.0));
+  box.pointsMm[3].x = NAN;
+  EXPECT_NE(message(box).find("'needle'"), std::string::npos);
+  box.triangles.clear();
+  box.pointsMm[3].x = 0.0;
+  EXPECT_NE(message(box).find("'needle' has no triangles"), std::string::npos);
+  box = makeBox("needle", tissues[1], Vec3d(20.0), Vec3d(40.0));
+  box.triangles[0][1] = 99;
+  EXPECT_NE(message(box).find("'needle'"), std::string::npos);
+}
+
+/// Blobs of two tissues in a third.
+std::unique_ptr<Scene> blobScene()
+{
+  return makeScene(Vec3i(70, 60, 90), Vec3d(0.9, 1.0, 1.1), tissues, [](const Vec3d& p) {
+    const double a = std::sin(p.x * 0.23) + std::cos(p.y * 0.31) + std::sin(p.z * 0.19);
+    return a > 0.8 ? 1 : (a < -0.8 ? 2 : 0);
+  });
+}
+
+TEST(Marches, NanoVDBAndTheRegionCacheGiveTheSameImage)
+{
+  const auto scene = blobScene();
+  std::vector<ScanLine> lines;
+  for (int i = 0; i < 16; ++i)
+  {
+    lines.push_back(makeLine({ 31.0, 30.0, 0.0 }, { std::sin(0.08 * (i - 8)), 0.05, 1.0 }));
+  }
+  TraceSettings s = plainSettings();
+  s.pathsPerLine = 400;
+  const auto cache = trace(*scene, lines, s);
+  s.march = March::NanoVDB;
+  const auto nano = trace(*scene, lines, s);
+  // The same faces at the same times up to rounding; a path may part from its twin where rounding turns a corner.
+  double difference = 0.0;
+  double total = 0.0;
+  for (std::size_t i = 0; i < cache.intensity.size(); ++i)
+  {
+    difference += std::abs(cache.intensity[i] - nano.intensity[i]);
+    total += cache.intensity[i];
+  }
+  EXPECT_LT(difference, 1e-3 * total);
+  EXPECT_NEAR(double(cache.segments), double(nano.segments), 2e-3 * double(cache.segments));
+}
+
+TEST(Roulette, LeavesTheMeanUnchangedAndShortensPaths)
+{
+  const auto scene = blobScene();
+  const std::vector<ScanLine> lines = { makeLine({ 31.0, 30.0, 0.0 }, { 0.1, 0.05, 1.0 }) };
+  TraceSettings s = plainSettings();
+  s.frequencyMHz = 8.0;
+  s.sampling = Sampling::Independent;
+  s.pathsPerLine = 20000;
+  s.rouletteDb = -1000.0;
+  const auto all = trace(*scene, lines, s);
+  s.rouletteDb = -30.0; // far above what one would use, so that a bias would show
+  s.seed = 77;
+  const auto roulette = trace(*scene, lines, s);
+  EXPECT_LT(roulette.segments, all.segments * 9 / 10);
+  double chi = 0.0;
+  int bins = 0;
+  for (int b = 40; b < all.binCount; b += 8)
+  {
+    const double error = std::hypot(all.standardError[std::size_t(b)], roulette.standardError[std::size_t(b)]);
+    if (error > 0.0)
+    {
+      const double z = (all.intensity[std::size_t(b)] - roulette.intensity[std::size_t(b)]) / error;
+      chi += z * z;
+      ++bins;
+    }
+  }
+  // Errors from eight batches each: z is t-distributed with about 14 degrees of freedom, mean square 14/12.
+  // Neighbouring bins are correlated, so the bound is a loose one; a bias of one standard error everywhere would double
+  // the sum.
+  ASSERT_GT(bins, 20);
+  EXPECT_LT(chi / bins, 2.0);
+}
+
+TEST(RecordedPaths, AreChosenEvenlyAndFollowTheTracedOnes)
+{
+  const auto scene = slabScene(true);
+  std::vector<ScanLine> lines;
+  for (int i = 0; i < 10; ++i)
+  {
+    lines.push_back(makeLine({ 10.3 + 4.0 * i, 30.2, 0.0 }, { 0, 0, 1 }));
+  }
+  TraceSettings s = plainSettings();
+  s.deterministic = true;
+  auto paths = recordPaths(*scene, lines, s, 10);
+  ASSERT_EQ(paths.size(), 10u);
+  for (int i = 0; i < 10; ++i)
+  {
+    const RecordedPath& p = paths[std::size_t(i)];
+    EXPECT_EQ(p.line, i);
+    // Face, slab in, slab out, blood, end of the depth.
+    ASSERT_EQ(p.pointMm.size(), 5u);
+    const double z[5] = { 0.0, 40.0, 46.0, 80.0, 95.0 };
+    for (std::size_t k = 0; k < 5; ++k)
+    {
+      EXPECT_NEAR(p.pointMm[k].z, z[k], 1e-3);
+      EXPECT_NEAR(p.pointMm[k].x, 10.3 + 4.0 * i, 1e-3);
+      EXPECT_EQ(p.bounce[k], k == 0 ? 0 : int(k) - 1);
+    }
+    EXPECT_FLOAT_EQ(p.intensity[0], 1.0f);
+    EXPECT_NEAR(p.intensity[1], std::pow(10.0, -0.8 * 2.0 * 4.0 / 10.0), 1e-5);
+  }
+  s.deterministic = false;
+  std::map<int, int> perLine;
+  for (const RecordedPath& p : recordPaths(*scene, lines, s, 50))
+  {
+    ++perLine[p.line];
+  }
+  for (const auto& [line, count] : perLine)
+  {
+    EXPECT_EQ(count, 5) << line;
+  }
+  EXPECT_THROW(recordPaths(*scene, lines, s, 0), Error);
+}
+
+} // namespace
