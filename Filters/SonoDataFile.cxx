@@ -1,0 +1,36 @@
+#include "SonoDataFile.h"
+
+#include "Progress.h"
+
+#include <dlfcn.h>
+#include <filesystem>
+
+namespace sono {
+
+std::string dataFile(const std::string& name)
+{
+  namespace fs = std::filesystem;
+  Dl_info library{};
+  std::error_code ignored;
+  if (dladdr(reinterpret_cast<const void*>(&dataFile), &library) && library.dli_fname)
+  {
+    const fs::path self = fs::canonical(library.dli_fname, ignored);
+    for (fs::path folder = self.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
+    {
+      const fs::path candidate = folder / "share" / "sonovdb" / name;
+      if (fs::exists(candidate, ignored))
+      {
+        return candidate.string();
+      }
+    }
+  }
+  throw Error("The bundled file share/sonovdb/" + name +
+              " is not installed above the SonoVDB library; install SonoVDB again or name a file of your own.");
+}
+
+std::string chosenOrBundled(const std::string& chosen, const std::string& bundledName)
+{
+  return chosen.empty() ? dataFile(bundledName) : chosen;
+}
+
+} // namespace sono

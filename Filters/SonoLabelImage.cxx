@@ -1,0 +1,202 @@
+#include "SonoLabelImage.h"
+
+#include "Progress.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkIntArray.h"
+#include "vtkMath.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkUnsignedShortArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace sono {
+namespace {
+
+/// Row-major, as VTK wants it; Mat3d is column-major.
+std::array<double, 9> rowMajor(const Mat3d& direction)
+{
+  std::array<double, 9> rows{};
+  for (int r = 0; r < 3; ++r)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      rows[3 * r + c] = direction[c][r];
+    }
+  }
+  return rows;
+}
+
+GridPlacement placementOf(vtkImageData* image)
+{
+  int extent[6];
+  image->GetExtent(extent);
+  GridPlacement placement;
+  image->GetDimensions(&placement.size.x);
+  image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], &placement.originMm.x);
+  image->GetSpacing(&placement.spacingMm.x);
+  for (int r = 0; r < 3; ++r)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      placement.direction[c][r] = image->GetDirectionMatrix()->GetElement(r, c);
+    }
+  }
+  return placement;
+}
+
+std::string nameOf(vtkDataArray* array)
+{
+  return array->GetName() ? std::string("The array '") + array->GetName() + "'" : std::string("The image's array");
+}
+
+template<class Value>
+void copyWholeNumbers(const Value* values, vtkDataArray* array, std::vector<std::uint16_t>& voxels)
+{
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+  {
+    const auto value = static_cast<double>(values[i]);
+    if (!(value >= 0.0 && value <= 65535.0) || value != std::floor(value))
+    {
+      std::ostringstream message;
+      message << nameOf(array) << " holds no labels, as its value " << value
+              << " is not a whole number from 0 to 65535; connect a label map or choose another array.";
+      throw Error(message.str());
+    }
+    voxels[i] = static_cast<std::uint16_t>(value);
+  }
+}
+
+void readLabelTable(vtkFieldData* field, LabelVolume& volume)
+{
+  vtkDataArray* ids = field->GetArray("LabelIds");
+  auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelNames"));
+  vtkDataArray* colors = field->GetArray("LabelColors");
+  if (!ids || !names || names->GetNumberOfValues() != ids->GetNumberOfTuples())
+  {
+    return;
+  }
+  for (vtkIdType row = 0; row < ids->GetNumberOfTuples(); ++row)
+  {
+    LabelInfo label;
+    label.id = static_cast<int>(ids->GetTuple1(row));
+    label.name = names->GetValue(row);
+    if (colors && colors->GetNumberOfComponents() == 3 && row < colors->GetNumberOfTuples())
+    {
+      const double* rgb = colors->GetTuple3(row);
+      label.color = { float(rgb[0]), float(rgb[1]), float(rgb[2]) };
+      label.hasColor = true;
+    }
+    volume.labels.push_back(label);
+  }
+}
+
+} // namespace
+
+void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
+{
+  const Vec3i& size = placement.size;
+  const int extent[6] = { 0, size.x - 1, 0, size.y - 1, 0, size.z - 1 };
+  outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  outInfo->Set(vtkDataObject::ORIGIN(), &placement.originMm.x, 3);
+  outInfo->Set(vtkDataObject::SPACING(), &placement.spacingMm.x, 3);
+  outInfo->Set(vtkDataObject::DIRECTION(), rowMajor(placement.direction).data(), 9);
+  vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_SHORT, 1);
+}
+
+void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image)
+{
+  const GridPlacement& placement = volume.placement;
+  image->SetDimensions(placement.size.x, placement.size.y, placement.size.z);
+  image->SetOrigin(&placement.originMm.x);
+  image->SetSpacing(&placement.spacingMm.x);
+  image->SetDirectionMatrix(rowMajor(placement.direction).data());
+
+  vtkNew<vtkUnsignedShortArray> labels;
+  labels->SetName("Labels");
+  labels->SetNumberOfValues(static_cast<vtkIdType>(volume.voxels.size()));
+  std::copy(volume.voxels.begin(), volume.voxels.end(), labels->GetPointer(0));
+  image->GetPointData()->SetScalars(labels);
+  writeLabelTable(volume.labels, image->GetFieldData());
+}
+
+LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels)
+{
+  if (!image || image->GetNumberOfPoints() == 0)
+  {
+    throw Error("The label image has no voxels; connect a label map with at least one voxel along every axis.");
+  }
+  if (!labels || labels->GetNumberOfComponents() != 1 || labels->GetNumberOfTuples() != image->GetNumberOfPoints())
+  {
+    throw Error("The label image has no point array with one component to take labels from; connect a label map.");
+  }
+  LabelVolume volume;
+  volume.placement = placementOf(image);
+  volume.placement.validate("the label image");
+  volume.voxels.resize(volume.placement.voxelCount());
+  switch (labels->GetDataType())
+  {
+    vtkTemplateMacro(copyWholeNumbers(static_cast<const VTK_TT*>(labels->GetVoidPointer(0)), labels, volume.voxels));
+    default:
+      throw Error(nameOf(labels) + " is not numeric and holds no labels; choose another array.");
+  }
+  readLabelTable(image->GetFieldData(), volume);
+  volume.collectLabels();
+  return volume;
+}
+
+void writeLabelTable(const std::vector<LabelInfo>& labels, vtkFieldData* field)
+{
+  vtkNew<vtkIntArray> ids;
+  vtkNew<vtkStringArray> names;
+  vtkNew<vtkFloatArray> colors;
+  vtkNew<vtkStringArray> tissues;
+  ids->SetName("LabelIds");
+  names->SetName("LabelNames");
+  colors->SetName("LabelColors");
+  tissues->SetName("LabelTissues");
+  colors->SetNumberOfComponents(3);
+  for (const LabelInfo& label : labels)
+  {
+    ids->InsertNextValue(label.id);
+    names->InsertNextValue(label.name);
+    colors->InsertNextTuple(displayColor(label).data());
+    if (!label.tissue.empty())
+    {
+      tissues->InsertNextValue(label.tissue);
+    }
+  }
+  field->AddArray(ids);
+  field->AddArray(names);
+  field->AddArray(colors);
+  if (tissues->GetNumberOfValues() == names->GetNumberOfValues())
+  {
+    field->AddArray(tissues);
+  }
+}
+
+std::array<float, 3> displayColor(const LabelInfo& label)
+{
+  if (label.hasColor)
+  {
+    return label.color;
+  }
+  constexpr double goldenRatio = 0.6180339887498949; // steps of it spread hues evenly, however many there are
+  const double hsv[3] = { std::fmod(label.id * goldenRatio, 1.0), 0.55, 0.9 };
+  double rgb[3];
+  vtkMath::HSVToRGB(hsv, rgb);
+  return { float(rgb[0]), float(rgb[1]), float(rgb[2]) };
+}
+
+} // namespace sono

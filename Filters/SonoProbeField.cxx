@@ -1,0 +1,121 @@
+#include "SonoProbeField.h"
+
+#include "Progress.h"
+
+#include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDataObjectMetaDataKey.h"
+#include "vtkNew.h"
+
+#include <initializer_list>
+#include <string>
+
+namespace sono {
+namespace {
+
+vtkInformationDataObjectMetaDataKey* acquisitionKey()
+{
+  static auto* const key = vtkInformationDataObjectMetaDataKey::MakeKey("ACQUISITION", "SonoVDB");
+  return key;
+}
+
+void writeTuple(const char* name, std::initializer_list<double> values, vtkFieldData* field)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->InsertNextTuple(values.begin());
+  field->AddArray(array);
+}
+
+vtkDataArray* findTuple(const char* name, int components, vtkFieldData* field)
+{
+  vtkDataArray* array = field ? field->GetArray(name) : nullptr;
+  if (!array || array->GetNumberOfTuples() < 1 || array->GetNumberOfComponents() != components)
+  {
+    throw Error(std::string("The input carries no ") + name +
+                " in its field data; connect the output of the stage before, down from an Ultrasound Probe.");
+  }
+  return array;
+}
+
+Vec3d readVector(const char* name, vtkFieldData* field)
+{
+  Vec3d value;
+  findTuple(name, 3, field)->GetTuple(0, &value.x);
+  return value;
+}
+
+} // namespace
+
+void writeNumber(const char* name, double value, vtkFieldData* field)
+{
+  writeTuple(name, { value }, field);
+}
+
+void writeVector(const char* name, const Vec3d& value, vtkFieldData* field)
+{
+  writeTuple(name, { value.x, value.y, value.z }, field);
+}
+
+double readNumber(const char* name, vtkFieldData* field)
+{
+  return findTuple(name, 1, field)->GetTuple1(0);
+}
+
+void writeProbe(const ProbeField& probe, vtkFieldData* field)
+{
+  const ScanGeometry& geometry = probe.geometry;
+  writeNumber("ScanKind", static_cast<int>(geometry.kind), field);
+  writeNumber("LineCount", geometry.lineCount, field);
+  writeNumber("DepthMm", geometry.depthMm, field);
+  writeNumber("SectorDeg", geometry.sectorDeg, field);
+  writeNumber("RadiusMm", geometry.radiusMm, field);
+  writeNumber("WidthMm", geometry.widthMm, field);
+  writeVector("ProbePositionMm", probe.pose.positionMm, field);
+  writeVector("ProbeAxial", probe.pose.axial, field);
+  writeVector("ProbeLateral", probe.pose.lateral, field);
+  writeNumber("CentreFrequencyMHz", probe.centreFrequencyMHz, field);
+  writeNumber("FractionalBandwidth", probe.fractionalBandwidth, field);
+}
+
+ProbeField readProbe(vtkFieldData* field)
+{
+  ProbeField probe;
+  ScanGeometry& geometry = probe.geometry;
+  geometry.kind = static_cast<ScanKind>(static_cast<int>(readNumber("ScanKind", field)));
+  geometry.lineCount = static_cast<int>(readNumber("LineCount", field));
+  geometry.depthMm = readNumber("DepthMm", field);
+  geometry.sectorDeg = readNumber("SectorDeg", field);
+  geometry.radiusMm = readNumber("RadiusMm", field);
+  geometry.widthMm = readNumber("WidthMm", field);
+  geometry.validate();
+  probe.pose.positionMm = readVector("ProbePositionMm", field);
+  probe.pose.axial = readVector("ProbeAxial", field);
+  probe.pose.lateral = readVector("ProbeLateral", field);
+  probe.centreFrequencyMHz = readNumber("CentreFrequencyMHz", field);
+  probe.fractionalBandwidth = readNumber("FractionalBandwidth", field);
+  return probe;
+}
+
+void announceFields(vtkFieldData* field, vtkInformation* outInfo)
+{
+  vtkNew<vtkDataObject> carrier;
+  carrier->SetFieldData(field);
+  outInfo->Set(acquisitionKey(), carrier);
+}
+
+vtkFieldData* announcedFields(vtkInformation* inInfo)
+{
+  vtkDataObject* carrier = inInfo ? inInfo->Get(acquisitionKey()) : nullptr;
+  if (!carrier)
+  {
+    throw Error("The input does not say how it was scanned; connect the output of the stage before, down from an "
+                "Ultrasound Probe.");
+  }
+  return carrier->GetFieldData();
+}
+
+} // namespace sono

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "Probe/ScanGeometry.h"
+
+class vtkFieldData;
+class vtkInformation;
+
+namespace sono {
+
+/// What a probe source hands to the stages after it, in the field data of every output on the way.
+struct ProbeField
+{
+  ScanGeometry geometry;
+  ProbePose pose;
+  double centreFrequencyMHz = 2.5;
+  double fractionalBandwidth = 0.6; ///< at -6 dB
+};
+
+/// One array a number or vector, units in the names (DepthMm, ProbePositionMm, CentreFrequencyMHz, ...).
+void writeProbe(const ProbeField& probe, vtkFieldData* field);
+
+/// Throws Error when an array is missing, naming it.
+ProbeField readProbe(vtkFieldData* field);
+
+/// One number in field data; `readNumber` throws Error when it is missing.
+void writeNumber(const char* name, double value, vtkFieldData* field);
+void writeVector(const char* name, const Vec3d& value, vtkFieldData* field);
+double readNumber(const char* name, vtkFieldData* field);
+
+/// The same numbers travel ahead of the data, as meta-data of the pipeline's information pass, because an image's
+/// size has to be announced before any input has been computed. `announcedFields` throws Error when there are none.
+void announceFields(vtkFieldData* field, vtkInformation* outInfo);
+vtkFieldData* announcedFields(vtkInformation* inInfo);
+
+} // namespace sono

@@ -1,0 +1,88 @@
+#ifndef vtkSonoImageFormation_h
+#define vtkSonoImageFormation_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkSonoFiltersModule.h" // for export macro
+
+namespace sono {
+struct EchoSettings;
+}
+class vtkFieldData;
+
+/**
+ * @class vtkSonoImageFormation
+ * @brief Turns traced scan lines into radio-frequency lines
+ *
+ * Takes output 0 of vtkSonoRayTracer, which carries scene and probe. The output holds lines x RF samples, x the
+ * depth in mm and y the number of the scan line, with the point arrays "RF", "IQ" (complex, demodulated) and
+ * "Envelope" (the modulus of IQ).
+ */
+class VTKSONOFILTERS_EXPORT vtkSonoImageFormation : public vtkImageAlgorithm
+{
+public:
+  static vtkSonoImageFormation* New();
+  vtkTypeMacro(vtkSonoImageFormation, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Standard deviation of the Gaussian beam along the array in mm, above 0. Default 1.
+   */
+  vtkSetMacro(LateralSigmaMm, double);
+  vtkGetMacro(LateralSigmaMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviation of the Gaussian beam across the image plane in mm, above 0. Default 1.
+   */
+  vtkSetMacro(ElevationalSigmaMm, double);
+  vtkGetMacro(ElevationalSigmaMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Edge h of the cells that hold one scatterer each in mm, above 0; their density is mu1 / h^3. Default 0.5.
+   */
+  vtkSetMacro(ScattererCellMm, double);
+  vtkGetMacro(ScattererCellMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * RMS echo of a tissue full of scatterers against a perfect plane reflector in dB. Default -30.
+   */
+  vtkSetMacro(ScattererLevelDb, double);
+  vtkGetMacro(ScattererLevelDb, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seed of the scatterers, at least 0. Default 1.
+   */
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+protected:
+  vtkSonoImageFormation();
+  ~vtkSonoImageFormation() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkSonoImageFormation(const vtkSonoImageFormation&) = delete;
+  void operator=(const vtkSonoImageFormation&) = delete;
+
+  sono::EchoSettings Settings(vtkFieldData* acquisition) const;
+
+  double LateralSigmaMm = 1.0;
+  double ElevationalSigmaMm = 1.0;
+  double ScattererCellMm = 0.5;
+  double ScattererLevelDb = -30.0;
+  int Seed = 1;
+};
+
+#endif

@@ -1,0 +1,57 @@
+#ifndef vtkSonoLabelMapReader_h
+#define vtkSonoLabelMapReader_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkSonoFiltersModule.h" // for export macro
+
+#include <memory>
+#include <string>
+
+namespace sono {
+struct LabelVolume;
+}
+
+/**
+ * @class vtkSonoLabelMapReader
+ * @brief Reads a label map and places it in the world
+ *
+ * Reads NIfTI (.nii, .nii.gz) and NRRD (.nrrd, .seg.nrrd). The output has unsigned short point scalars "Labels" and
+ * stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels that occur:
+ * LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label.
+ */
+class VTKSONOFILTERS_EXPORT vtkSonoLabelMapReader : public vtkImageAlgorithm
+{
+public:
+  static vtkSonoLabelMapReader* New();
+  vtkTypeMacro(vtkSonoLabelMapReader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Path of the label map.
+   */
+  vtkSetStdStringFromCharMacro(FileName);
+  vtkGetCharFromStdStringMacro(FileName);
+  ///@}
+
+  /**
+   * Whether the name ends like a label map's.
+   */
+  static int CanReadFile(const char* fileName);
+
+protected:
+  vtkSonoLabelMapReader();
+  ~vtkSonoLabelMapReader() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkSonoLabelMapReader(const vtkSonoLabelMapReader&) = delete;
+  void operator=(const vtkSonoLabelMapReader&) = delete;
+
+  std::string FileName;
+  std::shared_ptr<const sono::LabelVolume> Volume; // from the information pass, which needs its size, to the data pass
+};
+
+#endif

@@ -1,0 +1,138 @@
+#include "vtkSonoRayTracer.h"
+
+#include "Echo/FormRf.h"
+#include "SonoLineImage.h"
+#include "SonoProbeField.h"
+#include "SonoStage.h"
+#include "Trace/Trace.h"
+#include "vtkSonoSceneHandle.h"
+
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <cmath>
+
+vtkStandardNewMacro(vtkSonoRayTracer);
+
+namespace {
+
+/// The grid of the RF samples, which the boundary echoes share.
+sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
+{
+  sono::EchoSettings grid;
+  grid.samplingMHz = samplingMHz;
+  grid.depthMm = depthMm;
+  return grid;
+}
+
+} // namespace
+
+vtkSonoRayTracer::vtkSonoRayTracer()
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkSonoRayTracer::~vtkSonoRayTracer() = default;
+
+void vtkSonoRayTracer::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "InterfaceModel: " << this->InterfaceModel << endl;
+  os << indent << "Sampling: " << this->Sampling << endl;
+  os << indent << "PathsPerLine: " << this->PathsPerLine << endl;
+  os << indent << "MaxCollisions: " << this->MaxCollisions << endl;
+  os << indent << "CoherenceMm: " << this->CoherenceMm << endl;
+  os << indent << "Deterministic: " << this->Deterministic << endl;
+  os << indent << "LobeMeanDeg: " << this->LobeMeanDeg << endl;
+  os << indent << "LobeSigmaDeg: " << this->LobeSigmaDeg << endl;
+  os << indent << "LobeMinDeg: " << this->LobeMinDeg << endl;
+  os << indent << "LobeMaxDeg: " << this->LobeMaxDeg << endl;
+  os << indent << "RadialBinMm: " << this->RadialBinMm << endl;
+  os << indent << "SamplingMHz: " << this->SamplingMHz << endl;
+  os << indent << "Seed: " << this->Seed << endl;
+}
+
+int vtkSonoRayTracer::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkMultiBlockDataSet" : "vtkPolyData");
+  return 1;
+}
+
+sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
+{
+  sono::TraceSettings settings;
+  settings.model = static_cast<sono::InterfaceModel>(this->InterfaceModel);
+  settings.sampling = static_cast<sono::Sampling>(this->Sampling);
+  settings.pathsPerLine = this->PathsPerLine;
+  settings.maxCollisions = this->MaxCollisions;
+  settings.coherenceMm = this->CoherenceMm;
+  settings.deterministic = this->Deterministic;
+  settings.lobeMeanRad = vtkMath::RadiansFromDegrees(this->LobeMeanDeg);
+  settings.lobeSigmaRad = vtkMath::RadiansFromDegrees(this->LobeSigmaDeg);
+  settings.lobeMinRad = vtkMath::RadiansFromDegrees(this->LobeMinDeg);
+  settings.lobeMaxRad = vtkMath::RadiansFromDegrees(this->LobeMaxDeg);
+  settings.frequencyMHz = probe.centreFrequencyMHz;
+  settings.depthMm = probe.geometry.depthMm;
+  settings.radialBinMm = this->RadialBinMm;
+  settings.echoSampleMm = rfGrid(this->SamplingMHz, settings.depthMm).sampleMm();
+  settings.seed = static_cast<std::uint64_t>(this->Seed);
+  settings.validate();
+  return settings;
+}
+
+int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  return sono::announceStage(this, [&] {
+    vtkNew<vtkFieldData> acquisition;
+    acquisition->ShallowCopy(sono::announcedFields(input[1]->GetInformationObject(0)));
+    sono::writeNumber("SamplingMHz", this->SamplingMHz, acquisition);
+    const sono::ProbeField probe = sono::readProbe(acquisition);
+    const sono::TraceSettings settings = this->Settings(probe);
+    const int lineCount = probe.geometry.lineCount;
+    const int binCount = static_cast<int>(std::ceil(settings.depthMm / settings.radialBinMm));
+    const int echoCount = rfGrid(this->SamplingMHz, settings.depthMm).sampleCount();
+
+    vtkInformation* lines = output->GetInformationObject(0);
+    vtkInformation* echoes = output->GetInformationObject(1);
+    sono::announceLineImage({ binCount, lineCount, settings.radialBinMm / 2.0, settings.radialBinMm }, 1, lines);
+    sono::announceLineImage({ echoCount, lineCount, 0.0, settings.echoSampleMm }, 2, echoes);
+    sono::announceFields(acquisition, lines);
+    sono::announceFields(acquisition, echoes);
+  });
+}
+
+int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  return sono::runStage(this, output, [&] {
+    const auto scene = vtkSonoSceneHandle::Get(vtkMultiBlockDataSet::GetData(input[0]));
+    const sono::ProbeField probe = sono::readProbe(vtkPolyData::GetData(input[1])->GetFieldData());
+    const sono::TracedLines traced = sono::trace(*scene, sono::makeScanLines(probe.geometry, probe.pose),
+                                                 this->Settings(probe), sono::progressOf(this));
+
+    vtkImageData* lines = vtkImageData::GetData(output, 0);
+    sono::setLineImageLayout({ traced.binCount, traced.lineCount, traced.binMm / 2.0, traced.binMm }, lines);
+    lines->GetPointData()->SetScalars(sono::lineArray("Intensity", traced.intensity));
+    lines->GetPointData()->AddArray(sono::lineArray("StandardError", traced.standardError));
+
+    vtkImageData* echoes = vtkImageData::GetData(output, 1);
+    const auto boundaryEcho = sono::lineArray("BoundaryEcho", traced.boundaryEcho);
+    sono::setLineImageLayout({ traced.echoCount, traced.lineCount, 0.0, traced.echoSampleMm }, echoes);
+    echoes->GetPointData()->SetScalars(boundaryEcho);
+    for (vtkImageData* image : { lines, echoes })
+    {
+      sono::writeProbe(probe, image->GetFieldData());
+      sono::writeNumber("SamplingMHz", this->SamplingMHz, image->GetFieldData());
+    }
+    lines->GetFieldData()->AddArray(boundaryEcho);
+  });
+}

@@ -1,0 +1,178 @@
+#ifndef vtkSonoRayTracer_h
+#define vtkSonoRayTracer_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkSonoFiltersModule.h" // for export macro
+
+namespace sono {
+struct ProbeField;
+struct TraceSettings;
+}
+
+/**
+ * @class vtkSonoRayTracer
+ * @brief Traces the scan lines of a probe through the anatomy
+ *
+ * Inputs: the scene of vtkSonoSceneBuilder (port 0) and the probe of vtkSonoProbeSource (port 1).
+ * Output 0: lines x radial bins, x the depth in mm and y the number of the scan line, with the point arrays
+ * "Intensity" (mean one-way intensity, 1 at the transducer) and "StandardError" (of that mean). Its field data carry
+ * the scene, the probe and the boundary echoes, so that it alone suffices for vtkSonoImageFormation.
+ * Output 1: lines x RF samples with the complex point array "BoundaryEcho".
+ */
+class VTKSONOFILTERS_EXPORT vtkSonoRayTracer : public vtkImageAlgorithm
+{
+public:
+  static vtkSonoRayTracer* New();
+  vtkTypeMacro(vtkSonoRayTracer, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum InterfaceModels
+  {
+    ACOUSTIC = 0,
+    AMADOU_2024 = 1
+  };
+
+  ///@{
+  /**
+   * What happens at a boundary: fluid acoustics, which conserves energy, or the equations of Amadou et al. 2024 to
+   * the letter, which do not. Default ACOUSTIC.
+   */
+  vtkSetMacro(InterfaceModel, int);
+  vtkGetMacro(InterfaceModel, int);
+  ///@}
+
+  enum Samplings
+  {
+    INDEPENDENT = 0,
+    LOW_DISCREPANCY = 1
+  };
+
+  ///@{
+  /**
+   * Where a path's random numbers come from: independent ones, or scrambled Sobol points with less noise. Default
+   * LOW_DISCREPANCY.
+   */
+  vtkSetMacro(Sampling, int);
+  vtkGetMacro(Sampling, int);
+  ///@}
+
+  ///@{
+  /**
+   * Paths per scan line, 1 to 10^7; the noise falls with their square root. Default 1000.
+   */
+  vtkSetMacro(PathsPerLine, int);
+  vtkGetMacro(PathsPerLine, int);
+  ///@}
+
+  ///@{
+  /**
+   * Boundaries that a path may meet, 0 to 1000. Default 7.
+   */
+  vtkSetMacro(MaxCollisions, int);
+  vtkGetMacro(MaxCollisions, int);
+  ///@}
+
+  ///@{
+  /**
+   * C0 in mm, at least 0: a path at this distance from the main beam counts half. Default 100.
+   */
+  vtkSetMacro(CoherenceMm, double);
+  vtkGetMacro(CoherenceMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Follow only the refracted direction, without chance and without spreading. Default off.
+   */
+  vtkSetMacro(Deterministic, bool);
+  vtkGetMacro(Deterministic, bool);
+  vtkBooleanMacro(Deterministic, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Mean angle between an outgoing direction and the mirrored or refracted one, in degrees. Default 0.
+   */
+  vtkSetMacro(LobeMeanDeg, double);
+  vtkGetMacro(LobeMeanDeg, double);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviation of that angle in degrees, at least 0; 0 is a mirror. Default 45.
+   */
+  vtkSetMacro(LobeSigmaDeg, double);
+  vtkGetMacro(LobeSigmaDeg, double);
+  ///@}
+
+  ///@{
+  /**
+   * Least such angle in degrees. Default 0.
+   */
+  vtkSetMacro(LobeMinDeg, double);
+  vtkGetMacro(LobeMinDeg, double);
+  ///@}
+
+  ///@{
+  /**
+   * Largest such angle in degrees, above the least, up to 90. Default 90.
+   */
+  vtkSetMacro(LobeMaxDeg, double);
+  vtkGetMacro(LobeMaxDeg, double);
+  ///@}
+
+  ///@{
+  /**
+   * Width of an intensity sample along a scan line in mm, above 0. Default 0.25.
+   */
+  vtkSetMacro(RadialBinMm, double);
+  vtkGetMacro(RadialBinMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Sampling frequency of the RF lines in MHz, more than twice the centre frequency; also that of the boundary
+   * echoes. Default 50.
+   */
+  vtkSetMacro(SamplingMHz, double);
+  vtkGetMacro(SamplingMHz, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seed of the paths, at least 0: the same seed gives the same result. Default 1.
+   */
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+protected:
+  vtkSonoRayTracer();
+  ~vtkSonoRayTracer() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkSonoRayTracer(const vtkSonoRayTracer&) = delete;
+  void operator=(const vtkSonoRayTracer&) = delete;
+
+  sono::TraceSettings Settings(const sono::ProbeField& probe) const;
+
+  int InterfaceModel = ACOUSTIC;
+  int Sampling = LOW_DISCREPANCY;
+  int PathsPerLine = 1000;
+  int MaxCollisions = 7;
+  double CoherenceMm = 100.0;
+  bool Deterministic = false;
+  double LobeMeanDeg = 0.0;
+  double LobeSigmaDeg = 45.0;
+  double LobeMinDeg = 0.0;
+  double LobeMaxDeg = 90.0;
+  double RadialBinMm = 0.25;
+  double SamplingMHz = 50.0;
+  int Seed = 1;
+};
+
+#endif

@@ -1,0 +1,104 @@
+#include "vtkSonoSceneBuilder.h"
+
+#include "Labels/AssignTissues.h"
+#include "Scene/Scene.h"
+#include "Scene/TissueTable.h"
+#include "SonoDataFile.h"
+#include "SonoLabelImage.h"
+#include "SonoSceneBlocks.h"
+#include "SonoStage.h"
+#include "vtkSonoSceneHandle.h"
+
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+
+vtkStandardNewMacro(vtkSonoSceneBuilder);
+
+namespace {
+
+std::string joined(const std::vector<std::string>& names)
+{
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+} // namespace
+
+vtkSonoSceneBuilder::vtkSonoSceneBuilder()
+{
+  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                               vtkDataSetAttributes::AttributeTypes::SCALARS);
+}
+
+vtkSonoSceneBuilder::~vtkSonoSceneBuilder() = default;
+
+void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "TissueTableFile: " << this->TissueTableFile << endl;
+  os << indent << "LabelTissueFile: " << this->LabelTissueFile << endl;
+  os << indent << "FallbackTissue: " << this->FallbackTissue << endl;
+  os << indent << "OutsideTissue: " << this->OutsideTissue << endl;
+  os << indent << "BuildSurfaces: " << this->BuildSurfaces << endl;
+}
+
+int vtkSonoSceneBuilder::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+vtkDataArray* vtkSonoSceneBuilder::LabelArray(vtkInformationVector** input)
+{
+  // ParaView names no array for an input that has not run yet.
+  const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+  return name && !*name ? vtkImageData::GetData(input[0])->GetPointData()->GetScalars()
+                        : this->GetInputArrayToProcess(0, input);
+}
+
+int vtkSonoSceneBuilder::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+{
+  return sono::requestWholeImage(input);
+}
+
+int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  return sono::runStage(this, output, [&] {
+    const sono::Progress progress = sono::progressOf(this);
+    sono::LabelVolume volume = sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->LabelArray(input));
+    sono::report(progress, 0.05);
+
+    const auto table = sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv"));
+    const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
+    const std::vector<std::string> unmapped = sono::assignTissues(volume, map, table, this->FallbackTissue);
+    if (!unmapped.empty())
+    {
+      vtkWarningMacro("No pattern of the label tissue map matches these labels, which become "
+                      << this->FallbackTissue << ": " << joined(unmapped) << ".");
+    }
+    const auto scene = std::make_shared<const sono::Scene>(std::move(volume), table, this->OutsideTissue);
+    sono::report(progress, 0.1);
+
+    vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
+    if (this->BuildSurfaces)
+    {
+      sono::addLabelSurfaces(*scene, blocks, sono::partOf(progress, 0.1, 1.0));
+    }
+    else
+    {
+      sono::addOutline(*scene, blocks);
+    }
+    sono::writeLabelTable(scene->volume().labels, blocks->GetFieldData());
+    vtkSonoSceneHandle::Attach(scene, blocks);
+  });
+}

@@ -1,0 +1,43 @@
+# The VTK module, its Python wrapping and the ParaView plugin. Included, not added, by the top CMakeLists.txt, so that
+# the modules' folders are relative to it.
+enable_language(C) # which FindMPI asks for, inside ParaView's package
+find_package(ParaView 5.11 REQUIRED)
+
+# lib/python3/dist-packages/sonovdb and lib/paraview-5.11/plugins/SonoVDB lie three folders below the prefix.
+list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../../.." "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
+
+vtk_module_scan(
+  MODULE_FILES "${CMAKE_SOURCE_DIR}/Filters/vtk.module"
+  REQUEST_MODULES SonoVDB::Filters
+  PROVIDES_MODULES sono_modules
+  REQUIRES_MODULES sono_required_modules
+  HIDE_MODULES_FROM_CACHE ON)
+vtk_module_build(
+  MODULES ${sono_modules}
+  PACKAGE SonoVDB
+  INSTALL_EXPORT SonoVDB
+  HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sonovdb"
+  CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/sonovdb")
+
+set(sono_python_dir "lib/python3/dist-packages")
+vtk_module_wrap_python(
+  MODULES ${sono_modules}
+  TARGET SonoVDB::Python
+  PYTHON_PACKAGE sonovdb
+  MODULE_DESTINATION "${sono_python_dir}"
+  INSTALL_EXPORT SonoVDB
+  CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/sonovdb")
+
+paraview_plugin_scan(
+  PLUGIN_FILES "${CMAKE_SOURCE_DIR}/Plugin/paraview.plugin"
+  PROVIDES_PLUGINS sono_plugins
+  ENABLE_BY_DEFAULT ON
+  HIDE_PLUGINS_FROM_CACHE ON)
+paraview_plugin_build(
+  PLUGINS ${sono_plugins}
+  PLUGINS_FILE_NAME "sonovdb.xml"
+  LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
+  DISABLE_XML_DOCUMENTATION ON)
+
+install(PROGRAMS "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples")

@@ -1,0 +1,114 @@
+"""Bad input gives one sentence that names the fault and the way out, and no output."""
+import unittest
+
+import numpy as np
+from chain import Chain, label_image, listen, make
+from sonovdb.vtkSonoFilters import (vtkSonoLabelMapReader, vtkSonoProbeSource, vtkSonoScanConverter,
+                                    vtkSonoSceneBuilder, vtkSonoThoraxSource)
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
+
+
+class TestBadInput(unittest.TestCase):
+    def expect(self, stage, *words):
+        """The stage says one sentence with these words, in any case."""
+        said = listen(stage)
+        stage.Update()
+        self.assertEqual(len(said), 1, said)
+        for word in words:
+            self.assertIn(word.lower(), said[0].lower())
+
+    def scene_of(self, voxels, **settings):
+        scene = make(vtkSonoSceneBuilder, BuildSurfaces=False, **settings)
+        scene.SetInputData(label_image(voxels))
+        return scene
+
+    def test_missing_file(self):
+        self.expect(make(vtkSonoLabelMapReader, FileName="nowhere/no.nii.gz"), "nowhere/no.nii.gz")
+
+    def test_no_file_named(self):
+        self.expect(vtkSonoLabelMapReader(), "FileName")
+
+    def test_thorax_spacing_out_of_range(self):
+        self.expect(make(vtkSonoThoraxSource, SpacingMm=0.01), "0.5", "5")
+
+    def test_float_image_that_holds_no_labels(self):
+        self.expect(self.scene_of(np.full((3, 3, 3), 0.37, np.float32)), "'Labels'", "0.37", "whole number")
+
+    def test_negative_and_not_finite_values(self):
+        self.expect(self.scene_of(np.full((3, 3, 3), -1024, np.int16)), "-1024")
+        self.expect(self.scene_of(np.full((3, 3, 3), np.nan)), "nan")
+
+    def test_colour_image(self):
+        scene = vtkSonoSceneBuilder()
+        image = vtkImageData()
+        image.SetDimensions(2, 2, 2)
+        image.AllocateScalars(3, 3)
+        scene.SetInputData(image)
+        self.expect(scene, "one component")
+
+    def test_zero_sized_image(self):
+        scene = vtkSonoSceneBuilder()
+        scene.SetInputData(vtkImageData())
+        self.expect(scene, "no voxels")
+
+    def test_unknown_tissue(self):
+        voxels = np.zeros((3, 3, 3), np.uint8)
+        voxels[1, 1, 1] = 9
+        self.expect(self.scene_of(voxels, FallbackTissue="unobtainium"), "unobtainium")
+
+    def test_missing_tissue_table(self):
+        self.expect(self.scene_of(np.zeros((3, 3, 3), np.uint8), TissueTableFile="nowhere.csv"), "nowhere.csv")
+        self.expect(self.scene_of(np.zeros((3, 3, 3), np.uint8), LabelTissueFile="nowhere.csv"), "nowhere.csv")
+
+    def test_probe_wholly_outside_the_volume(self):
+        chain = Chain()
+        chain.probe.SetPositionMm(1e4, 0, 0)
+        chain.probe.SetAxial(1, 0, 0)
+        chain.probe.SetLateral(0, 1, 0)
+        self.expect(chain.tracer, "probe")
+
+    def test_probe_settings_out_of_range(self):
+        for name, value in (("LineCount", 0), ("DepthMm", 0.0), ("SectorDeg", 180.0), ("ScanKind", 7)):
+            with self.subTest(setting=name):
+                self.expect(make(vtkSonoProbeSource, **{name: value}), name)
+
+    def test_probe_directions_parallel(self):
+        probe = vtkSonoProbeSource()
+        probe.SetLateral(0, 0, 3)
+        self.expect(probe, "lateral")
+
+    def test_missing_preset(self):
+        self.expect(make(vtkSonoProbeSource, PresetFile="nowhere.json"), "nowhere.json")
+
+    def test_surfaces_that_were_moved(self):
+        chain = Chain()
+        shift = vtkTransform()
+        shift.Translate(1, 0, 0)
+        moved = make(vtkTransformFilter, Transform=shift)
+        moved.SetInputConnection(chain.scene.GetOutputPort())
+        chain.tracer.SetInputConnection(0, moved.GetOutputPort())
+        self.expect(chain.tracer, "moved or cut", "Ultrasound Scene")
+
+    def test_tracer_settings_out_of_range(self):
+        for name, value, said in (("PathsPerLine", 0, "paths per line"), ("RadialBinMm", 0.0, "radial bin"),
+                                  ("LobeSigmaDeg", -1.0, "lobe sigma")):
+            with self.subTest(setting=name):
+                chain = Chain()
+                getattr(chain.tracer, "Set" + name)(value)
+                self.expect(chain.tracer, said)
+
+    def test_image_that_was_never_scanned(self):
+        converter = vtkSonoScanConverter()
+        converter.SetInputData(label_image(np.zeros((1, 4, 4), np.float32), "BMode"))
+        self.expect(converter, "Ultrasound Probe")
+
+    def test_pixels_out_of_range(self):
+        chain = Chain()
+        chain.converter.SetPixelMm(0)
+        self.expect(chain.converter, "pixelMm")
+
+
+if __name__ == "__main__":
+    unittest.main()

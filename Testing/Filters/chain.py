@@ -1,0 +1,72 @@
+"""What the filters' tests share: a small chain of all stages, and ears for what they say."""
+import paraview  # noqa: F401  (finds ParaView's VTK libraries)
+from sonovdb.vtkSonoFilters import (vtkSonoBMode, vtkSonoImageFormation, vtkSonoProbeSource, vtkSonoRayTracer,
+                                    vtkSonoScanConverter, vtkSonoSceneBuilder, vtkSonoThoraxSource)
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+
+def listen(algorithm, event="ErrorEvent"):
+    """A list that gathers the sentences of an algorithm's errors or warnings."""
+    heard = []
+
+    def on_event(_object, _event, text):
+        heard.append(text.split("):", 1)[-1].strip())
+
+    on_event.CallDataType = "string0"
+    algorithm.AddObserver(event, on_event)
+    return heard
+
+
+def count_runs(algorithm):
+    """A list that grows by one entry each time the algorithm's data are made."""
+    runs = []
+    algorithm.AddObserver("StartEvent", lambda *_: runs.append(1))
+    return runs
+
+
+def make(kind, **settings):
+    """A filter of this class with its settings."""
+    stage = kind()
+    for name, value in settings.items():
+        getattr(stage, "Set" + name)(value)
+    return stage
+
+
+def label_image(voxels, name="Labels"):
+    """A vtkImageData of an array indexed [z, y, x]."""
+    image = vtkImageData()
+    image.SetDimensions(voxels.shape[::-1])
+    array = numpy_to_vtk(voxels.ravel(), deep=True)
+    array.SetName(name)
+    image.GetPointData().SetScalars(array)
+    return image
+
+
+class Chain:
+    """Every stage, from a coarse thorax to its picture, quick to run."""
+
+    def __init__(self):
+        self.thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
+        self.thorax.Update()
+        field = self.thorax.GetOutput().GetFieldData()
+        pose = [field.GetArray("A4C" + part).GetTuple3(0) for part in ("PositionMm", "Axial", "Lateral")]
+        self.probe = make(vtkSonoProbeSource, LineCount=12, DepthMm=90.0, SectorDeg=60.0)
+        self.probe.SetPositionMm(pose[0])
+        self.probe.SetAxial(pose[1])
+        self.probe.SetLateral(pose[2])
+        self.scene = make(vtkSonoSceneBuilder, BuildSurfaces=False)
+        self.scene.SetInputConnection(self.thorax.GetOutputPort())
+        self.tracer = make(vtkSonoRayTracer, PathsPerLine=20)
+        self.tracer.SetInputConnection(0, self.scene.GetOutputPort())
+        self.tracer.SetInputConnection(1, self.probe.GetOutputPort())
+        self.formation = vtkSonoImageFormation()
+        self.formation.SetInputConnection(self.tracer.GetOutputPort())
+        self.bmode = vtkSonoBMode()
+        self.bmode.SetInputConnection(self.formation.GetOutputPort())
+        self.converter = vtkSonoScanConverter()
+        self.converter.SetInputConnection(self.bmode.GetOutputPort())
+
+    def stages(self):
+        return {"thorax": self.thorax, "probe": self.probe, "scene": self.scene, "tracer": self.tracer,
+                "formation": self.formation, "bmode": self.bmode, "converter": self.converter}

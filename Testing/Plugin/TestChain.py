@@ -1,0 +1,123 @@
+"""The chain of proxies makes the picture, keeps it through a state file, and says what is wrong with bad input."""
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+from paraview import simple
+from paraview.servermanager import Fetch
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
+
+
+def make_chain():
+    """The last stage of a small chain, registered as in the GUI."""
+    thorax = simple.ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
+    field = Fetch(thorax).GetFieldData()
+    probe = simple.UltrasoundProbe(
+        registrationName="probe", NumberofLines=12, Depthmm=90, Sectordegrees=60,
+        Positionmm=field.GetArray("A4CPositionMm").GetTuple3(0), AxialDirection=field.GetArray("A4CAxial").GetTuple3(0),
+        LateralDirection=field.GetArray("A4CLateral").GetTuple3(0))
+    scene = simple.UltrasoundScene(registrationName="scene", Input=thorax)
+    traced = simple.UltrasoundRayTracer(registrationName="traced", Scene=scene, Probe=probe, PathsperLine=20)
+    rf = simple.UltrasoundImageFormation(registrationName="rf", Input=traced)
+    bmode = simple.UltrasoundBMode(registrationName="bmode", Input=rf, TGCCurvemmdB=[0, 0, 50, 12])
+    return simple.ScanConverter(registrationName="picture", Input=bmode)
+
+
+def grey(picture):
+    picture.UpdatePipeline()
+    return vtk_to_numpy(Fetch(picture).GetPointData().GetArray("BMode")).copy()
+
+
+def errors_of(proxy):
+    """What a stage complains about while it runs."""
+    heard = []
+
+    def on_error(_object, _event, text):
+        heard.append(text)
+
+    on_error.CallDataType = "string0"
+    stage = proxy.GetClientSideObject()
+    tag = stage.AddObserver("ErrorEvent", on_error)
+    proxy.UpdatePipeline()
+    stage.RemoveObserver(tag)
+    return heard
+
+
+class TestChain(unittest.TestCase):
+    def tearDown(self):
+        for proxy in list(simple.GetSources().values()):
+            simple.Delete(proxy)
+
+    def test_picture(self):
+        picture = make_chain()
+        pixels = grey(picture)
+        self.assertGreater(pixels.max(), 200)
+        self.assertEqual(picture.GetDataInformation().GetPointDataInformation().GetNumberOfArrays(), 2)
+
+    def test_both_outputs_of_the_tracer(self):
+        make_chain()
+        traced = simple.FindSource("traced")
+        self.assertIsNotNone(Fetch(traced, idx=0).GetPointData().GetArray("Intensity"))
+        self.assertIsNotNone(Fetch(traced, idx=1).GetPointData().GetArray("BoundaryEcho"))
+
+    def test_state_file_brings_the_picture_back(self):
+        before = grey(make_chain())
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "chain.pvsm"))
+            simple.SaveState(path)
+            self.tearDown()
+            self.assertIsNone(simple.FindSource("picture"))
+            simple.LoadState(path)
+        self.assertEqual(list(simple.FindSource("bmode").TGCCurvemmdB), [0, 0, 50, 12])
+        self.assertTrue((grey(simple.FindSource("picture")) == before).all())
+
+    def test_label_array_can_be_chosen(self):
+        make_chain()
+        simple.FindSource("scene").Labels = ["POINTS", "Labels"]
+        self.assertEqual(errors_of(simple.FindSource("scene")), [])
+
+    def test_label_array_is_found_in_a_source_that_has_not_run(self):
+        scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(VoxelSizemm=5), BuildSurfaces=0)
+        self.assertEqual(errors_of(scene), [])
+        self.assertEqual(scene.GetDataInformation().GetNumberOfPoints(), 8)
+
+    def test_missing_file(self):
+        (sentence,) = set(errors_of(simple.LabelMapReader(FileName="nowhere/no.nii.gz")))
+        self.assertIn("nowhere/no.nii.gz", sentence)
+
+    def test_image_that_holds_no_labels(self):
+        wavelet = simple.Wavelet()
+        wavelet.UpdatePipeline()
+        (sentence,) = errors_of(simple.UltrasoundScene(Input=wavelet))
+        self.assertIn("whole number", sentence)
+        self.assertIn("RTData", sentence)
+
+    def test_unknown_tissue(self):
+        make_chain()
+        scene = simple.FindSource("scene")
+        scene.OutsideTissue = "unobtainium"
+        scene.FallbackTissue = "unobtainium"
+        (sentence,) = errors_of(scene)
+        self.assertIn("unobtainium", sentence)
+
+    def test_probe_wholly_outside_the_volume(self):
+        make_chain()
+        probe = simple.FindSource("probe")
+        probe.Positionmm, probe.AxialDirection, probe.LateralDirection = (1e4, 0, 0), (1, 0, 0), (0, 1, 0)
+        (sentence,) = set(errors_of(simple.FindSource("traced")))
+        self.assertIn("probe", sentence)
+
+    def test_zero_sized_image(self):
+        wavelet = simple.Wavelet()
+        nothing = simple.ProgrammableFilter(Input=wavelet, Script="output.Initialize()")
+        nothing.UpdatePipeline()
+        (sentence,) = errors_of(simple.UltrasoundScene(Input=nothing))
+        self.assertIn("no voxels", sentence)
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())

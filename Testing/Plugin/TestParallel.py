@@ -1,0 +1,21 @@
+"""Under MPI, with every rank running this script, the first rank makes the picture and the others wait quietly."""
+import os
+
+from paraview import simple
+from paraview.modules.vtkRemotingCore import vtkProcessModule
+from paraview.servermanager import Fetch
+
+simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
+processes = vtkProcessModule.GetProcessModule()
+assert processes.GetNumberOfLocalPartitions() == 2, "run me on two ranks, with --symmetric"
+
+probe = simple.UltrasoundProbe(NumberofLines=12, Depthmm=90, Positionmm=(75.8, -136.1, -147.0),
+                               AxialDirection=(-0.53, 0.65, 0.545), LateralDirection=(0.843, 0.333, 0.423))
+scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(VoxelSizemm=4), BuildSurfaces=0)
+traced = simple.UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=20)
+bmode = simple.UltrasoundBMode(Input=simple.UltrasoundImageFormation(Input=traced))
+picture = Fetch(simple.ScanConverter(Input=bmode))  # gathers: every rank takes part, the first one gets it
+
+if processes.GetPartitionId() == 0:
+    brightest = picture.GetPointData().GetArray("BMode").GetRange()[1]
+    assert brightest > 200, brightest  # sys.exit would skip MPI's own farewell, which counts as a failure

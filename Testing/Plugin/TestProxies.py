@@ -1,0 +1,82 @@
+"""Every filter has a proxy with the class's defaults, a documented property for each setting, and a place in the menus."""
+import os
+import pathlib
+import sys
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from paraview import servermanager, simple
+from sonovdb import vtkSonoFilters
+
+simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
+
+XML_FOLDER = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
+CLASSES = {name: kind for name, kind in vars(vtkSonoFilters).items() if name.startswith("vtkSono")}
+VECTOR_PROPERTIES = ("IntVectorProperty", "DoubleVectorProperty", "StringVectorProperty")
+
+
+def described(class_name):
+    """The <SourceProxy> of a class and its group."""
+    group = ElementTree.parse(XML_FOLDER / f"{class_name}.xml").getroot().find("ProxyGroup")
+    return group.get("name"), group.find("SourceProxy")
+
+
+def values(value):
+    return list(value) if isinstance(value, (tuple, list)) else [value]
+
+
+class TestProxies(unittest.TestCase):
+    def each(self):
+        for name, kind in CLASSES.items():
+            with self.subTest(filter=name):
+                yield kind, *described(name)
+
+    def test_there_is_a_class_to_test(self):
+        self.assertEqual(len(CLASSES), 8)
+
+    def test_every_proxy_can_be_created(self):
+        manager = servermanager.ProxyManager()
+        for kind, group, description in self.each():
+            proxy = manager.NewProxy(group, description.get("name"))
+            self.assertIsNotNone(proxy)
+            proxy.UpdateVTKObjects()
+            self.assertTrue(proxy.GetClientSideObject().IsA(kind.__name__))
+
+    def test_defaults_equal_the_classes(self):
+        manager = servermanager.ProxyManager()
+        for kind, group, description in self.each():
+            proxy, fresh = manager.NewProxy(group, description.get("name")), kind()
+            for element in (e for e in description if e.tag in VECTOR_PROPERTIES):
+                name = element.get("name")
+                if element.get("command") != "Set" + name:
+                    continue
+                with self.subTest(setting=name):
+                    shown = proxy.GetProperty(name)
+                    shown = [shown.GetElement(i) for i in range(shown.GetNumberOfElements())]
+                    self.assertEqual(shown, values(getattr(fresh, "Get" + name)()))
+
+    def test_curve_is_empty_by_default(self):
+        proxy = servermanager.ProxyManager().NewProxy("filters", "SonoBMode")
+        self.assertEqual(proxy.GetProperty("TgcPoints").GetNumberOfElements(), 0)
+        self.assertEqual(vtkSonoFilters.vtkSonoBMode().GetNumberOfTgcPoints(), 0)
+
+    def test_every_setting_has_a_property(self):
+        for kind, _, description in self.each():
+            commands = {e.get("command") for e in description}
+            settings = {name for name in vars(kind) if name.startswith("Set") and "Get" + name[3:] in vars(kind)}
+            self.assertEqual(settings - commands, set())
+
+    def test_every_property_is_documented_and_has_its_number_of_elements(self):
+        for _, _, description in self.each():
+            for element in (e for e in description if e.tag.endswith("Property")):
+                with self.subTest(property=element.get("name")):
+                    self.assertTrue(element.findtext("Documentation", "").strip())
+                    self.assertTrue(element.tag == "InputProperty" or element.get("number_of_elements"))
+
+    def test_every_filter_is_in_the_ultrasound_menu(self):
+        for _, _, description in self.each():
+            self.assertEqual(description.find("Hints/ShowInMenu").get("category"), "Ultrasound")
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
