@@ -69,9 +69,11 @@ probe = UltrasoundProbe(Positionmm=pose["position"], AxialDirection=pose["axial"
                         Depthmm=pose.get("depth_mm", 160), Sectordegrees=pose.get("sector_deg", 90),
                         NumberofLines=args.lines)
 scene = timed(UltrasoundScene(Input=anatomy, BuildSurfaces=0))  # no surfaces: nothing is shown in 3-D here
-traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.paths))
+# Smooth walls spread a beam by a few degrees; sixteen centimetres of chest cross more than seven boundaries.
+traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.paths, Collisions=20, CoherenceC0mm=20,
+                                   LobeSigmadegrees=6))
 rf = timed(UltrasoundImageFormation(Input=traced))
-bmode = timed(UltrasoundBMode(Input=rf))
+bmode = timed(UltrasoundBMode(Input=rf, TGCdBcm=3))
 picture = timed(ScanConverter(Input=bmode))
 save(Fetch(picture), args.output)
 print("Wrote", os.path.abspath(args.output))
