@@ -47,6 +47,15 @@ void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& 
     throw Error("the number of scan lines is " + std::to_string(lines.size()) +
                 ": at this depth and sampling their samples do not fit; use fewer lines or a lower sampling frequency");
   }
+  for (std::size_t l = 0; l < lines.size(); ++l)
+  {
+    const Vec3d sum = lines[l].originMm + lines[l].axis + lines[l].lateral + lines[l].elevation;
+    if (!std::isfinite(sum.x + sum.y + sum.z))
+    {
+      throw Error("scan line " + std::to_string(l) +
+                  " has an origin or a direction that is not finite: place the probe");
+    }
+  }
   if (!sources.traced)
   {
     return;

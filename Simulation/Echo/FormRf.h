@@ -20,9 +20,10 @@ struct EchoSettings
   double depthMm = 160.0;           ///< > 0
   double lateralSigmaMm = 1.0;      ///< Gaussian beam, > 0
   double elevationalSigmaMm = 1.0;  ///< > 0
-  double scattererCellMm = 0.5;     ///< edge h of the scatterer cells; density is mu1 / h^3
-  double scattererLevelDb = -30.0;  ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect plane reflector
-  std::uint64_t seed = 1;           ///< of the scatterers
+  double scattererCellMm = 0.5; ///< edge h of the scatterer cells; density is mu1 / h^3. Below half a wavelength cells
+                                ///< are too regular for equal scatterers: their level falls
+  double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect plane reflector
+  std::uint64_t seed = 1;          ///< of the scatterers
 
   /// Throws Error naming the parameter and its range.
   void validate() const;

@@ -46,21 +46,25 @@ SONO_HD inline std::uint32_t encodeRecord(const BoundaryRecord& record)
   return iu | (iv << 10) | (id << 20) | (ic << 29);
 }
 
-SONO_HD inline BoundaryRecord decodeRecord(std::uint32_t bits)
+/// The normal of a record, on the octahedron instead of the sphere: its length is between 0.57 and 1.
+SONO_HD inline Vec3f decodeOctahedral(std::uint32_t bits)
 {
-  BoundaryRecord record;
   const float u = float(bits & 1023u) * (2.0f / 1022.0f) - 1.0f;
   const float v = float((bits >> 10) & 1023u) * (2.0f / 1022.0f) - 1.0f;
-  Vec3f n(u, v, 1.0f - fabsf(u) - fabsf(v));
-  if (n.z < 0.0f)
-  {
-    n.x = (1.0f - fabsf(v)) * signNotZero(u);
-    n.y = (1.0f - fabsf(u)) * signNotZero(v);
-  }
-  record.normal = glm::normalize(n);
-  record.offset = float((bits >> 20) & 511u) / recordOffsetSteps - 0.5f;
-  record.confidence = float(bits >> 29) * (1.0f / 7.0f);
-  return record;
+  const float z = 1.0f - fabsf(u) - fabsf(v);
+  const float fold = z < 0.0f ? z : 0.0f; // unfolds the lower half
+  return { u + (u >= 0.0f ? fold : -fold), v + (v >= 0.0f ? fold : -fold), z };
+}
+
+SONO_HD inline float decodeConfidence(std::uint32_t bits)
+{
+  return float(bits >> 29) * (1.0f / 7.0f);
+}
+
+SONO_HD inline BoundaryRecord decodeRecord(std::uint32_t bits)
+{
+  return { glm::normalize(decodeOctahedral(bits)), float((bits >> 20) & 511u) / recordOffsetSteps - 0.5f,
+           decodeConfidence(bits) };
 }
 
 } // namespace sono

@@ -50,7 +50,7 @@ SONO_HD inline float sinSmall(float x)
   return s * q * x + x;
 }
 
-/// log(x) for normal x > 0, absolute error below 2e-7 + 1e-7 |log(x)| (polynomial on [sqrt(1/2), sqrt(2)) after Cephes'
+/// log(x) for normal x > 0, absolute error below 2e-7 (1 + |log(x)|) (polynomial on [sqrt(1/2), sqrt(2)) after Cephes'
 /// logf). Branch-free, so that host loops vectorise.
 SONO_HD inline float logPositive(float x)
 {

@@ -53,7 +53,7 @@ struct NanoSpace
     const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
     for (int count = 0; count < maxSteps; ++count)
     {
-      const int edge = uniformEdge(accessor, c);
+      const int edge = tissueAt(accessor, c) == current ? uniformEdge(accessor, c) : 1;
       float first3[3];
       Vec3i low;
       for (int a = 0; a < 3; ++a)

@@ -8,13 +8,15 @@
 
 namespace sono {
 
-/// A view of the tracer's cache of a region: one 16-bit word per voxel (low byte: tissue index, high byte: half-width
-/// of the largest cube around the voxel known to hold that tissue alone) and one boundary record per voxel. Local
-/// millimetres with 0 at the region's outer corner. Voxels lie in blocks of 4 x 4 x 2, one cache line of words each, so
-/// that a ray in any direction meets about three voxels a line.
+/// A view of the tracer's cache of a region: one 16-bit word per voxel and one record per boundary voxel. The word's
+/// low byte is the tissue index. Its high byte is, below 128, the half-width of a cube around the voxel known to hold
+/// that tissue alone; else 128 + the voxel's rank among those of its block that have a record. Local millimetres with 0
+/// at the region's outer corner. Voxels lie in blocks of 4 x 4 x 2, one cache line of words each, so that a ray in any
+/// direction meets about three voxels a line.
 struct TissueCells
 {
   const std::uint16_t* cell = nullptr;
+  const std::uint32_t* firstRecord = nullptr; ///< of each block
   const std::uint32_t* record = nullptr;
   Vec3i size{ 0, 0, 0 };
   Vec3i blocks{ 0, 0, 0 };
@@ -28,6 +30,16 @@ struct TissueCells
     const unsigned block =
       unsigned(x >> 2) + unsigned(blocks.x) * (unsigned(y >> 2) + unsigned(blocks.y) * unsigned(z >> 1));
     return (std::size_t(block) << 5) | unsigned((x & 3) | ((y & 3) << 2) | ((z & 1) << 4));
+  }
+  /// The record of the voxel with that offset and word; 0 where it has none.
+  SONO_HD std::uint32_t recordOf(std::size_t offset, std::uint32_t word) const
+  {
+    return (word & 0x8000u) ? record[firstRecord[offset >> 5] + ((word >> 8) & 31u)] : 0u;
+  }
+  SONO_HD std::uint32_t recordAt(const Vec3i& c) const
+  {
+    const std::size_t at = offset(c);
+    return recordOf(at, cell[at]);
   }
   SONO_HD bool contains(const Vec3i& c) const
   {
@@ -103,8 +115,13 @@ struct AxisMarch
   }
 };
 
+/// Cubes of a smaller half-width are walked through.
+constexpr int worthJumping = 5;
+
 /// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
-/// t < ignoreUntil (hysteresis after a boundary; -1: none). Steps over uniform cubes at once.
+/// t < ignoreUntil (hysteresis after a boundary; -1: none), and are passed one by one: what is left of them then is met
+/// at the next face. Walks cell by cell, so that the next address does not wait
+/// for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
 SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& ray, int current, int ignored,
                                        float ignoreUntil, float tMax)
 {
@@ -114,32 +131,28 @@ SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& 
   int x = ray.cell.x;
   int y = ray.cell.y;
   int z = ray.cell.z;
+  float tx = ax.leave(x, 0);
+  float ty = ay.leave(y, 0);
+  float tz = az.leave(z, 0);
   float t = 0.0f;
-  int skip = cells.contains(ray.cell) ? cells.cell[cells.offset(x, y, z)] >> 8 : 0;
   // Each step leaves at least one plane of cells behind, so this bounds any ray.
   const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
   for (int count = 0; count < maxSteps; ++count)
   {
-    const float tx = ax.leave(x, skip);
-    const float ty = ay.leave(y, skip);
-    const float tz = az.leave(z, skip);
     const float first = smaller(tx, smaller(ty, tz));
     t = larger(first, t);
     if (t >= tMax)
     {
       break;
     }
-    const int axis = tx == first ? 0 : (ty == first ? 1 : 2);
-    if (skip > 0)
-    {
-      x = axis == 0 ? x + ax.sign * skip : ax.cellAt(t, x, skip);
-      y = axis == 1 ? y + ay.sign * skip : ay.cellAt(t, y, skip);
-      z = axis == 2 ? z + az.sign * skip : az.cellAt(t, z, skip);
-    }
-    const Vec3i before(x, y, z);
-    x += axis == 0 ? ax.sign : 0;
-    y += axis == 1 ? ay.sign : 0;
-    z += axis == 2 ? az.sign : 0;
+    const bool alongX = tx == first;
+    const bool alongY = !alongX && ty == first;
+    const bool alongZ = !alongX && !alongY;
+    x += alongX ? ax.sign : 0;
+    y += alongY ? ay.sign : 0;
+    z += alongZ ? az.sign : 0;
+    const int axis = alongX ? 0 : (alongY ? 1 : 2);
+    const Vec3i before(x - (alongX ? ax.sign : 0), y - (alongY ? ay.sign : 0), z - (alongZ ? az.sign : 0));
     if (!cells.contains(Vec3i(x, y, z)))
     {
       return { t, before, before, -1, axis };
@@ -150,7 +163,30 @@ SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& 
     {
       return { t, before, Vec3i(x, y, z), tissue, axis };
     }
-    skip = int(word >> 8);
+    // 128 and above are ranks of records.
+    const int skip = int(word >> 8);
+    if (skip >= worthJumping && skip < 128 && tissue == current)
+    {
+      // Go on to the cell behind the face through which the ray leaves the cube, less one step.
+      const float leaveX = ax.leave(x, skip - 1);
+      const float leaveY = ay.leave(y, skip - 1);
+      const float leaveZ = az.leave(z, skip - 1);
+      const float leave = smaller(leaveX, smaller(leaveY, leaveZ));
+      t = larger(leave, t);
+      if (t >= tMax)
+      {
+        break;
+      }
+      const int nextX = leaveX == leave ? x + ax.sign * skip : ax.cellAt(t, x, skip - 1);
+      const int nextY = leaveY == leave ? y + ay.sign * skip : ay.cellAt(t, y, skip - 1);
+      const int nextZ = leaveZ == leave ? z + az.sign * skip : az.cellAt(t, z, skip - 1);
+      x = nextX;
+      y = nextY;
+      z = nextZ;
+    }
+    tx = ax.leave(x, 0);
+    ty = ay.leave(y, 0);
+    tz = az.leave(z, 0);
   }
   return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
 }
@@ -158,8 +194,9 @@ SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& 
 /// The refined boundary between two face-adjacent cells.
 struct RefinedHit
 {
-  Vec3f normal; ///< unit, from the old tissue to the new one; direction . normal > 0
-  float t;      ///< sub-voxel distance along the ray
+  Vec3f normal;        ///< unit, from the old tissue to the new one; direction . normal > 0
+  float t;             ///< sub-voxel distance along the ray
+  bool smooth = false; ///< false: the voxel face itself
 };
 
 /// How far the surface of either side of a boundary is trusted, 0 or 1.
@@ -176,32 +213,36 @@ SONO_HD inline Vec3f interpolateNormal(const TissueCells& cells, const Vec3f& po
                                        const SideWeights& weights, const Vec3f& fallback)
 {
   const Vec3f g = point / cells.spacing - 0.5f;
-  const Vec3f low(floorf(g.x), floorf(g.y), floorf(g.z));
-  const Vec3f f = g - low;
+  const Vec3i low(int(floorf(g.x)), int(floorf(g.y)), int(floorf(g.z)));
+  const Vec3f f = g - Vec3f(low);
+  if (!cells.contains(low) || !cells.contains(low + 1))
+  {
+    return fallback;
+  }
   Vec3f sum(0.0f);
   float total = 0.0f;
   for (int corner = 0; corner < 8; ++corner)
   {
-    const Vec3i o(corner & 1, (corner >> 1) & 1, corner >> 2);
-    const Vec3i cell = Vec3i(low) + o;
-    if (!cells.contains(cell))
+    const int ox = corner & 1;
+    const int oy = (corner >> 1) & 1;
+    const int oz = corner >> 2;
+    const std::size_t at = cells.offset(low.x + ox, low.y + oy, low.z + oz);
+    const std::uint32_t word = cells.cell[at];
+    const int tissue = int(word & 255u);
+    const float side = tissue == from ? weights.before : (tissue == to ? -weights.after : 0.0f);
+    if ((word & 0x8000u) == 0u || side == 0.0f)
     {
       continue;
     }
-    const std::uint32_t bits = cells.record[cells.offset(cell)];
-    const int tissue = cells.tissueAt(cell);
-    if (bits == 0u || (tissue != from && tissue != to))
-    {
-      continue;
-    }
-    const BoundaryRecord record = decodeRecord(bits);
-    const float side = tissue == from ? weights.before : -weights.after;
-    const float w = record.confidence * (o.x ? f.x : 1.0f - f.x) * (o.y ? f.y : 1.0f - f.y) * (o.z ? f.z : 1.0f - f.z);
-    sum += record.normal * (w * side);
+    const std::uint32_t bits = cells.recordOf(at, word);
+    const float w =
+      decodeConfidence(bits) * (ox ? f.x : 1.0f - f.x) * (oy ? f.y : 1.0f - f.y) * (oz ? f.z : 1.0f - f.z);
+    // Neighbours point almost the same way, so the octahedron scales them almost alike.
+    sum += decodeOctahedral(bits) * (w * side);
     total += w * fabsf(side);
   }
   const float length = glm::length(sum);
-  return length > 0.5f * total ? sum / length : fallback;
+  return length > 0.3f * total ? sum / length : fallback;
 }
 
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
@@ -214,8 +255,8 @@ SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay
   const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
                    hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
                    hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
-  const std::uint32_t bitsA = cells.record[cells.offset(hit.before)];
-  const std::uint32_t bitsB = cells.record[cells.offset(hit.after)];
+  const std::uint32_t bitsA = cells.recordAt(hit.before);
+  const std::uint32_t bitsB = cells.recordAt(hit.after);
   if ((bitsA | bitsB) == 0u)
   {
     return { face, hit.t };
@@ -247,7 +288,7 @@ SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay
   const float t = larger(0.0f, smaller(larger(plane, hit.t - reach), hit.t + reach));
   const Vec3f smooth = interpolateNormal(cells, ray.position + ray.direction * t, cells.tissueAt(hit.before),
                                          hit.tissue, { weightA, weightB }, n);
-  return { glm::dot(ray.direction, smooth) < 0.01f ? n : smooth, t };
+  return { glm::dot(ray.direction, smooth) < 0.01f ? n : smooth, t, true };
 }
 
 } // namespace sono

@@ -194,17 +194,36 @@ SONO_HD inline Scattered strongerBranch(const PathState& path, const PathBoundar
   return { glm::normalize(w), reflected, reflected ? r.reflectance : 1.0f - r.reflectance };
 }
 
+/// How far a path that restarts on a voxel face must go before it counts as clear of the boundary it leaves. The cells
+/// of a smooth surface are a staircase that reaches half a voxel's extent along the normal to either side of it; the
+/// face itself may lie on the far side. The rest is for curvature and, where the normal is but the face's, for its
+/// error.
+template<class Space>
+SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary, const Vec3f& incident,
+                               const Scattered& out)
+{
+  const Vec3f& n = boundary.surface.normal;
+  const Vec3f h = space.spacing();
+  const float stair = 0.5f * (fabsf(n.x) * h.x + fabsf(n.y) * h.y + fabsf(n.z) * h.z);
+  const float beyond = (boundary.restart - boundary.surface.t) * glm::dot(incident, n);
+  const float slack = (boundary.surface.smooth ? 0.3f : 0.8f) * space.meanSpacing();
+  const float across = stair + slack + (out.reflected ? beyond : -beyond);
+  const float leaving = larger(fabsf(glm::dot(out.direction, n)), 0.1f);
+  return larger(0.0f, smaller(8.0f * space.meanSpacing(), across / leaving));
+}
+
 /// Leaves the boundary along the branch drawn by `u`. The path restarts on the voxel face, in the cell it stays in, and
-/// does not see the tissue on the other side again for about one voxel along the normal.
-SONO_HD inline void leaveBoundary(const TraceView& view, float meanSpacing, const PathBoundary& boundary,
+/// does not see the tissue on the other side again until it is clear of the boundary.
+template<class Space>
+SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
                                   const BounceSample& u, PathState& path)
 {
-  const Vec3f& normal = boundary.surface.normal;
+  const Vec3f incident = path.ray.direction;
   const Scattered out = view.deterministic ? strongerBranch(path, boundary)
-                                           : scatterAt(view.model, view.lobe, path.ray.direction, normal,
+                                           : scatterAt(view.model, view.lobe, incident, boundary.surface.normal,
                                                        boundary.cosine, boundary.reflection, u);
   const BoundarySide& side = out.reflected ? boundary.before : boundary.after;
-  path.ray.position += path.ray.direction * boundary.restart;
+  path.ray.position += incident * boundary.restart;
   path.ray.direction = out.direction;
   path.ray.cell = side.cell;
   path.tissue = side.medium;
@@ -212,8 +231,7 @@ SONO_HD inline void leaveBoundary(const TraceView& view, float meanSpacing, cons
   if (boundary.voxelFace)
   {
     path.ignored = out.reflected ? boundary.after.medium : boundary.before.medium;
-    const float leaving = fabsf(glm::dot(out.direction, normal));
-    path.ignoreUntil = meanSpacing * smaller(8.0f, 0.8f / larger(leaving, 0.1f));
+    path.ignoreUntil = clearance(space, boundary, incident, out);
   }
   else
   {
@@ -268,6 +286,12 @@ SONO_HD inline bool enterSpace(const Space& space, const TraceLine& line, float 
   path.ray.position = line.origin + line.axis * near;
   path.ray.direction = line.axis;
   path.ray.cell = glm::clamp(space.cellAt(path.ray.position), Vec3i(0), size - 1);
+  for (int a = 0; a < 3; ++a)
+  {
+    // On a face the line belongs to the cell ahead of it.
+    const bool onFace = path.ray.position[a] / space.spacing()[a] == float(path.ray.cell[a]);
+    path.ray.cell[a] -= line.axis[a] < 0.0f && onFace && path.ray.cell[a] > 0 ? 1 : 0;
+  }
   if (axis >= 0)
   {
     path.ray.cell[axis] = line.axis[axis] > 0.0f ? 0 : size[axis] - 1;
@@ -362,10 +386,9 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const T
 {
   PathState path = start.path;
   PathBoundary boundary = start.boundary;
-  const float meanSpacing = space.meanSpacing();
   for (;;)
   {
-    leaveBoundary(view, meanSpacing, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
+    leaveBoundary(view, space, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
     if (!(path.intensity > 0.0f) || !survivesRoulette(view, key, path) ||
         !advanceToBoundary(view, space, line, path, boundary, sink) || path.collisions >= view.maxCollisions)
     {
