@@ -48,4 +48,13 @@ inline float fastAtan2RightHalf(float y, float x)
   return y < 0.0f ? -angle : angle;
 }
 
+/// atan2(y, x) in [-pi, pi] for x and y not both zero, to 4e-7 rad.
+inline float fastAtan2(float y, float x)
+{
+  constexpr float pi = 3.14159265f;
+  const float right = fastAtan2RightHalf(y, std::abs(x));
+  const float left = (y < 0.0f ? -pi : pi) - right;
+  return x < 0.0f ? left : right;
+}
+
 } // namespace sono

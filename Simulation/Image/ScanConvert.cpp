@@ -22,12 +22,13 @@ struct BeamMap
 {
   explicit BeamMap(const ScanGeometry& geometry)
     : parallel(geometry.kind == ScanKind::Linear || geometry.lineCount == 1)
+    , faceRadiusMm(geometry.faceRadiusMm())
+    , centreAxialMm(geometry.kind == ScanKind::Radial ? 0.0 : -faceRadiusMm)
   {
     constexpr double radPerDeg = 0.017453292519943295;
     const double extent = parallel ? geometry.widthMm : geometry.sectorDeg * radPerDeg;
-    faceRadiusMm = geometry.kind == ScanKind::Curvilinear ? geometry.radiusMm : 0.0;
     firstUnit = -extent / 2.0;
-    linesPerUnit = (geometry.lineCount - 1) / extent;
+    linesPerUnit = (geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1) / extent;
   }
 
   /// Lines and depths of a row of pixels.
@@ -36,27 +37,28 @@ struct BeamMap
     const auto u0 = static_cast<float>(firstUnit);
     const auto scale = static_cast<float>(linesPerUnit);
     const auto radius = static_cast<float>(faceRadiusMm);
+    const float x = axialMm - static_cast<float>(centreAxialMm);
     const std::size_t count = lateralMm.size();
     if (parallel)
     {
       for (std::size_t i = 0; i < count; ++i)
       {
         line[i] = (lateralMm[i] - u0) * scale;
-        depthMm[i] = axialMm;
+        depthMm[i] = x - radius;
       }
       return;
     }
-    const float x = axialMm + radius; // > 0 but at a sector's apex, where every line starts
-    const float forward = x > 0.0f ? x : 1e-20f;
+    const float forward = x != 0.0f ? x : 1e-20f; // at the centre, where every line passes
     for (std::size_t i = 0; i < count; ++i)
     {
-      line[i] = (fastAtan2RightHalf(lateralMm[i], forward) - u0) * scale;
+      line[i] = (fastAtan2(lateralMm[i], forward) - u0) * scale;
       depthMm[i] = std::sqrt(lateralMm[i] * lateralMm[i] + x * x) - radius;
     }
   }
 
   bool parallel;
-  double faceRadiusMm = 0.0;
+  double faceRadiusMm;
+  double centreAxialMm; ///< where the lines of a fan come from
   double firstUnit = 0.0;
   double linesPerUnit = 0.0;
 };
@@ -71,18 +73,18 @@ struct Extent
 /// Bounding box of the scanned area. A single line has no area: it is drawn one pixel wide.
 Extent boundingBox(const ScanGeometry& geometry)
 {
-  if (geometry.lineCount == 1)
-  {
-    return { 0.0, 0.0, geometry.depthMm };
-  }
   const BeamMap map(geometry);
+  const double inner = map.faceRadiusMm;
+  const double outer = inner + geometry.depthMm;
   if (map.parallel)
   {
-    return { geometry.widthMm / 2.0, 0.0, geometry.depthMm };
+    const double halfWidth = geometry.lineCount == 1 ? 0.0 : geometry.widthMm / 2.0;
+    return { halfWidth, map.centreAxialMm + inner, map.centreAxialMm + outer };
   }
   const double half = -map.firstUnit;
-  return { (map.faceRadiusMm + geometry.depthMm) * std::sin(half), map.faceRadiusMm * (std::cos(half) - 1.0),
-           geometry.depthMm };
+  const double widest = std::min(half, 1.5707963267948966);
+  const double backMm = half < widest + 1e-9 ? inner * std::cos(half) : outer * std::cos(half);
+  return { outer * std::sin(widest), map.centreAxialMm + backMm, map.centreAxialMm + outer };
 }
 
 PlaneImage emptyImage(const ScanGeometry& geometry, double pixelMm)
@@ -116,23 +118,27 @@ PlaneImage emptyImage(const ScanGeometry& geometry, double pixelMm)
   return image;
 }
 
-/// Lines x samples with bilinear lookup.
+/// Lines x samples with bilinear lookup; on a closed circle, the first line follows the last.
 struct BeamSamples
 {
   const float* values;
   int lineCount;
   int sampleCount;
+  bool closed;
 
   float at(float line, float sample) const
   {
-    const float lineInside = std::clamp(line, 0.0f, static_cast<float>(lineCount - 1));
+    const float turned = line < static_cast<float>(lineCount) ? line : line - static_cast<float>(lineCount);
+    const float wanted = closed ? turned : std::min(line, static_cast<float>(lineCount - 1));
+    const float lineInside = std::max(wanted, 0.0f);
     const float sampleInside = std::clamp(sample, 0.0f, static_cast<float>(sampleCount - 1));
     const int l = static_cast<int>(lineInside);
     const int s = static_cast<int>(sampleInside);
     const float fl = lineInside - static_cast<float>(l);
     const float fs = sampleInside - static_cast<float>(s);
     const float* near = values + std::size_t(l) * sampleCount + s;
-    const float* far = near + (l + 1 < lineCount ? sampleCount : 0);
+    const float* last = values + std::size_t(lineCount - 1) * sampleCount;
+    const float* far = near < last ? near + sampleCount : closed ? values + s : near;
     const int deeper = s + 1 < sampleCount ? 1 : 0;
     const float nearValue = near[0] + fs * (near[deeper] - near[0]);
     const float farValue = far[0] + fs * (far[deeper] - far[0]);
@@ -144,7 +150,7 @@ struct BeamSamples
 struct ScannedArea
 {
   ScannedArea(const ScanGeometry& geometry, int sampleCount, double sampleMm, double pixelMm)
-    : lastLine(static_cast<float>(geometry.lineCount - 1) + lineSlack)
+    : lastLine(static_cast<float>(geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1) + lineSlack)
     , firstMm(static_cast<float>(-1e-4 * pixelMm))
     , lastMm(static_cast<float>(std::min(geometry.depthMm, sampleCount * sampleMm) + 1e-4 * pixelMm))
   {
@@ -165,7 +171,11 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
 {
   geometry.validate();
   std::ostringstream message;
-  if (sampleCount < 1)
+  if (geometry.kind == ScanKind::Matrix)
+  {
+    message << "the lines of a matrix fill a volume, not a plane; convert them with scanConvertVolume.";
+  }
+  else if (sampleCount < 1)
   {
     message << "sampleCount is " << sampleCount << " but must be at least 1.";
   }
@@ -195,7 +205,7 @@ PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& v
   PlaneImage image = emptyImage(geometry, pixelMm);
 
   const BeamMap map(geometry);
-  const BeamSamples samples{ values.data(), geometry.lineCount, sampleCount };
+  const BeamSamples samples{ values.data(), geometry.lineCount, sampleCount, geometry.closesCircle() };
   const ScannedArea area(geometry, sampleCount, sampleMm, pixelMm);
   const auto samplesPerMm = static_cast<float>(1.0 / sampleMm);
   std::vector<float> lateralMm(image.width);

@@ -1,6 +1,8 @@
 #include "Labels/ReadLabelMap.h"
 
 #include "Labels/CsvFile.h"
+#include "Labels/LabelTable.h"
+#include "Labels/ReadMeta.h"
 #include "Labels/ReadNifti.h"
 #include "Labels/ReadNrrd.h"
 #include "Progress.h"
@@ -25,7 +27,7 @@ std::string knownEnding(const std::string& path)
 {
   std::string lower = path;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  for (const std::string ending : { ".nii.gz", ".nii", ".seg.nrrd", ".nrrd", ".nhdr" })
+  for (const std::string ending : { ".nii.gz", ".nii", ".seg.nrrd", ".nrrd", ".nhdr", ".mha", ".mhd" })
   {
     if (lower.size() > ending.size() && lower.compare(lower.size() - ending.size(), ending.size(), ending) == 0)
     {
@@ -40,7 +42,7 @@ LabelVolume readByEnding(const std::string& path, const std::string& ending)
   if (ending.empty())
   {
     throw Error("cannot read '" + path +
-                "': its name ends in none of .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd; convert it.");
+                "': its name ends in none of .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd, .mha, .mhd; convert it.");
   }
   std::error_code error;
   if (!fs::is_regular_file(path, error) || !std::ifstream(path))
@@ -49,70 +51,16 @@ LabelVolume readByEnding(const std::string& path, const std::string& ending)
   }
   try
   {
+    if (ending.compare(0, 3, ".mh") == 0)
+    {
+      return readMeta(path);
+    }
     return ending.compare(0, 4, ".nii") == 0 ? readNifti(path) : readNrrd(path);
   }
   catch (const std::bad_alloc&)
   {
     throw Error("cannot read '" + path + "': it does not fit into memory; crop or resample it.");
   }
-}
-
-/// A number of a table within [0, maximum]; throws Error naming file, line and column.
-double tableNumber(const CsvFile& csv, const CsvFile::Row& row, int column, double maximum)
-{
-  const std::string& text = row.fields[std::size_t(column)];
-  const auto value = parseNumber(text);
-  if (!value || !(*value >= 0.0 && *value <= maximum) || *value != std::floor(*value))
-  {
-    throw Error(csv.where(row) + " has '" + text + "' in column '" + csv.header[std::size_t(column)] +
-                "'; write a whole number from 0 to " + std::to_string(int(maximum)) + ".");
-  }
-  return *value;
-}
-
-std::vector<LabelInfo> labelsFromTable(const CsvFile& csv)
-{
-  const int id = csv.requiredColumn("id");
-  const int name = csv.requiredColumn("name");
-  const int channels[3] = { csv.column("r"), csv.column("g"), csv.column("b") };
-  const bool colored = *std::min_element(channels, channels + 3) >= 0;
-  std::vector<LabelInfo> labels;
-  for (const CsvFile::Row& row : csv.rows)
-  {
-    LabelInfo label;
-    label.id = int(tableNumber(csv, row, id, 65535.0));
-    label.name = row.fields[std::size_t(name)];
-    if (colored && !row.fields[std::size_t(channels[0])].empty())
-    {
-      for (std::size_t c = 0; c < 3; ++c)
-      {
-        label.color[c] = float(tableNumber(csv, row, channels[c], 255.0) / 255.0);
-      }
-      label.hasColor = true;
-    }
-    labels.push_back(std::move(label));
-  }
-  return labels;
-}
-
-/// The table that belongs to a label map: `<stem>.csv`, else labels.csv; empty when neither names labels.
-std::string tableBeside(const std::string& path, const std::string& ending)
-{
-  const fs::path stem = path.substr(0, path.size() - ending.size());
-  for (const fs::path& candidate : { fs::path(stem.string() + ".csv"), stem.parent_path() / "labels.csv" })
-  {
-    std::error_code error;
-    if (!fs::is_regular_file(candidate, error))
-    {
-      continue;
-    }
-    const CsvFile csv = CsvFile::read(candidate.string());
-    if (csv.column("id") >= 0 && csv.column("name") >= 0)
-    {
-      return candidate.string();
-    }
-  }
-  return {};
 }
 
 void copyNameAndColor(const LabelInfo& from, LabelInfo& to)
@@ -134,7 +82,7 @@ LabelVolume readLabelMap(const std::string& path)
 {
   const std::string ending = knownEnding(path);
   LabelVolume volume = readByEnding(path, ending);
-  const std::string table = tableBeside(path, ending);
+  const std::string table = labelTableBeside(path.substr(0, path.size() - ending.size()));
   if (!table.empty())
   {
     std::set<int> named;
@@ -145,7 +93,7 @@ LabelVolume readLabelMap(const std::string& path)
         named.insert(label.id);
       }
     }
-    for (LabelInfo& label : labelsFromTable(CsvFile::read(table)))
+    for (LabelInfo& label : readLabels(table))
     {
       if (named.count(label.id) == 0)
       {
@@ -157,9 +105,9 @@ LabelVolume readLabelMap(const std::string& path)
   return volume;
 }
 
-void readLabelTable(const std::string& csvPath, LabelVolume& volume)
+void readLabelTable(const std::string& tablePath, LabelVolume& volume)
 {
-  for (const LabelInfo& row : labelsFromTable(CsvFile::read(csvPath)))
+  for (const LabelInfo& row : readLabels(tablePath))
   {
     for (LabelInfo& label : volume.labels)
     {

@@ -6,19 +6,18 @@
 
 namespace sono {
 
-/// Reads a label map and places it in the world (LPS mm): NIfTI-1/2 (.nii, .nii.gz; sform before qform, RAS
-/// flipped to LPS; with neither, only the spacing counts and i, j, k are taken as L, P, S) and NRRD (.nrrd, .nhdr,
-/// .seg.nrrd with segment names and colours; LPS, RAS or LAS space). Overlapping segment layers are flattened: where
-/// segments overlap the later one wins.
-/// Names and colours come from the file where it has them, then from a table beside it: `<stem>.csv`, else
-/// `labels.csv` in the same folder (see readLabelTable; one without id and name columns is somebody else's).
-/// Whole numbers stored as floats are accepted. Throws Error for a missing or unreadable file, a zero-sized
-/// image, voxels that are not whole numbers in 0..65535, or more than three dimensions.
+/// Reads a label map and places it in the world (LPS mm): NIfTI-1/2 (.nii, .nii.gz; sform before qform, RAS flipped to
+/// LPS; with neither, only the spacing counts and i, j, k are taken as L, P, S), NRRD (.nrrd, .nhdr, .seg.nrrd with
+/// segment names and colours; LPS, RAS or LAS space) and MetaImage (.mha, .mhd). Overlapping segment layers are
+/// flattened: where segments overlap the later one wins.
+/// Names and colours come from the file where it has them, then from a table beside it (LabelTable.h). They are never
+/// guessed from the numbers: TotalSegmentator's versions give the same number to different organs.
+/// Whole numbers stored as floats are accepted. Throws Error for a missing or unreadable file, a zero-sized image,
+/// voxels that are not whole numbers in 0..65535, or more than three dimensions.
 LabelVolume readLabelMap(const std::string& path);
 
-/// Reads `id,name[,tissue_class,...]` with a header line and sets names, and colours where r,g,b columns
-/// (0..255) are there, of the labels that occur. Throws Error when the file has no id and name columns.
-void readLabelTable(const std::string& csvPath, LabelVolume& volume);
+/// Sets names, and colours where the table has them, of the labels that occur. Throws Error as readLabels does.
+void readLabelTable(const std::string& tablePath, LabelVolume& volume);
 
 /// Writes NIfTI-1 (.nii or .nii.gz, uint16, sform and qform) with label names and colours beside it in `<stem>.csv`.
 /// Throws Error when a file cannot be written or an axis has more than 32767 voxels.

@@ -2,16 +2,13 @@
 
 #include "Labels/CsvFile.h"
 #include "Labels/LabelConversion.h"
+#include "Labels/NrrdFile.h"
 #include "Progress.h"
-
-#include <teem/biff.h>
-#include <teem/nrrd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -19,38 +16,6 @@
 namespace sono {
 
 namespace {
-
-/// teem collects its messages in one global place.
-std::mutex teemMutex;
-
-struct NukeNrrd
-{
-  void operator()(Nrrd* nrrd) const { nrrdNuke(nrrd); }
-};
-using NrrdPointer = std::unique_ptr<Nrrd, NukeNrrd>;
-
-/// The innermost of teem's stacked messages, which is the cause.
-std::string lastTeemMessage()
-{
-  const std::unique_ptr<char, void (*)(void*)> text(biffGetDone(NRRD), std::free);
-  std::istringstream lines(text ? text.get() : "");
-  std::string last = "unknown cause";
-  for (std::string line; std::getline(lines, line);)
-  {
-    last = line.empty() ? last : line;
-  }
-  return last;
-}
-
-NrrdPointer loadNrrd(const std::string& path)
-{
-  NrrdPointer nrrd(nrrdNew());
-  if (nrrdLoad(nrrd.get(), path.c_str(), nullptr))
-  {
-    throw Error("cannot read '" + path + "': it is no complete NRRD file (" + lastTeemMessage() + ").");
-  }
-  return nrrd;
-}
 
 /// The factors that turn the file's world axes into LPS. This is the one place where NRRD's frame is changed.
 Vec3d signsToLps(const Nrrd& nrrd, const std::string& path)
@@ -215,6 +180,20 @@ void parseColor(const std::string& text, LabelInfo& label)
   label.hasColor = channels == 3;
 }
 
+/// Segmentation_SourceRepresentation, which older versions of 3D Slicer call Segmentation_MasterRepresentation. Shares
+/// of a voxel are no labels.
+void refuseFractions(const Nrrd& nrrd, const std::string& path)
+{
+  for (const char* key : { "Segmentation_SourceRepresentation", "Segmentation_MasterRepresentation" })
+  {
+    const std::unique_ptr<char, void (*)(void*)> text(nrrdKeyValueGet(&nrrd, key), std::free);
+    if (text && std::string(text.get()) != "Binary labelmap")
+    {
+      throw Error("'" + path + "' holds a " + text.get() + "; save the segmentation as a binary labelmap.");
+    }
+  }
+}
+
 /// Files of older versions of 3D Slicer have neither LabelValue nor Layer: then segment N is label N + 1 in a 3-D
 /// file, and the mask in layer N of a 4-D one.
 std::vector<Segment> readSegments(const Nrrd& nrrd, bool layered)
@@ -290,8 +269,8 @@ std::vector<std::uint16_t> flattenLayers(const std::vector<std::uint16_t>& numbe
 
 LabelVolume readNrrd(const std::string& path)
 {
-  const std::lock_guard<std::mutex> lock(teemMutex);
   const NrrdPointer nrrd = loadNrrd(path);
+  refuseFractions(*nrrd, path);
   const Axes axes = findAxes(*nrrd, path);
   const bool layered = axes.layers >= 0;
   const std::size_t layerCount = layered ? nrrd->axis[axes.layers].size : 1;

@@ -3,8 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <set>
 
 namespace sono {
@@ -114,13 +116,16 @@ Json parseFile(const std::string& path)
 
 ScanGeometry readGeometry(PresetReader& reader)
 {
+  static const std::map<std::string, ScanKind> kinds{ { "linear", ScanKind::Linear },
+                                                      { "phased_sector", ScanKind::PhasedSector },
+                                                      { "curvilinear", ScanKind::Curvilinear },
+                                                      { "matrix", ScanKind::Matrix },
+                                                      { "radial", ScanKind::Radial } };
   ScanGeometry geometry;
-  const std::string kind = reader.text("scan");
-  reader.require("scan", kind == "linear" || kind == "phased_sector" || kind == "curvilinear",
-                 "\"linear\", \"phased_sector\" or \"curvilinear\"");
-  geometry.kind = kind == "linear"          ? ScanKind::Linear
-                  : kind == "phased_sector" ? ScanKind::PhasedSector
-                                            : ScanKind::Curvilinear;
+  const auto kind = kinds.find(reader.text("scan"));
+  reader.require("scan", kind != kinds.end(),
+                 "\"linear\", \"phased_sector\", \"curvilinear\", \"matrix\" or \"radial\"");
+  geometry.kind = kind->second;
   geometry.lineCount = reader.count("numberOfLines", 4096);
   geometry.depthMm = reader.positive("depthMm");
   if (geometry.kind == ScanKind::Linear)
@@ -129,10 +134,23 @@ ScanGeometry readGeometry(PresetReader& reader)
     return geometry;
   }
   geometry.sectorDeg = reader.positive("sectorDeg");
-  reader.require("sectorDeg", geometry.sectorDeg < 180.0, "a number above 0 and below 180");
-  if (geometry.kind == ScanKind::Curvilinear)
+  if (geometry.kind == ScanKind::Radial)
+  {
+    reader.require("sectorDeg", geometry.sectorDeg <= 360.0, "a number above 0 and at most 360");
+  }
+  else
+  {
+    reader.require("sectorDeg", geometry.sectorDeg < 180.0, "a number above 0 and below 180");
+  }
+  if (geometry.faceRadiusMm() > 0.0)
   {
     geometry.radiusMm = reader.positive("radiusMm");
+  }
+  if (geometry.kind == ScanKind::Matrix)
+  {
+    geometry.elevationLineCount = reader.count("numberOfElevations", std::min(4096, 65536 / geometry.lineCount));
+    geometry.elevationSectorDeg = reader.positive("elevationSectorDeg");
+    reader.require("elevationSectorDeg", geometry.elevationSectorDeg < 180.0, "a number above 0 and below 180");
   }
   return geometry;
 }

@@ -45,16 +45,39 @@ void requirePositive(const char* parameter, double value)
   requireRange(parameter, value, 0.0, std::numeric_limits<double>::infinity(), std::isfinite(value) && value > 0.0);
 }
 
-/// Distance of the face from the centre that the lines of a fan come from.
-double faceRadius(const ScanGeometry& geometry)
+/// From -0.5 on the first of `count` lines to 0.5 on the last; 0 when there is one.
+double fractionOf(double line, int count)
 {
-  return geometry.kind == ScanKind::Curvilinear ? geometry.radiusMm : 0.0;
+  return count > 1 ? line / (count - 1) - 0.5 : 0.0;
 }
 
-/// From -0.5 on the first line to 0.5 on the last; 0 when there is one line.
-double fractionOfLine(const ScanGeometry& geometry, double line)
+/// The angle of a line of a fan.
+double angleOf(const ScanGeometry& geometry, double line)
 {
-  return geometry.lineCount > 1 ? line / (geometry.lineCount - 1) - 0.5 : 0.0;
+  const double extent = geometry.sectorDeg * radiansPerDegree;
+  return geometry.closesCircle() ? (line / geometry.lineCount - 0.5) * extent
+                                 : fractionOf(line, geometry.lineCount) * extent;
+}
+
+double elevationAngle(const ScanGeometry& geometry, double elevation)
+{
+  return fractionOf(elevation, geometry.elevationLineCount) * geometry.elevationSectorDeg * radiansPerDegree;
+}
+
+/// The inverse of fractionOf. A single line sees only what lies on it; the tolerance is then that of two lines.
+double lineOf(double fraction, int count)
+{
+  return count > 1 ? (fraction + 0.5) * (count - 1) : fraction;
+}
+
+bool isSeen(double line, int count)
+{
+  return line >= -lineTolerance && line <= count - 1 + lineTolerance;
+}
+
+bool isSeenDepth(const ScanGeometry& geometry, double r)
+{
+  return r >= -depthToleranceMm && r <= geometry.depthMm + depthToleranceMm;
 }
 
 /// Where a line starts and points to, as (lateral, axial).
@@ -68,16 +91,17 @@ struct PlaneLine
 
 PlaneLine planeLine(const ScanGeometry& geometry, double line)
 {
-  const double fraction = fractionOfLine(geometry, line);
   if (geometry.kind == ScanKind::Linear)
   {
-    return { fraction * geometry.widthMm, 0.0, 0.0, 1.0 };
+    return { fractionOf(line, geometry.lineCount) * geometry.widthMm, 0.0, 0.0, 1.0 };
   }
-  const double angle = fraction * geometry.sectorDeg * radiansPerDegree;
-  const double radius = faceRadius(geometry);
+  const double angle = angleOf(geometry, line);
+  const double radius = geometry.faceRadiusMm();
   const double sine = std::sin(angle);
+  const double cosine = std::cos(angle);
   const double half = std::sin(0.5 * angle);
-  return { radius * sine, -2.0 * radius * half * half, sine, std::cos(angle) }; // cos - 1 without cancellation
+  const double axial = geometry.kind == ScanKind::Radial ? radius * cosine : -2.0 * radius * half * half; // R (cos - 1)
+  return { radius * sine, axial, sine, cosine };
 }
 
 } // namespace
@@ -107,41 +131,69 @@ ProbePose ProbePose::orthonormalized() const
   return pose;
 }
 
+double ScanGeometry::faceRadiusMm() const
+{
+  return kind == ScanKind::Curvilinear || kind == ScanKind::Radial ? radiusMm : 0.0;
+}
+
 void ScanGeometry::validate() const
 {
-  requireRange("lineCount", lineCount, 1.0, 4096.0, lineCount >= 1 && lineCount <= 4096);
+  const auto requireCount = [](const char* parameter, int count) {
+    requireRange(parameter, count, 1.0, 4096.0, count >= 1 && count <= 4096);
+  };
+  const auto requireAngle = [](const char* parameter, double angle, double maximum, bool ok) {
+    requireRange(parameter, angle, 0.0, maximum, angle > 0.0 && ok);
+  };
+  requireCount("lineCount", lineCount);
   requirePositive("depthMm", depthMm);
   switch (kind)
   {
     case ScanKind::Linear:
       requirePositive("widthMm", widthMm);
       return;
+    case ScanKind::Radial:
+      requirePositive("radiusMm", radiusMm);
+      requireAngle("sectorDeg", sectorDeg, 360.0, sectorDeg <= 360.0);
+      return;
     case ScanKind::Curvilinear:
       requirePositive("radiusMm", radiusMm);
+      requireAngle("sectorDeg", sectorDeg, 180.0, sectorDeg < 180.0);
+      return;
+    case ScanKind::Matrix:
+      requireCount("elevationLineCount", elevationLineCount);
+      requireRange("lineCount x elevationLineCount", totalLineCount(), 1.0, 65536.0, totalLineCount() <= 65536);
+      requireAngle("elevationSectorDeg", elevationSectorDeg, 180.0, elevationSectorDeg < 180.0);
       [[fallthrough]];
     case ScanKind::PhasedSector:
-      requireRange("sectorDeg", sectorDeg, 0.0, 180.0, sectorDeg > 0.0 && sectorDeg < 180.0);
+      requireAngle("sectorDeg", sectorDeg, 180.0, sectorDeg < 180.0);
       return;
   }
-  throw Error("the scan kind is none of linear, phased sector and curvilinear; choose one of them.");
+  throw Error("the scan kind is none of linear, phased sector, curvilinear, matrix and radial; choose one of them.");
 }
 
 std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePose& pose)
 {
   geometry.validate();
   const ProbePose frame = pose.orthonormalized();
-  const Vec3d elevation = glm::cross(frame.axial, frame.lateral);
+  const Vec3d across = glm::cross(frame.axial, frame.lateral);
+  const int elevations = geometry.totalLineCount() / geometry.lineCount;
   std::vector<ScanLine> lines;
-  lines.reserve(std::size_t(geometry.lineCount));
-  for (int n = 0; n < geometry.lineCount; ++n)
+  lines.reserve(std::size_t(geometry.totalLineCount()));
+  for (int e = 0; e < elevations; ++e)
   {
-    const PlaneLine plane = planeLine(geometry, n);
-    ScanLine line;
-    line.originMm = frame.positionMm + plane.lateralMm * frame.lateral + plane.axialMm * frame.axial;
-    line.axis = plane.lateralStep * frame.lateral + plane.axialStep * frame.axial;
-    line.lateral = plane.axialStep * frame.lateral - plane.lateralStep * frame.axial;
-    line.elevation = elevation;
-    lines.push_back(line);
+    const double phi = elevations > 1 ? elevationAngle(geometry, e) : 0.0;
+    const Vec3d axial = std::cos(phi) * frame.axial + std::sin(phi) * across;
+    const Vec3d elevation = std::cos(phi) * across - std::sin(phi) * frame.axial;
+    for (int n = 0; n < geometry.lineCount; ++n)
+    {
+      const PlaneLine plane = planeLine(geometry, n);
+      ScanLine line;
+      line.originMm = frame.positionMm + plane.lateralMm * frame.lateral + plane.axialMm * axial;
+      line.axis = plane.lateralStep * frame.lateral + plane.axialStep * axial;
+      line.lateral = plane.axialStep * frame.lateral - plane.lateralStep * axial;
+      line.elevation = elevation;
+      lines.push_back(line);
+    }
   }
   return lines;
 }
@@ -154,24 +206,46 @@ Vec2f planeFromBeam(const ScanGeometry& geometry, double line, double r)
 
 Vec2f beamFromPlane(const ScanGeometry& geometry, double lateralMm, double axialMm)
 {
-  double fraction = lateralMm / geometry.widthMm;
+  const int count = geometry.lineCount;
+  double line = lineOf(lateralMm / geometry.widthMm, count);
   double r = axialMm;
   if (geometry.kind != ScanKind::Linear)
   {
-    const double radius = faceRadius(geometry);
-    fraction = std::atan2(lateralMm, axialMm + radius) / (geometry.sectorDeg * radiansPerDegree);
-    r = std::hypot(lateralMm, axialMm + radius) - radius;
+    const double radius = geometry.faceRadiusMm();
+    const double forward = geometry.kind == ScanKind::Radial ? axialMm : axialMm + radius;
+    const double fraction = std::atan2(lateralMm, forward) / (geometry.sectorDeg * radiansPerDegree);
+    line = geometry.closesCircle() ? std::fmod((fraction + 0.5) * count, count) : lineOf(fraction, count);
+    r = std::hypot(lateralMm, forward) - radius;
   }
-  const double last = geometry.lineCount - 1;
-  // A single line sees only what lies on it; the tolerance is then that of two lines.
-  const double line = (fraction + 0.5) * std::max(last, 1.0) - (geometry.lineCount > 1 ? 0.0 : 0.5);
-  const bool seen = line >= -lineTolerance && line <= last + lineTolerance && r >= -depthToleranceMm &&
-                    r <= geometry.depthMm + depthToleranceMm;
-  if (!seen)
+  if (!isSeenDepth(geometry, r) || !(geometry.closesCircle() || isSeen(line, count)))
   {
     return Vec2f(std::numeric_limits<float>::quiet_NaN());
   }
+  const double last = geometry.closesCircle() ? count : count - 1;
   return { float(std::clamp(line, 0.0, last)), float(std::clamp(r, 0.0, geometry.depthMm)) };
+}
+
+Vec3d volumeFromBeam(const ScanGeometry& geometry, double line, double elevation, double r)
+{
+  const double theta = angleOf(geometry, line);
+  const double phi = elevationAngle(geometry, elevation);
+  return r * Vec3d(std::sin(theta), std::cos(theta) * std::sin(phi), std::cos(theta) * std::cos(phi));
+}
+
+Vec3d beamFromVolume(const ScanGeometry& geometry, const Vec3d& positionMm)
+{
+  const double r = glm::length(positionMm);
+  const double forward = std::hypot(positionMm.y, positionMm.z);
+  const double theta = std::atan2(positionMm.x, forward) / (geometry.sectorDeg * radiansPerDegree);
+  const double phi = std::atan2(positionMm.y, positionMm.z) / (geometry.elevationSectorDeg * radiansPerDegree);
+  const double line = lineOf(theta, geometry.lineCount);
+  const double elevation = lineOf(phi, geometry.elevationLineCount);
+  if (!isSeenDepth(geometry, r) || !isSeen(line, geometry.lineCount) || !isSeen(elevation, geometry.elevationLineCount))
+  {
+    return Vec3d(std::numeric_limits<double>::quiet_NaN());
+  }
+  return { std::clamp(line, 0.0, geometry.lineCount - 1.0),
+           std::clamp(elevation, 0.0, geometry.elevationLineCount - 1.0), std::min(r, geometry.depthMm) };
 }
 
 } // namespace sono

@@ -2,6 +2,7 @@
 
 #include "Scene/NanoGridStorage.h"
 
+#define NANOVDB_USE_TBB
 #include <nanovdb/util/NanoToOpenVDB.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 
@@ -9,13 +10,18 @@ namespace sono {
 
 namespace {
 
-template<class OpenGrid>
-NanoGrid convert(OpenGrid& grid)
+NanoGrid wrap(nanovdb::GridHandle<nanovdb::HostBuffer> handle)
 {
   NanoGrid nano;
   nano.storage = std::make_unique<NanoGrid::Storage>();
-  nano.storage->handle = nanovdb::openToNanoVDB(grid);
+  nano.storage->handle = std::move(handle);
   return nano;
+}
+
+template<class Build>
+openvdb::GridBase::Ptr convertBack(const NanoGrid& grid)
+{
+  return nanovdb::NanoToOpenVDB<Build>()(*grid.storage->handle.grid<Build>());
 }
 
 } // namespace
@@ -32,17 +38,30 @@ std::size_t NanoGrid::bytes() const
 
 NanoGrid nanoFromOpen(openvdb::Int32Grid& grid)
 {
-  return convert(grid);
+  return wrap(nanovdb::openToNanoVDB(grid));
 }
 
-NanoGrid nanoFromOpen(openvdb::FloatGrid& grid)
+NanoGrid nanoFromOpen(openvdb::MaskGrid& grid)
 {
-  return convert(grid);
+  return wrap(nanovdb::openToNanoVDB(grid));
 }
 
-openvdb::FloatGrid::Ptr openFromNano(const NanoGrid& grid)
+NanoGrid compactNanoFromOpen(openvdb::FloatGrid& grid)
 {
-  return openvdb::gridPtrCast<openvdb::FloatGrid>(nanovdb::NanoToOpenVDB<float>()(*grid.storage->handle.grid<float>()));
+  return wrap(nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, nanovdb::Fp8>(grid));
+}
+
+openvdb::GridBase::Ptr openFromNano(const NanoGrid& grid)
+{
+  switch (grid.storage->handle.gridType())
+  {
+    case nanovdb::GridType::Int32:
+      return convertBack<std::int32_t>(grid);
+    case nanovdb::GridType::Mask:
+      return convertBack<nanovdb::ValueMask>(grid);
+    default:
+      return convertBack<nanovdb::Fp8>(grid);
+  }
 }
 
 } // namespace sono

@@ -85,12 +85,48 @@ const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
     throw Error("label " + std::to_string(labelId) + " does not occur in the label map: choose one that does");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  auto& field = surfaces_[std::size_t(label - volume_.labels.data())];
-  if (!field)
+  const auto index = std::size_t(label - volume_.labels.data());
+  buildSurfaceAt(index, progress);
+  return *surfaces_[index];
+}
+
+void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
+{
+  if (boxes_.empty())
   {
-    field = std::make_unique<SurfaceField>(buildSurface(volume_, labelId, progress));
+    boxes_ = labelBoxes(volume_);
   }
-  return *field;
+  if (!surfaces_[label])
+  {
+    surfaces_[label] =
+      std::make_unique<SurfaceField>(buildSurface(volume_, volume_.labels[label].id, boxes_[label], progress));
+  }
+}
+
+void Scene::buildAll(const Progress& progress) const
+{
+  labelGrid();
+  report(progress, 0.1);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!surfaces_.empty())
+  {
+    buildSurfaceAt(0, {}); // the boxes as well
+  }
+  const Progress rest = progress ? Progress([&](double f) { return progress(0.1 + 0.9 * f); }) : Progress{};
+  parallelFor(int(surfaces_.size()), rest, [&](int label) { buildSurfaceAt(std::size_t(label), {}); });
+}
+
+void Scene::adopt(LabelGrid labels, std::vector<SurfaceField> surfaces)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  labelGrid_ = std::make_unique<LabelGrid>(std::move(labels));
+  for (SurfaceField& surface : surfaces)
+  {
+    if (const LabelInfo* label = volume_.find(surface.labelId))
+    {
+      surfaces_[std::size_t(label - volume_.labels.data())] = std::make_unique<SurfaceField>(std::move(surface));
+    }
+  }
 }
 
 std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const

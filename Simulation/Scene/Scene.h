@@ -49,11 +49,18 @@ public:
   /// The label grid and one label's signed distance (mm, negative inside) as NanoVDB grids, built on first need.
   const LabelGrid& labelGrid(const Progress& progress = {}) const;
   const SurfaceField& surface(int labelId, const Progress& progress = {}) const;
+  /// Builds what is missing of the label grid and all surfaces, several labels at a time.
+  void buildAll(const Progress& progress = {}) const;
+  /// Takes over what was built earlier from the same voxels (a scene file, a cache); a surface of a label that does not
+  /// occur is dropped.
+  void adopt(LabelGrid labels, std::vector<SurfaceField> surfaces);
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const TraceRegion> traceRegion(const VoxelBox& box, const Progress& progress = {}) const;
 
 private:
+  void buildSurfaceAt(std::size_t label, const Progress& progress) const;
+
   LabelVolume volume_;
   std::vector<Tissue> tissues_;
   std::vector<std::uint8_t> tissueOfLabel_;
@@ -62,6 +69,7 @@ private:
 
   mutable std::mutex mutex_;
   mutable std::unique_ptr<LabelGrid> labelGrid_;
+  mutable std::vector<VoxelBox> boxes_;                         // parallel to volume_.labels, empty until needed
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable std::shared_ptr<const TraceRegion> region_;
 };

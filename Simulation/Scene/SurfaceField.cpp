@@ -2,6 +2,7 @@
 
 #include "Kernel/Lobe.h"
 #include "ParallelFor.h"
+#include "Scene/GridTransform.h"
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoGridStorage.h"
 #include "Scene/SmoothedMask.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
 namespace sono {
 
@@ -22,61 +22,11 @@ namespace {
 
 constexpr int leafEdge = 8; // of OpenVDB's leaf nodes
 
-/// Index to world as OpenVDB writes it: row vectors, points multiplied from the left.
-openvdb::math::Transform::Ptr worldTransform(const GridPlacement& placement)
+template<class Build>
+auto valueAt(const NanoGrid& grid, const Vec3i& ijk)
 {
-  openvdb::Mat4R m = openvdb::Mat4R::identity();
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const Vec3d step = placement.direction[axis] * placement.spacingMm[axis];
-    for (int c = 0; c < 3; ++c)
-    {
-      m[axis][c] = step[c];
-    }
-    m[3][axis] = placement.originMm[axis];
-  }
-  return openvdb::math::Transform::createLinearTransform(m);
-}
-
-template<class Value>
-Value valueAt(const NanoGrid& grid, const Vec3i& ijk)
-{
-  const auto* typed = grid.storage->handle.grid<Value>();
+  const auto* typed = grid.storage->handle.grid<Build>();
   return typed->tree().getValue(nanovdb::Coord(ijk.x, ijk.y, ijk.z));
-}
-
-/// First and last (exclusive) voxel of a label; an empty box when it does not occur.
-std::pair<Vec3i, Vec3i> labelBounds(const LabelVolume& volume, int labelId)
-{
-  const Vec3i n = volume.placement.size;
-  std::mutex mutex;
-  Vec3i first = n;
-  Vec3i last(0);
-  parallelFor(n.z, {}, [&](int k) {
-    Vec3i lo = n;
-    Vec3i hi(0);
-    for (int j = 0; j < n.y; ++j)
-    {
-      const std::uint16_t* row = volume.voxels.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-      const std::uint16_t* end = row + n.x;
-      const std::uint16_t* left = std::find(row, end, std::uint16_t(labelId));
-      if (left == end)
-      {
-        continue;
-      }
-      const std::uint16_t* right = end;
-      while (right[-1] != labelId)
-      {
-        --right;
-      }
-      lo = glm::min(lo, Vec3i(int(left - row), j, k));
-      hi = glm::max(hi, Vec3i(int(right - row), j + 1, k + 1));
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    first = glm::min(first, lo);
-    last = glm::max(last, hi);
-  });
-  return { first, last };
 }
 
 /// Whether the voxels of the box [first, last), clipped to the volume, are partly `labelId` and partly not.
@@ -120,7 +70,7 @@ int LabelGrid::at(const Vec3i& ijk) const
 
 float SurfaceField::at(const Vec3i& ijk) const
 {
-  return valueAt<float>(sdf, ijk);
+  return valueAt<nanovdb::Fp8>(sdf, ijk);
 }
 
 LabelGrid buildLabelGrid(const LabelVolume& volume, const Progress& progress)
@@ -153,7 +103,44 @@ LabelGrid buildLabelGrid(const LabelVolume& volume, const Progress& progress)
   return result;
 }
 
-SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress& progress)
+std::vector<VoxelBox> labelBoxes(const LabelVolume& volume)
+{
+  const Vec3i n = volume.placement.size;
+  using BoxOfId = std::vector<VoxelBox>;
+  tbb::enumerable_thread_specific<BoxOfId> workers([&] { return BoxOfId(65536, VoxelBox{ n, Vec3i(0) }); });
+  parallelFor(n.z, {}, [&](int k) {
+    BoxOfId& boxes = workers.local();
+    for (int j = 0; j < n.y; ++j)
+    {
+      const std::uint16_t* row = volume.voxels.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+      for (int i = 0; i < n.x;)
+      {
+        const int start = i;
+        while (i < n.x && row[i] == row[start])
+        {
+          ++i;
+        }
+        VoxelBox& box = boxes[row[start]];
+        box.first = glm::min(box.first, Vec3i(start, j, k));
+        box.last = glm::max(box.last, Vec3i(i, j + 1, k + 1));
+      }
+    }
+  });
+  std::vector<VoxelBox> result;
+  for (const LabelInfo& label : volume.labels)
+  {
+    VoxelBox all{ n, Vec3i(0) };
+    for (const BoxOfId& boxes : workers)
+    {
+      all.first = glm::min(all.first, boxes[std::size_t(label.id)].first);
+      all.last = glm::max(all.last, boxes[std::size_t(label.id)].last);
+    }
+    result.push_back(all);
+  }
+  return result;
+}
+
+SurfaceField buildSurface(const LabelVolume& volume, int labelId, const VoxelBox& box, const Progress& progress)
 {
   openvdb::initialize(); // does nothing after the first time
   const GridPlacement& placement = volume.placement;
@@ -163,15 +150,15 @@ SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress
   const GaussianAxes gaussian = makeGaussian(placement.spacingMm, field.smoothingMm);
   // Beyond 2.6 sigma the smoothed occupancy of a plane is 0 or 1.
   field.bandMm = 2.5 * field.smoothingMm;
-  std::tie(field.first, field.last) = labelBounds(volume, labelId);
-  if (field.last.x <= field.first.x)
+  field.box = box;
+  if (box.empty())
   {
     throw Error("label " + std::to_string(labelId) + " has no voxels: choose one of the labels that occur");
   }
 
   // Leaves are aligned to OpenVDB's; negative coordinates round down.
-  const Vec3i low = glm::max(field.first - gaussian.radius, Vec3i(0)) / leafEdge;
-  const Vec3i high = (glm::min(field.last + gaussian.radius, placement.size) + (leafEdge - 1)) / leafEdge;
+  const Vec3i low = glm::max(box.first - gaussian.radius, Vec3i(0)) / leafEdge;
+  const Vec3i high = (glm::min(box.last + gaussian.radius, placement.size) + (leafEdge - 1)) / leafEdge;
   const Vec3i leaves = high - low;
   tbb::enumerable_thread_specific<MaskSmoother<std::uint16_t>> smoothers(
     [&] { return MaskSmoother<std::uint16_t>(volume.voxels.data(), placement.size); });
@@ -225,14 +212,14 @@ SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress
     }
   }
   openvdb::tools::signedFloodFill(grid->tree());
-  field.sdf = nanoFromOpen(*grid);
+  field.sdf = compactNanoFromOpen(*grid);
   return field;
 }
 
 TriangleSurface meshSurface(const LabelVolume& volume, const SurfaceField& field)
 {
   openvdb::initialize(); // does nothing after the first time
-  const auto grid = openFromNano(field.sdf);
+  const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(openFromNano(field.sdf));
   // In index space: OpenVDB's mesher would apply the grid's transform, of which NanoVDB keeps single precision.
   grid->setTransform(openvdb::math::Transform::createLinearTransform());
   std::vector<openvdb::Vec3s> points;

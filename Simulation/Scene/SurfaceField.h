@@ -2,6 +2,7 @@
 
 #include "Labels/LabelVolume.h"
 #include "Progress.h"
+#include "Scene/VoxelBox.h"
 
 #include <array>
 #include <cstddef>
@@ -41,21 +42,25 @@ struct TriangleSurface
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// One label's surface: a narrow-band signed distance field in mm, negative inside, as a NanoVDB float grid over the
-/// voxel centres. It is the distance of the label's occupancy smoothed by a Gaussian of one voxel (isotropic in mm,
-/// sigma = cube root of the voxel's volume): d = -sigma probit(occupancy), exact for a plane.
+/// The bounding box of each of `volume.labels`, in their order, in one pass over the voxels.
+std::vector<VoxelBox> labelBoxes(const LabelVolume& volume);
+
+/// One label's surface: a narrow-band signed distance field in mm, negative inside, as a NanoVDB grid over the voxel
+/// centres (Fp8: 8 bits a voxel between a leaf's extremes, so rounded to a hundredth of the band at most). It is the
+/// distance of the label's occupancy smoothed by a Gaussian of one voxel (isotropic in mm, sigma = cube root of the
+/// voxel's volume): d = -sigma probit(occupancy), exact for a plane.
 struct SurfaceField
 {
   int labelId = 0;
   NanoGrid sdf;
   double bandMm = 0.0;      ///< values are clamped to +-band, which is also the background
   double smoothingMm = 0.0; ///< sigma
-  Vec3i first{ 0, 0, 0 };   ///< the label's bounding box in voxels
-  Vec3i last{ 0, 0, 0 };    ///< exclusive
+  VoxelBox box;             ///< the label's bounding box
 
   float at(const Vec3i& ijk) const; ///< signed distance at a voxel centre, mm
 };
-SurfaceField buildSurface(const LabelVolume& volume, int labelId, const Progress& progress = {});
+/// `box` is the label's bounding box. Throws Error when it is empty.
+SurfaceField buildSurface(const LabelVolume& volume, int labelId, const VoxelBox& box, const Progress& progress = {});
 
 /// The zero level of a field as triangles, `volume` placing it in the world.
 TriangleSurface meshSurface(const LabelVolume& volume, const SurfaceField& field);

@@ -1,22 +1,18 @@
 #include "Scene/TraceRegion.h"
 
-#include "Kernel/Lobe.h"
 #include "ParallelFor.h"
-#include "Scene/SmoothedMask.h"
+#include "Scene/RecordBaker.h"
 #include "Simd.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
 
 namespace sono {
 
 namespace {
 
-constexpr int block = 8;        // edge of the blocks that are smoothed together, voxels
 constexpr int maxDistance = 64; // of the skip map
 
 /// 1 where a voxel of the row has a face neighbour of another tissue. Neighbours outside the volume do not count.
@@ -98,67 +94,166 @@ void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n)
   }
 }
 
-/// Bakes the records of one block of the box.
-class RecordBaker
+/// Fills a region step by step.
+class RegionBuilder
 {
 public:
-  RecordBaker(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm)
-    : smoother_(tissues, size)
-    , spacing_(spacingMm)
-    , sigma_(std::cbrt(spacingMm.x * spacingMm.y * spacingMm.z))
-    , position_(makeGaussian(spacingMm, sigma_))
-    , normalSigma_(std::clamp(1.35 * std::max({ spacingMm.x, spacingMm.y, spacingMm.z }), 2.0 * sigma_, 3.0 * sigma_))
-    , normal_(makeGaussian(spacingMm, normalSigma_))
+  RegionBuilder(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, TraceRegion& region)
+    : tissues_(tissues)
+    , size_(size)
+    , spacingMm_(spacingMm)
+    , region_(region)
+    , n_(region.box.size())
+    , boundary_(std::size_t(n_.x) * n_.y * n_.z)
   {
   }
 
-  /// `inBlock` lists the block's boundary voxels of one tissue, relative to `first`.
-  template<class Store>
-  void bake(std::uint8_t tissue, const Vec3i& first, const std::vector<Vec3i>& inBlock, const Store& store)
+  void markBoundaries()
   {
-    smoother_.smooth(tissue, first, Vec3i(block), position_, fine_.data());
-    smoother_.smooth(tissue, first - 1, Vec3i(block + 2), normal_, coarse_.data());
-    for (const Vec3i& v : inBlock)
+    parallelFor(n_.z, {}, [&](int k) {
+      for (int j = 0; j < n_.y; ++j)
+      {
+        markBoundaryRow(source(j, k), source(j - 1, k), source(j + 1, k), source(j, k - 1), source(j, k + 1),
+                        region_.box.first.x, n_.x, size_.x, boundary_.data() + linear(0, j, k));
+      }
+    });
+  }
+
+  /// Half-width of the uniform cube around every voxel: one less than the Chebyshev distance to the nearest voxel that
+  /// touches another tissue, or to the border.
+  std::vector<std::uint8_t> distances() const
+  {
+    std::vector<std::uint8_t> distance(boundary_.size(), std::uint8_t(maxDistance));
+    for (int k = 0; k < n_.z; ++k)
     {
-      store(v, encodeRecord(recordAt(v)));
+      for (int j = 0; j < n_.y; ++j)
+      {
+        std::uint8_t* row = distance.data() + linear(0, j, k);
+        const std::uint8_t* marked = boundary_.data() + linear(0, j, k);
+        const bool border = k == 0 || j == 0 || k == n_.z - 1 || j == n_.y - 1;
+        std::transform(marked, marked + n_.x, row,
+                       [&](std::uint8_t m) { return std::uint8_t(m != 0 || border ? 0 : maxDistance); });
+        row[0] = row[n_.x - 1] = 0;
+      }
     }
+    chebyshevDistance(distance, n_);
+    return distance;
+  }
+
+  void writeWords(const std::vector<std::uint8_t>& distance)
+  {
+    const Vec3i blocks = TissueCells::blocksFor(n_);
+    const std::size_t count = std::size_t(blocks.x) * blocks.y * blocks.z;
+    region_.cell.assign(count * 32, 0);
+    region_.firstRecord.assign(count, 0);
+    const TissueCells layout = region_.view();
+    parallelFor(blocks.z, {}, [&](int layer) {
+      for (int k = 2 * layer; k < std::min(2 * layer + 2, n_.z); ++k)
+      {
+        for (int j = 0; j < n_.y; ++j)
+        {
+          const std::uint8_t* row = source(j, k) + region_.box.first.x;
+          const std::size_t at = linear(0, j, k);
+          for (int i = 0; i < n_.x; ++i)
+          {
+            const std::size_t offset = layout.offset(i, j, k);
+            // In its block's order of visits a boundary voxel gets the next rank.
+            const int high = boundary_[at + i] ? 128 + int(region_.firstRecord[offset >> 5]++)
+                                               : std::max(0, int(distance[at + i]) - 1);
+            region_.cell[offset] = std::uint16_t(row[i] | (high << 8));
+          }
+        }
+      }
+    });
+    std::uint32_t total = 0;
+    for (std::uint32_t& first : region_.firstRecord)
+    {
+      const std::uint32_t own = first;
+      first = total;
+      total += own;
+    }
+    region_.record.assign(total, 0u);
+  }
+
+  void bakeRecords(const Progress& progress)
+  {
+    const TissueCells layout = region_.view();
+    tbb::enumerable_thread_specific<Worker> workers([&] {
+      return Worker{ RecordBaker(tissues_, size_, spacingMm_), {}, {} };
+    });
+    const Vec3i blocks = (n_ + (recordBlock - 1)) / recordBlock;
+    parallelFor(blocks.y * blocks.z, progress, [&](int row) {
+      Worker& worker = workers.local();
+      for (int x = 0; x < blocks.x; ++x)
+      {
+        const Vec3i corner = Vec3i(x, row % blocks.y, row / blocks.y) * recordBlock;
+        collect(corner, worker);
+        for (const std::uint8_t tissue : worker.tissues)
+        {
+          worker.baker.bake(tissue, region_.box.first + corner, worker.voxels[tissue],
+                            [&](const Vec3i& v, std::uint32_t bits) {
+                              const std::size_t offset = layout.offset(corner + v);
+                              const std::uint32_t rank = (region_.cell[offset] >> 8) & 31u;
+                              region_.record[region_.firstRecord[offset >> 5] + rank] = bits;
+                            });
+          worker.voxels[tissue].clear();
+        }
+        worker.tissues.clear();
+      }
+    });
   }
 
 private:
-  BoundaryRecord recordAt(const Vec3i& v) const
+  struct Worker
   {
-    const auto coarse = [&](int x, int y, int z)
-    { return coarse_[std::size_t(v.x + 1 + x + (block + 2) * (v.y + 1 + y + (block + 2) * (v.z + 1 + z)))]; };
-    const auto depth = [&](int x, int y, int z)
-    { return normalFromUpperTail(std::clamp(coarse(x, y, z), 1e-6f, 1.0f - 1e-6f)); };
-    // Of the occupancy for the confidence; of its probit for the direction, since that is linear across a plane and
-    // a difference over a thick voxel therefore exact.
-    const Vec3d gradient((coarse(1, 0, 0) - coarse(-1, 0, 0)) / (2.0 * spacing_.x),
-                         (coarse(0, 1, 0) - coarse(0, -1, 0)) / (2.0 * spacing_.y),
-                         (coarse(0, 0, 1) - coarse(0, 0, -1)) / (2.0 * spacing_.z));
-    const Vec3d outward((depth(1, 0, 0) - depth(-1, 0, 0)) / spacing_.x,
-                        (depth(0, 1, 0) - depth(0, -1, 0)) / spacing_.y,
-                        (depth(0, 0, 1) - depth(0, 0, -1)) / spacing_.z);
-    const double slope = glm::length(gradient);
-    const double steepness = glm::length(outward);
-    BoundaryRecord record;
-    record.normal = steepness > 1e-9 ? Vec3f(outward / steepness) : Vec3f(0.0f, 0.0f, 1.0f);
-    // A plane's smoothed occupancy has the slope 1 / (sigma sqrt(2 pi)).
-    record.confidence = float(slope * normalSigma_ * 2.5066282746);
-    const float share = fine_[std::size_t(v.x + block * (v.y + block * v.z))];
-    // For a plane at distance d inside, occupancy = Phi(d / sigma).
-    record.offset = -normalFromUpperTail(std::clamp(share, 1e-4f, 1.0f - 1e-4f));
-    return record;
+    RecordBaker baker;
+    std::vector<std::uint8_t> tissues; // that have boundary voxels in the block
+    std::array<std::vector<Vec3i>, 256> voxels;
+  };
+
+  /// Row of the volume at (j, k) of the box; beyond the volume its border goes on.
+  const std::uint8_t* source(int j, int k) const
+  {
+    const int y = std::clamp(region_.box.first.y + j, 0, size_.y - 1);
+    const int z = std::clamp(region_.box.first.z + k, 0, size_.z - 1);
+    return tissues_ + std::size_t(size_.x) * (std::size_t(y) + std::size_t(size_.y) * z);
+  }
+  std::size_t linear(int i, int j, int k) const
+  {
+    return std::size_t(i) + std::size_t(n_.x) * (std::size_t(j) + std::size_t(n_.y) * k);
   }
 
-  MaskSmoother<std::uint8_t> smoother_;
-  Vec3d spacing_;
-  double sigma_;
-  GaussianAxes position_;
-  double normalSigma_;
-  GaussianAxes normal_;
-  std::array<float, std::size_t(block) * block * block> fine_{};
-  std::array<float, std::size_t(block + 2) * (block + 2) * (block + 2)> coarse_{};
+  /// The boundary voxels of a block by tissue, relative to its corner.
+  void collect(const Vec3i& corner, Worker& worker) const
+  {
+    const Vec3i end = glm::min(corner + recordBlock, n_);
+    for (int k = corner.z; k < end.z; ++k)
+    {
+      for (int j = corner.y; j < end.y; ++j)
+      {
+        const std::uint8_t* row = source(j, k) + region_.box.first.x;
+        for (int i = corner.x; i < end.x; ++i)
+        {
+          if (boundary_[linear(i, j, k)])
+          {
+            std::vector<Vec3i>& voxels = worker.voxels[row[i]];
+            if (voxels.empty())
+            {
+              worker.tissues.push_back(row[i]);
+            }
+            voxels.push_back(Vec3i(i, j, k) - corner);
+          }
+        }
+      }
+    }
+  }
+
+  const std::uint8_t* tissues_;
+  Vec3i size_;
+  Vec3d spacingMm_;
+  TraceRegion& region_;
+  Vec3i n_;
+  std::vector<std::uint8_t> boundary_; // 1 where a voxel touches another tissue
 };
 
 } // namespace
@@ -167,6 +262,7 @@ TissueCells TraceRegion::view() const
 {
   TissueCells cells;
   cells.cell = cell.data();
+  cells.firstRecord = firstRecord.data();
   cells.record = record.data();
   cells.size = box.size();
   cells.blocks = TissueCells::blocksFor(cells.size);
@@ -181,124 +277,12 @@ TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, con
   TraceRegion region;
   region.box = box;
   region.spacing = Vec3f(spacingMm);
-  const Vec3i n = box.size();
-  const std::size_t count = std::size_t(n.x) * n.y * n.z;
-  const Vec3i blocked = TissueCells::blocksFor(n);
-  const std::size_t stored = std::size_t(blocked.x) * blocked.y * blocked.z * 32;
-  region.cell.assign(stored, 0);
-  region.record.assign(stored, 0u);
-  const TissueCells layout = region.view();
-  std::vector<std::uint8_t> boundary(count);
-
-  const auto source = [&](int y, int z) {
-    return tissues + std::size_t(size.x) *
-                       (std::size_t(std::clamp(y, 0, size.y - 1)) + std::size_t(size.y) * std::clamp(z, 0, size.z - 1));
-  };
-  parallelFor(n.z, {}, [&](int k) {
-    const int z = box.first.z + k;
-    for (int j = 0; j < n.y; ++j)
-    {
-      const int y = box.first.y + j;
-      markBoundaryRow(source(y, z), source(y - 1, z), source(y + 1, z), source(y, z - 1), source(y, z + 1), box.first.x,
-                      n.x, size.x, boundary.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k));
-    }
-  });
+  RegionBuilder builder(tissues, size, spacingMm, region);
+  builder.markBoundaries();
   report(progress, 0.1);
-
-  struct Worker
-  {
-    RecordBaker baker;
-    std::vector<Vec3i> voxels;
-  };
-  tbb::enumerable_thread_specific<Worker> workers([&] { return Worker{ RecordBaker(tissues, size, spacingMm), {} }; });
-  const Vec3i blocks = (n + (block - 1)) / block;
-  std::atomic<std::size_t> boundaryVoxels{ 0 };
-  const Progress baking = progress ? Progress([&](double f) { return progress(0.1 + 0.7 * f); }) : Progress{};
-  parallelFor(blocks.y * blocks.z, baking, [&](int slab) {
-    Worker& worker = workers.local();
-    std::array<bool, 256> present{};
-    for (int bx = 0; bx < blocks.x; ++bx)
-    {
-      const Vec3i corner(bx * block, (slab % blocks.y) * block, (slab / blocks.y) * block);
-      const Vec3i extent = glm::min(Vec3i(block), n - corner);
-      std::vector<std::uint8_t> found;
-      const auto forBoundary = [&](auto&& visit) {
-        for (int z = 0; z < extent.z; ++z)
-        {
-          for (int y = 0; y < extent.y; ++y)
-          {
-            const std::size_t at = std::size_t(corner.x) +
-                                   std::size_t(n.x) * (std::size_t(corner.y + y) + std::size_t(n.y) * (corner.z + z));
-            const std::uint8_t* row =
-              source(box.first.y + corner.y + y, box.first.z + corner.z + z) + box.first.x + corner.x;
-            for (int x = 0; x < extent.x; ++x)
-            {
-              if (boundary[at + x])
-              {
-                visit(row[x], Vec3i(x, y, z));
-              }
-            }
-          }
-        }
-      };
-      forBoundary([&](std::uint8_t tissue, const Vec3i&) {
-        if (!present[tissue])
-        {
-          present[tissue] = true;
-          found.push_back(tissue);
-        }
-      });
-      for (std::uint8_t tissue : found)
-      {
-        present[tissue] = false;
-        worker.voxels.clear();
-        forBoundary([&](std::uint8_t t, const Vec3i& v) {
-          if (t == tissue)
-          {
-            worker.voxels.push_back(v);
-          }
-        });
-        boundaryVoxels += worker.voxels.size();
-        worker.baker.bake(tissue, box.first + corner, worker.voxels,
-                          [&](const Vec3i& v, std::uint32_t bits) { region.record[layout.offset(corner + v)] = bits; });
-      }
-    }
-  });
-  region.boundaryVoxels = boundaryVoxels;
-
-  // Distances to the nearest voxel that touches another tissue, or to the border; one less is a uniform cube.
-  std::vector<std::uint8_t> distance(count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    distance[i] = boundary[i] ? 0 : maxDistance;
-  }
-  for (int k = 0; k < n.z; ++k)
-  {
-    for (int j = 0; j < n.y; ++j)
-    {
-      std::uint8_t* row = distance.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-      if (k == 0 || j == 0 || k == n.z - 1 || j == n.y - 1)
-      {
-        std::fill(row, row + n.x, std::uint8_t(0));
-      }
-      row[0] = row[n.x - 1] = 0;
-    }
-  }
-  chebyshevDistance(distance, n);
-  report(progress, 0.95);
-  parallelFor(n.z, {}, [&](int k) {
-    for (int j = 0; j < n.y; ++j)
-    {
-      const std::size_t at = std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-      const std::uint8_t* row = source(box.first.y + j, box.first.z + k) + box.first.x;
-      for (int i = 0; i < n.x; ++i)
-      {
-        const int skip = std::max(0, int(distance[at + i]) - 1);
-        region.cell[layout.offset(i, j, k)] = std::uint16_t(row[i] | (skip << 8));
-      }
-    }
-  });
-  report(progress, 1.0);
+  builder.writeWords(builder.distances());
+  report(progress, 0.25);
+  builder.bakeRecords(progress ? Progress([&](double f) { return progress(0.25 + 0.75 * f); }) : Progress{});
   return region;
 }
 

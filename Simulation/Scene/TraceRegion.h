@@ -17,11 +17,14 @@ struct TraceRegion
   VoxelBox box;
   Vec3f spacing{ 1.0f, 1.0f, 1.0f };
   std::vector<std::uint16_t> cell;
-  std::vector<std::uint32_t> record;
-  std::size_t boundaryVoxels = 0;
+  std::vector<std::uint32_t> firstRecord;
+  std::vector<std::uint32_t> record; ///< one a voxel that touches another tissue
 
   TissueCells view() const;
-  std::size_t bytes() const { return cell.size() * sizeof(cell[0]) + record.size() * sizeof(record[0]); }
+  std::size_t bytes() const
+  {
+    return cell.size() * sizeof(cell[0]) + (firstRecord.size() + record.size()) * sizeof(record[0]);
+  }
 };
 
 /// `tissues` are the tissue indices of the whole volume of `size` voxels, i fastest; `box` lies inside it.

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// A stage of `measure`: a function that prints its figures. The file stages/<name>.cpp defines one and registers it by
 /// a `const Stage` of that name; its first line is a comment that says what is measured.

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "Labels/LabelVolume.h"
+
+#include <string>
+#include <vector>
+
+namespace sono {
+
+/// Names and colours of labels from a table:
+/// - CSV with a header line and the columns `id,name` and perhaps `r,g,b`, or those of 3D Slicer's colour tables
+///   (`LabelValue,Name,Color_R,Color_G,Color_B`); colours 0..255;
+/// - ITK-SNAP label description: lines of `id r g b alpha visible mesh "name"`; its "Clear Label" names nothing;
+/// - 3D Slicer colour table (.ctbl): lines of `id name r g b a`;
+/// - plain text: lines of `id name`, perhaps with one number after it (a voxel count).
+/// In the last three '#' starts a comment and lines before the first that begins with a number are skipped.
+/// Throws Error naming file and line for one that is missing or not of these forms.
+std::vector<LabelInfo> readLabels(const std::string& path);
+
+/// The table that belongs to the label map `<stem><ending>`: `<stem>.csv`, .label, .ctbl or .txt; else
+/// `<start>_labels` with these endings, where <stem> begins with <start>_; else `labels` with these endings. A file
+/// that holds no labels is passed over. Empty when there is none.
+std::string labelTableBeside(const std::string& stem);
+
+} // namespace sono

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "Labels/LabelVolume.h"
+
+#include <string>
+
+namespace sono {
+
+/// Reads a MetaImage label map (.mha, or .mhd with its data file): binary, with or without zlib compression, either
+/// byte order. World coordinates are LPS mm: TransformMatrix lists the world directions of i, j, k one after the other,
+/// as ITK has it; AnatomicalOrientation only describes them and is not used. `labels` stays empty: the format has no
+/// names. Throws Error as readLabelMap does.
+LabelVolume readMeta(const std::string& path);
+
+} // namespace sono

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "Probe/ArrayAperture.h"
+#include "Probe/PulseEchoField.h"
+#include "Progress.h"
+
+#include <vector>
+
+namespace sono {
+
+/// Pressure amplitude of the transmitted beam, straight ahead, on the grid (lateral fastest), relative to that of a
+/// plane wave from a piston with the elements' velocity.
+///
+/// Fraunhofer per element as in SIMUS (Garcia 2022, "SIMUS: an open-source simulator for medical ultrasound imaging,
+/// part I", Comput. Methods Programs Biomed. 218, eq. 1 to 12) in a rigid baffle: elements are split in width and
+/// height into pieces of at most half a wavelength, and
+///   p = k0 / (2 pi) sum over pieces of  w A sinc(k b sin theta_x) sinc(k h sin theta_y) exp(i k (r - d)) / r
+/// with the pieces' half sizes b and h, area A, apodization w, and the delay length d of the focus and the lens.
+/// sin theta_x is taken in the image plane, which lets the sum over the height be shared by all elements at the same
+/// distance. With a bandwidth, the result is the root of the mean square over five frequencies, the centres of
+/// equal slices of the band at -6 dB, weighted by the power of the Gaussian spectrum there. Single precision; an
+/// error of about 1e-3 of the local maximum from interpolation.
+/// Points nearer than a quarter wavelength to an element are treated as that far from it. The result does not
+/// depend on the number of threads. Throws Error naming the parameter or axis, Aborted.
+std::vector<float> transmitField(const ArrayAperture& aperture, const FieldGrid& grid, const Progress& progress = {});
+
+/// The two-way weight: transmitted amplitude times received amplitude, where reception uses the same elements with
+/// delays that focus at each depth; the root of the mean square of that product over the same frequencies.
+/// Throws as transmitField.
+PulseEchoField pulseEchoField(const ArrayAperture& aperture, const FieldGrid& grid, const Progress& progress = {});
+
+} // namespace sono

@@ -1,0 +1,162 @@
+#include "TestScenes.h"
+
+#include "Trace/Trace.h"
+
+#include <gtest/gtest.h>
+
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace sono;
+using namespace sono::test;
+
+/// Curved and flat boundaries of middling contrast, in a volume that every probe's reach covers whole.
+std::unique_ptr<Scene> makeBusyScene()
+{
+  return makeScene(Vec3i(64, 48, 64), Vec3d(1.0),
+                   { makeTissue("a", 1.5, 1540, 0.4), makeTissue("b", 2.4, 1700, 0.6), makeTissue("c", 4.0, 2500, 1.0),
+                     makeTissue("d", 1.2, 1400, 0.3) },
+                   [](const Vec3d& p) {
+                     if (glm::length(p - Vec3d(30.0, 24.0, 30.0)) < 9.0)
+                     {
+                       return 2;
+                     }
+                     return p.z < 14.0 + 0.2 * p.x ? 0 : (p.z < 45.0 ? 1 : 3);
+                   });
+}
+
+std::vector<ScanLine> fan(int count)
+{
+  std::vector<ScanLine> lines;
+  for (int i = 0; i < count; ++i)
+  {
+    const double angle = (i - 0.5 * (count - 1)) * 0.05;
+    lines.push_back(makeLine({ 32.3, 24.2, 0.0 }, { std::sin(angle), 0.01, std::cos(angle) }));
+  }
+  return lines;
+}
+
+TraceSettings busySettings()
+{
+  TraceSettings s;
+  s.depthMm = 60.0;
+  s.radialBinMm = 0.5;
+  s.pathsPerLine = 256;
+  s.coherenceMm = 5.0;
+  return s;
+}
+
+TEST(TraceError, StandardErrorIsTheSpreadOverThirtySeeds)
+{
+  const auto scene = makeBusyScene();
+  const auto lines = fan(16);
+  constexpr int seeds = 30;
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+  {
+    for (const int paths : { 100, 256 })
+    {
+      TraceSettings s = busySettings();
+      s.sampling = sampling;
+      s.pathsPerLine = paths;
+      std::vector<double> sum;
+      std::vector<double> squares;
+      double reported = 0.0;
+      for (int seed = 0; seed < seeds; ++seed)
+      {
+        s.seed = std::uint64_t(100 + seed);
+        const TracedLines traced = trace(*scene, lines, s);
+        sum.resize(traced.intensity.size());
+        squares.resize(traced.intensity.size());
+        for (std::size_t b = 0; b < sum.size(); ++b)
+        {
+          sum[b] += traced.intensity[b];
+          squares[b] += double(traced.intensity[b]) * traced.intensity[b];
+          reported += double(traced.standardError[b]) * traced.standardError[b] / seeds;
+        }
+      }
+      double observed = 0.0;
+      for (std::size_t b = 0; b < sum.size(); ++b)
+      {
+        observed += (squares[b] - sum[b] * sum[b] / seeds) / (seeds - 1);
+      }
+      EXPECT_NEAR(std::sqrt(reported / observed), 1.0, 0.15) << int(sampling) << " paths " << paths;
+    }
+  }
+}
+
+TEST(TraceError, LowDiscrepancyNeedsFewerPaths)
+{
+  // A first boundary with a lobe, and nothing beyond: the stratified pairs must pay there.
+  const auto scene =
+    makeScene(Vec3i(60), Vec3d(1.0), { makeTissue("a", 1.5, 1540, 0.5), makeTissue("b", 1.8, 1600, 0.5) },
+              [](const Vec3d& p) { return p.z < 20.0 ? 0 : 1; });
+  const auto lines = fan(12);
+  double error[2] = { 0.0, 0.0 };
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+  {
+    TraceSettings s = busySettings();
+    s.pathsPerLine = 1024;
+    s.sampling = sampling;
+    const TracedLines traced = trace(*scene, lines, s);
+    for (const float e : traced.standardError)
+    {
+      error[int(sampling)] += double(e) * e;
+    }
+  }
+  // Half the error is a quarter of the paths.
+  EXPECT_LT(std::sqrt(error[int(Sampling::LowDiscrepancy)]), 0.5 * std::sqrt(error[int(Sampling::Independent)]));
+}
+
+void expectSameBits(const TracedLines& one, const TracedLines& two)
+{
+  EXPECT_EQ(one.intensity, two.intensity);
+  EXPECT_EQ(one.standardError, two.standardError);
+  EXPECT_EQ(one.boundaryEcho, two.boundaryEcho);
+  EXPECT_EQ(one.segments, two.segments);
+}
+
+TEST(TraceDeterminism, OneTwoAndEightThreadsGiveTheSameBits)
+{
+  const auto lines = fan(24);
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+  {
+    TraceSettings s = busySettings();
+    s.sampling = sampling;
+    std::vector<TracedLines> results;
+    for (const std::size_t threads : { 1, 2, 8 })
+    {
+      const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+      // A scene of its own, so that the region is built on as many threads, too.
+      results.push_back(trace(*makeBusyScene(), lines, s));
+    }
+    expectSameBits(results[0], results[1]);
+    expectSameBits(results[0], results[2]);
+  }
+}
+
+TEST(TraceDeterminism, ALineDependsOnItselfAndItsIndexAlone)
+{
+  const auto scene = makeBusyScene();
+  const auto lines = fan(7);
+  TraceSettings s = busySettings();
+  // A reach that covers the whole volume for any choice of lines, so that the coordinates round alike.
+  s.depthMm = 200.0;
+  const TracedLines together = trace(*scene, lines, s);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+  {
+    const TracedLines alone = trace(*scene, std::vector<ScanLine>(i + 1, lines[i]), s);
+    const auto begin = std::ptrdiff_t(i) * together.binCount;
+    const auto echo = std::ptrdiff_t(i) * together.echoCount;
+    EXPECT_TRUE(std::equal(alone.intensity.begin() + begin, alone.intensity.begin() + begin + alone.binCount,
+                           together.intensity.begin() + begin));
+    EXPECT_TRUE(std::equal(alone.standardError.begin() + begin, alone.standardError.begin() + begin + alone.binCount,
+                           together.standardError.begin() + begin));
+    EXPECT_TRUE(std::equal(alone.boundaryEcho.begin() + echo, alone.boundaryEcho.begin() + echo + alone.echoCount,
+                           together.boundaryEcho.begin() + echo));
+  }
+}
+
+} // namespace
