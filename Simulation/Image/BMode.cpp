@@ -1,6 +1,7 @@
 #include "Image/BMode.h"
 
 #include "Image/PixelMath.h"
+#include "Image/ReceiverNoise.h"
 #include "Progress.h"
 
 #include <tbb/blocked_range.h>
@@ -196,6 +197,21 @@ void compressLine(const float* envelope, const std::vector<float>& offsetDb, flo
   }
 }
 
+void mapLine(GreyMap map, std::size_t count, float* grey)
+{
+  switch (map)
+  {
+    case GreyMap::Linear:
+      return;
+    case GreyMap::SquareRoot:
+      std::transform(grey, grey + count, grey, [](float x) { return std::sqrt(x); });
+      return;
+    case GreyMap::Sigmoid:
+      std::transform(grey, grey + count, grey, [](float x) { return x * x * (3.0f - 2.0f * x); });
+      return;
+  }
+}
+
 void validateSizes(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm)
 {
   require(lineCount >= 1, "lineCount", lineCount, "at least 1");
@@ -219,6 +235,9 @@ void BModeSettings::validate() const
           "referenceAmplitude", referenceAmplitude, "in [1.2e-38, 3.4e38]");
   require(dynamicRangeDb > 0.0 && dynamicRangeDb <= 300.0, "dynamicRangeDb", dynamicRangeDb, "in (0, 300] dB");
   require(rejectDb >= 0.0 && rejectDb < dynamicRangeDb, "rejectDb", rejectDb, "in [0, dynamicRangeDb) dB");
+  require(greyMap == GreyMap::Linear || greyMap == GreyMap::SquareRoot || greyMap == GreyMap::Sigmoid, "greyMap",
+          double(int(greyMap)), "linear (0), square root (1) or sigmoid (2)");
+  require(noiseDb <= 200.0, "noiseDb", noiseDb, "at most 200 dB, or minus infinity for none");
   double previousMm = -std::numeric_limits<double>::infinity();
   for (const auto& [depthMm, gain] : tgcCurve)
   {
@@ -229,12 +248,20 @@ void BModeSettings::validate() const
   }
 }
 
-BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm,
+BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int sampleCount, double sampleMm,
                      const BModeSettings& settings)
 {
   settings.validate();
-  validateSizes(envelope, lineCount, sampleCount, sampleMm);
+  validateSizes(echoEnvelope, lineCount, sampleCount, sampleMm);
 
+  std::vector<float> noisy;
+  const bool hasNoise = settings.noiseDb > -std::numeric_limits<double>::infinity();
+  if (hasNoise)
+  {
+    noisy = echoEnvelope;
+    addReceiverNoise(noisy, sampleCount, settings.noiseDb, settings.noiseSeed);
+  }
+  const std::vector<float>& envelope = hasNoise ? noisy : echoEnvelope;
   const std::vector<double> gainDb = depthGainDb(settings, sampleCount, sampleMm);
   BModeLines result{ lineCount, sampleCount, sampleMm, settings.referenceAmplitude, {} };
   if (settings.automaticReference)
@@ -254,6 +281,7 @@ BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int samp
       const std::size_t first = std::size_t(l) * sampleCount;
       compressLine(envelope.data() + first, offsetDb, static_cast<float>(settings.dynamicRangeDb),
                    static_cast<float>(settings.rejectDb), result.grey.data() + first);
+      mapLine(settings.greyMap, std::size_t(sampleCount), result.grey.data() + first);
     }
   });
   return result;

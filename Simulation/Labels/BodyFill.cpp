@@ -196,10 +196,10 @@ std::vector<float> bodyDepth(const LabelVolume& volume, const CoarseGrid& grid, 
   const double grownMm = settings.closingMm + settings.wallMm;
   const Vec3i pad = Vec3i(glm::ceil(grownMm / grid.spacingMm)) + 2;
   const Vec3i wide = grid.size + pad + pad;
-  const std::vector<float> toLabels =
-    distanceTo(padded(labelledBlocks(volume, grid), grid, pad), wide, grid.spacingMm);
+  const std::vector<float> toLabels = distanceTo(padded(labelledBlocks(volume, grid), grid, pad), wide, grid.spacingMm);
   std::vector<char> beyond(toLabels.size());
-  std::transform(toLabels.begin(), toLabels.end(), beyond.begin(), [&](float d) { return double(d) > grownMm ? 1 : 0; });
+  std::transform(toLabels.begin(), toLabels.end(), beyond.begin(),
+                 [&](float d) { return double(d) > grownMm ? 1 : 0; });
   const std::vector<float> fromBeyond = distanceTo(beyond, wide, grid.spacingMm);
   std::vector<float> depth(grid.count());
   forBlocks(grid, [&](const Vec3i& c) {

@@ -107,10 +107,32 @@ struct TargetScene::Embree
   }
 };
 
-TargetScene::TargetScene(const std::vector<TargetSurface>& targets, const Mat3d& toLocal, const Vec3d& cornerWorldMm)
-  : empty_(targets.empty())
+std::vector<BvhTriangle> localTriangles(const std::vector<TargetSurface>& targets, const Mat3d& toLocal,
+                                        const Vec3d& cornerWorldMm)
 {
-  if (empty_)
+  std::vector<BvhTriangle> triangles;
+  // A left-handed grid mirrors the triangles.
+  const double hand = glm::determinant(toLocal);
+  for (std::size_t i = 0; i < targets.size(); ++i)
+  {
+    const TargetSurface& target = targets[i];
+    check(target);
+    const bool flip = signedVolume(target) * hand < 0.0;
+    const auto local = [&](int point) {
+      return Vec3f(toLocal * (target.pointsMm[std::size_t(point)] - cornerWorldMm));
+    };
+    for (const auto& t : target.triangles)
+    {
+      triangles.push_back({ local(t[0]), local(flip ? t[2] : t[1]), local(flip ? t[1] : t[2]), std::int32_t(i) });
+    }
+  }
+  return triangles;
+}
+
+TargetScene::TargetScene(std::vector<BvhTriangle> triangles)
+  : triangles_(std::move(triangles))
+{
+  if (empty())
   {
     return;
   }
@@ -123,36 +145,26 @@ TargetScene::TargetScene(const std::vector<TargetSurface>& targets, const Mat3d&
   embree_->scene = rtcNewScene(embree_->device);
   // Watertight edges: a ray must not slip between two triangles of a thin wire.
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
-  // A left-handed grid mirrors the triangles.
-  const double hand = glm::determinant(toLocal);
-  for (std::size_t i = 0; i < targets.size(); ++i)
+  RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                             3 * sizeof(float), 3 * triangles_.size()));
+  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                 3 * sizeof(unsigned), triangles_.size()));
+  unsigned corner = 0;
+  for (const BvhTriangle& t : triangles_)
   {
-    const TargetSurface& target = targets[i];
-    check(target);
-    const bool flip = signedVolume(target) * hand < 0.0;
-    RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), target.pointsMm.size()));
-    for (const Vec3d& p : target.pointsMm)
+    for (const Vec3f& p : { t.a, t.b, t.c })
     {
-      const Vec3f local(toLocal * (p - cornerWorldMm));
-      *points++ = local.x;
-      *points++ = local.y;
-      *points++ = local.z;
+      *points++ = p.x;
+      *points++ = p.y;
+      *points++ = p.z;
+      *corners++ = corner++;
     }
-    auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), target.triangles.size()));
-    for (const auto& t : target.triangles)
-    {
-      *triangles++ = unsigned(t[0]);
-      *triangles++ = unsigned(flip ? t[2] : t[1]);
-      *triangles++ = unsigned(flip ? t[1] : t[2]);
-    }
-    rtcSetGeometryIntersectFilterFunction(geometry, keepFacing);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(embree_->scene, geometry, unsigned(i));
-    rtcReleaseGeometry(geometry);
   }
+  rtcSetGeometryIntersectFilterFunction(geometry, keepFacing);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree_->scene, geometry);
+  rtcReleaseGeometry(geometry);
   rtcCommitScene(embree_->scene);
 }
 
@@ -179,7 +191,7 @@ TargetHit TargetScene::nearest(const Vec3f& position, const Vec3f& direction, fl
     return { tMax, Vec3f(0.0f), -1 };
   }
   return { query.ray.tfar, glm::normalize(Vec3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)),
-           int(query.hit.geomID) };
+           triangles_[query.hit.primID].target };
 }
 
 } // namespace sono

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/CellSpace.h"
+#include "Kernel/TargetBvh.h"
 #include "Scene/TissueTable.h"
 
 #include <array>
@@ -21,26 +21,31 @@ struct TargetSurface
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// The targets of a scene in Embree's acceleration structure, in the tracer's local coordinates.
+/// The targets' triangles in the tracer's local coordinates, turned to run counter-clockwise seen from outside;
+/// `target` is the index into `targets`. `toLocal` maps world directions to the region's axes; local = toLocal * (world
+/// - cornerWorldMm). Throws Error naming the target when it has no triangles, an index or coordinate is bad, or the
+/// surface is not closed.
+std::vector<BvhTriangle> localTriangles(const std::vector<TargetSurface>& targets, const Mat3d& toLocal,
+                                        const Vec3d& cornerWorldMm);
+
+/// The targets of a scene in Embree's acceleration structure.
 class TargetScene
 {
 public:
-  /// `toLocal` maps world directions to the region's axes; local = toLocal * (world - cornerWorldMm).
-  /// Throws Error naming the target when it has no triangles, an index or coordinate is bad, or the surface is not
-  /// closed.
-  TargetScene(const std::vector<TargetSurface>& targets, const Mat3d& toLocal, const Vec3d& cornerWorldMm);
+  /// Takes what localTriangles gave.
+  explicit TargetScene(std::vector<BvhTriangle> triangles);
   ~TargetScene();
   TargetScene(const TargetScene&) = delete;
   TargetScene& operator=(const TargetScene&) = delete;
 
-  bool empty() const { return empty_; }
+  bool empty() const { return triangles_.empty(); }
   /// See CellSpace.
   TargetHit nearest(const Vec3f& position, const Vec3f& direction, float tMax, bool inside) const;
 
 private:
   struct Embree;
+  std::vector<BvhTriangle> triangles_;
   std::unique_ptr<Embree> embree_;
-  bool empty_;
 };
 
 /// What CellSpace asks of its targets, on the CPU.

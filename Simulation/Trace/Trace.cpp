@@ -18,7 +18,7 @@ namespace sono {
 namespace {
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
-template <class Space>
+template<class Space>
 inline bool traceLineIn(const Space& space, const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
 {
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);

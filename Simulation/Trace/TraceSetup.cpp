@@ -106,7 +106,7 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   cornerWorldMm = scene.worldFromLocal(corner);
   const Mat3d toLocal = scene.rotationToLocal();
   toWorld = scene.placement().direction;
-  targets = std::make_unique<TargetScene>(targetSurfaces, toLocal, cornerWorldMm);
+  targets = std::make_unique<TargetScene>(localTriangles(targetSurfaces, toLocal, cornerWorldMm));
   for (const Tissue& tissue : scene.tissues())
   {
     media.push_back(makeMedium(tissue, settings.frequencyMHz));

@@ -163,4 +163,13 @@ std::unique_ptr<Scene> makeTorsoScene(LabelVolume volume, const std::string& cac
                              : makeCachedScene(std::move(volume), table, "air", cacheFolder);
 }
 
+VoxelBox torsoFanBox(const Scene& scene)
+{
+  const Vec3d spacing = scene.placement().spacingMm;
+  const double depth = 160.0;
+  const Vec3d apex = scene.localFromWorld({ 230.0, 82.0, 140.0 });
+  const Vec3d low = apex - Vec3d(depth, depth * std::sqrt(0.5), depth);
+  return { Vec3i(glm::floor(low / spacing)), Vec3i(glm::ceil((apex + depth) / spacing)) };
+}
+
 } // namespace sono

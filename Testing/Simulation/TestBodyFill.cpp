@@ -70,16 +70,10 @@ LabelVolume torso(const Vec3i& size, const Vec3d& spacing, const Vec3d& shiftMm)
   return volume;
 }
 
-struct Agreement
+/// Twice the common part of the body and the torso over the sum of both.
+double diceWithTorso(const LabelVolume& volume)
 {
-  double dice = 0.0;
-  double skinDepthMm = 0.0; ///< greatest depth of the skin below the truth's surface, mean over its voxels
-};
-
-Agreement compare(const LabelVolume& volume, const BodyFill& fill)
-{
-  std::size_t both = 0, filled = 0, truth = 0, skin = 0;
-  double depthSum = 0.0;
+  std::size_t both = 0, filled = 0, truth = 0;
   std::size_t at = 0;
   for (int k = 0; k < volume.placement.size.z; ++k)
   {
@@ -92,15 +86,10 @@ Agreement compare(const LabelVolume& volume, const BodyFill& fill)
         filled += body;
         truth += depth > 0.0;
         both += body && depth > 0.0;
-        if (volume.voxels[at] == fill.skinId)
-        {
-          ++skin;
-          depthSum += depth;
-        }
       }
     }
   }
-  return { 2.0 * double(both) / double(filled + truth), depthSum / double(skin) };
+  return 2.0 * double(both) / double(filled + truth);
 }
 
 } // namespace
@@ -160,9 +149,12 @@ TEST(BodyFill, FillsATorsoOfKnownShape)
     EXPECT_EQ(fill.softTissueId, 11);
     EXPECT_EQ(volume.find(10)->name, "skin");
     EXPECT_EQ(volume.find(11)->name, "soft_tissue");
-    const Agreement agreement = compare(volume, fill);
-    EXPECT_GT(agreement.dice, 0.98);
-    EXPECT_NEAR(agreement.skinDepthMm, 1.0, 1.5); // the skin's middle
+    EXPECT_GT(diceWithTorso(volume), 0.98);
+    // The skin's volume over its area: the ellipse's girth (Ramanujan's first approximation) times the height.
+    const double girth = M_PI * (3.0 * (halfWidthMm + halfDepthMm) -
+                                 std::sqrt((3.0 * halfWidthMm + halfDepthMm) * (halfWidthMm + 3.0 * halfDepthMm)));
+    const double skinMm3 = double(fill.skinVoxels) * spacing.x * spacing.y * spacing.z;
+    EXPECT_NEAR(skinMm3 / (girth * 200.0), 2.0, 0.2);
     std::size_t changed = 0;
     for (std::size_t n = 0; n < before.size(); ++n)
     {
@@ -179,7 +171,7 @@ TEST(BodyFill, ACroppedScanHasNoSkinAlongTheCut)
   // The left third of the torso and its back are cut off.
   LabelVolume volume = torso({ 150, 110, 60 }, Vec3d(2.0), { 60.0, 30.0, 0.0 });
   const BodyFill fill = fillBody(volume);
-  EXPECT_GT(compare(volume, fill).dice, 0.98);
+  EXPECT_GT(diceWithTorso(volume), 0.98);
   const Vec3i n = volume.placement.size;
   std::size_t skinAlongCut = 0;
   for (int k = 0; k < n.z; ++k)
@@ -253,6 +245,5 @@ TEST(BodyFill, AgreesWithTheFittedThorax)
     }
   }
   const double dice = 2.0 * double(both) / double(filled + truth);
-  std::printf("Dice %.4f, %zu filled, %zu in the reference\n", dice, filled, truth);
-  EXPECT_GT(dice, 0.9);
+  EXPECT_GT(dice, 0.94); // 0.950: the back, cut at the table, and the belly are guesses
 }

@@ -1,3 +1,4 @@
+#include "FalseRehits.h"
 #include "KernelScene.h"
 #include "TestScenes.h"
 
@@ -276,37 +277,7 @@ TEST(SurfaceRestart, AMirroredPathDoesNotMeetTheSameSphereAgain)
 {
   for (const double radius : { 30.0, 90.0 })
   {
-    const Ellipsoid sphere(Vec3d(0.5), Vec3d(radius));
-    KernelScene scene(sphere.size, sphere.spacing, { makeMedium(1.5f, 1540.0f), makeMedium(5000.0f, 1540.0f) },
-                      [&](const Vec3d& p) { return sphere.level(p) < 1.0 ? 1 : 0; });
-    scene.view.deterministic = true; // the stronger branch, which is the mirrored one
-    std::mt19937 random(9);
-    NullSink sink;
-    constexpr int hits = 100000;
-    int again = 0;
-    int reflected = 0;
-    while (reflected < hits)
-    {
-      PathState path;
-      path.ray = randomRay(scene, sphere.centre, sphere.semiAxes.x, random);
-      if (path.ray.cell.x < 0)
-      {
-        continue;
-      }
-      TraceLine line{ path.ray.position, path.ray.direction };
-      PathBoundary boundary;
-      if (!advanceToBoundary(scene.view, scene.space(), line, path, boundary, sink))
-      {
-        continue;
-      }
-      leaveBoundary(scene.view, scene.space(), boundary, BounceSample{ 0.5f, 0.5f, 0.5f }, path);
-      ++reflected;
-      // The way on is judged by the sphere alone, not by the line's slab.
-      path.length = 0.0f;
-      line = { path.ray.position, path.ray.direction };
-      again += advanceToBoundary(scene.view, scene.space(), line, path, boundary, sink);
-    }
-    EXPECT_LT(double(again) / hits, 0.001) << "radius " << radius;
+    EXPECT_LT(falseRehitShare(radius, 100000), 0.001) << "radius " << radius;
   }
 }
 

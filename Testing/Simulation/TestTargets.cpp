@@ -1,11 +1,13 @@
 #include "TestScenes.h"
 
+#include "Trace/TargetBvh.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
+#include <random>
 
 namespace {
 
@@ -136,6 +138,76 @@ TEST(Targets, OpenOrBrokenSurfacesAreRefusedByName)
   box = makeBox("needle", tissues[1], Vec3d(20.0), Vec3d(40.0));
   box.triangles[0][1] = 99;
   EXPECT_NE(message(box).find("'needle'"), std::string::npos);
+}
+
+/// A sphere of triangles.
+TargetSurface makeSphere(const Vec3d& centre, double radius, int rings)
+{
+  TargetSurface sphere{ "sphere", tissues[1], { centre + Vec3d(0, 0, radius), centre - Vec3d(0, 0, radius) }, {} };
+  const int around = 2 * rings;
+  for (int r = 1; r < rings; ++r)
+  {
+    for (int a = 0; a < around; ++a)
+    {
+      const double polar = M_PI * r / rings;
+      const double azimuth = 2.0 * M_PI * a / around;
+      sphere.pointsMm.push_back(centre + radius * Vec3d(std::sin(polar) * std::cos(azimuth),
+                                                        std::sin(polar) * std::sin(azimuth), std::cos(polar)));
+    }
+  }
+  const auto at = [&](int ring, int a) { return 2 + (ring - 1) * around + a % around; };
+  for (int a = 0; a < around; ++a)
+  {
+    sphere.triangles.push_back({ 0, at(1, a), at(1, a + 1) });
+    sphere.triangles.push_back({ 1, at(rings - 1, a + 1), at(rings - 1, a) });
+    for (int r = 1; r + 1 < rings; ++r)
+    {
+      sphere.triangles.push_back({ at(r, a), at(r + 1, a), at(r + 1, a + 1) });
+      sphere.triangles.push_back({ at(r, a), at(r + 1, a + 1), at(r, a + 1) });
+    }
+  }
+  return sphere;
+}
+
+TEST(TargetBvh, MeetsWhatEmbreeMeets)
+{
+  std::vector<TargetSurface> targets;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 12; ++i)
+  {
+    const Vec3d centre = 100.0 * Vec3d(uniform(random), uniform(random), uniform(random));
+    targets.push_back(i % 3 == 0 ? makeBox("box", tissues[1], centre - 4.0, centre + 7.0)
+                                 : makeSphere(centre, 2.0 + 10.0 * uniform(random), 4 + i));
+  }
+  const auto triangles = localTriangles(targets, Mat3d(1.0), Vec3d(0.0));
+  const TargetScene embree(triangles);
+  const TargetBvh bvh = buildTargetBvh(triangles);
+  int hits = 0;
+  for (int i = 0; i < 200000; ++i)
+  {
+    const Vec3f position(100.0 * Vec3d(uniform(random), uniform(random), uniform(random)));
+    Vec3f direction(Vec3d(uniform(random), uniform(random), uniform(random)) - 0.5);
+    if (i % 10 == 0)
+    {
+      direction = Vec3f(0.0f); // along an axis
+      direction[i / 10 % 3] = i % 20 == 0 ? 1.0f : -1.0f;
+    }
+    direction = glm::normalize(direction);
+    const bool inside = i % 2 == 0;
+    const TargetHit a = embree.nearest(position, direction, 80.0f, inside);
+    const TargetHit b = bvh.view().nearest(position, direction, 80.0f, inside);
+    // Hits within rounding of each other, or of the ray's end, may go either way.
+    ASSERT_NEAR(a.t, b.t, 2e-3) << i;
+    if (a.target != b.target)
+    {
+      ASSERT_TRUE(a.target < 0 || b.target < 0) << i << ' ' << a.target << ' ' << b.target;
+      ASSERT_GT(std::min(a.t, b.t), 79.99f) << i;
+      continue;
+    }
+    hits += a.target >= 0 ? 1 : 0;
+  }
+  EXPECT_GT(hits, 10000);
 }
 
 /// Blobs of two tissues in a third.

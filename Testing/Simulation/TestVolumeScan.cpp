@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Image/PixelMath.h"
 #include "Image/ScanConvert.h"
 #include "Image/ScanConvertVolume.h"
 #include "Probe/ScanGeometry.h"
@@ -200,6 +201,17 @@ TEST(MatrixScan, RefusesWhatMakesNoSense)
   ScanGeometry needle = radial(90.0);
   needle.radiusMm = 0.0;
   expectContains(errorOf([&] { needle.validate(); }), "radiusMm is 0");
+}
+
+TEST(RadialScan, AngleAgreesWithAtan2)
+{
+  for (int k = -1999; k <= 2000; ++k)
+  {
+    const double angle = k * (pi / 2000.0);
+    const auto y = float(43.0 * std::sin(angle));
+    const auto x = float(43.0 * std::cos(angle));
+    EXPECT_NEAR(fastAtan2(y, x), std::atan2(double(y), double(x)), 4e-7) << k;
+  }
 }
 
 TEST(RadialScan, LinesGoRoundTheCatheter)

@@ -3,7 +3,6 @@
 #include "SurfaceAccuracy.h"
 #include "SyntheticTorso.h"
 
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -15,17 +14,6 @@ namespace {
 
 const Vec3i size(512, 512, 300);
 constexpr int labelCount = 40;
-
-/// What paths from a phased sector of 90 degrees and 160 mm depth can reach from the front of the chest, whose axis is
-/// y and whose plane is x, y: the half balls in front of its lines, which are turned by up to 45 degrees.
-VoxelBox fanBox(const Scene& scene)
-{
-  const Vec3d spacing = scene.placement().spacingMm;
-  const double depth = 160.0;
-  const Vec3d apex = scene.localFromWorld({ 230.0, 82.0, 140.0 });
-  const Vec3d low = apex - Vec3d(depth, depth * std::sqrt(0.5), depth);
-  return { Vec3i(glm::floor(low / spacing)), Vec3i(glm::ceil((apex + depth) / spacing)) };
-}
 
 /// The first and the second load of a volume through the cache.
 void measureCache(const LabelVolume& volume)
@@ -55,7 +43,7 @@ void measureScene()
     Stopwatch watch;
     const auto scene = makeTorsoScene(volume);
     const double constructed = watch.lap();
-    const auto region = scene->traceRegion(fanBox(*scene));
+    const auto region = scene->traceRegion(torsoFanBox(*scene));
     const double seconds = watch.lap();
     const Vec3i n = region->box.size();
     printFigure("scene_roi_s", constructed + seconds, "s");

@@ -1,6 +1,7 @@
 // Tracing, A4C of the bundled thorax at 1 mm: time, growth with what lies outside the fan, error against paths, closed
 // forms.
 #include "Trace/Trace.h"
+#include "FalseRehits.h"
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
 #include "Progress.h"
@@ -241,6 +242,8 @@ void measureTrace()
   printFigure("volume_growth_ratio", timeRatio(*scene, *eightfoldScene(), lines), "times");
   printFigure("stack_echo_max_rel_error", stackEchoError(), "of_echo");
   printFigure("snell_max_rad", snellError(), "rad");
+  printFigure("false_rehit_percent",
+              100.0 * std::max(test::falseRehitShare(30.0, 100000), test::falseRehitShare(90.0, 100000)), "%");
   printErrorCurve(*scene, lines);
 }
 
