@@ -10,8 +10,9 @@
 namespace sono {
 
 /// The tracer's cache of a box of the scene (what a probe's fan can reach): see TissueCells. Boundary records come from
-/// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic
-/// in mm (sigma = cube root of the voxel's volume), at voxels that touch another tissue with a face.
+/// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic in mm
+/// (a voxel being the cube root of its volume), at voxels that touch another tissue with a face. In voxels that are long
+/// along one axis the normal's Gaussian is 1.35 of that length, up to three voxels: slices' terraces are wide there.
 struct TraceRegion
 {
   VoxelBox box;
