@@ -15,8 +15,7 @@ using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 
-namespace
-{
+namespace {
 
 constexpr double pi = 3.141592653589793;
 constexpr double none = std::numeric_limits<double>::infinity();
@@ -344,8 +343,7 @@ TEST(ArrayBeam, DoesNotDependOnTheNumberOfThreads)
 {
   const ArrayAperture aperture;
   const FieldGrid grid{ { 0.0, 0.5, 20 }, { 0.0, 0.5, 10 }, { 0.0, 5.0, 20 } };
-  const auto run = [&](std::size_t threads)
-  {
+  const auto run = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return pulseEchoField(aperture, grid).values();
   };
@@ -371,8 +369,7 @@ TEST(ArrayBeam, AperturesCompare)
 
 TEST(ArrayBeam, ErrorsNameTheParameter)
 {
-  const auto refusal = [](const std::function<void(ArrayAperture&)>& change)
-  {
+  const auto refusal = [](const std::function<void(ArrayAperture&)>& change) {
     ArrayAperture aperture;
     change(aperture);
     return errorOf([&] { transmitField(aperture, lineAcross(50.0, 1.0, 2)); });

@@ -8,8 +8,7 @@
 
 using namespace sono;
 
-namespace
-{
+namespace {
 
 /// Labels that tell where they lie, on an oblique, left-handed, anisotropic grid.
 LabelVolume obliqueVolume()
@@ -17,7 +16,8 @@ LabelVolume obliqueVolume()
   LabelVolume volume;
   const double c = std::cos(0.4), s = std::sin(0.4);
   const double d = std::cos(-0.7), t = std::sin(-0.7);
-  Mat3d turn = Mat3d(Vec3d(c, s, 0), Vec3d(-s, c, 0), Vec3d(0, 0, 1)) * Mat3d(Vec3d(1, 0, 0), Vec3d(0, d, t), Vec3d(0, -t, d));
+  Mat3d turn =
+    Mat3d(Vec3d(c, s, 0), Vec3d(-s, c, 0), Vec3d(0, 0, 1)) * Mat3d(Vec3d(1, 0, 0), Vec3d(0, d, t), Vec3d(0, -t, d));
   turn[2] = -turn[2];
   volume.placement = { { 40, 30, 25 }, { 12.0, -7.0, 33.0 }, { 1.0, 1.5, 2.5 }, turn };
   for (int n = 0; n < 40 * 30 * 25; ++n)

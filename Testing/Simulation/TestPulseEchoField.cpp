@@ -16,8 +16,7 @@ using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 
-namespace
-{
+namespace {
 
 const float notANumber = std::numeric_limits<float>::quiet_NaN();
 
@@ -115,7 +114,8 @@ TEST(PulseEchoField, OutsideIsDark)
 
 TEST(PulseEchoField, HalvesAreMirroredAndOneValueFillsItsStep)
 {
-  const PulseEchoField field({ { 0.0, 1.0, 3 }, { 0.0, 2.0, 1 }, { 0.0, 10.0, 2 } }, { 4.0f, 2.0f, 1.0f, 2.0f, 1.0f, 0.0f });
+  const PulseEchoField field({ { 0.0, 1.0, 3 }, { 0.0, 2.0, 1 }, { 0.0, 10.0, 2 } },
+                             { 4.0f, 2.0f, 1.0f, 2.0f, 1.0f, 0.0f });
   const BeamFieldView view = field.view();
   EXPECT_FLOAT_EQ(beamWeight(view, 0.0f, 0.0f, 0.0f), 1.0f);
   EXPECT_FLOAT_EQ(beamWeight(view, 0.5f, 0.9f, 0.0f), 0.75f);
@@ -133,8 +133,9 @@ TEST(PulseEchoField, LargestValueIsOne)
 
 TEST(PulseEchoField, RefusesWhatIsNoField)
 {
-  const auto refusal = [](const FieldGrid& g, std::vector<float> values)
-  { return errorOf([&] { PulseEchoField(g, values, "it"); }); };
+  const auto refusal = [](const FieldGrid& g, std::vector<float> values) {
+    return errorOf([&] { PulseEchoField(g, values, "it"); });
+  };
   FieldGrid wrong = grid;
   wrong.depth.stepMm = -1.0;
   expectContains(refusal(wrong, trilinearValues(1.0)), "it: the depth axis does not ascend");
@@ -195,9 +196,12 @@ TEST_F(FieldFile, ErrorsNameFileAndAxis)
   expectContains(refusal("units", "centers: cell cell cell\nunits", values), "the lateral axis is centred on cells");
   expectContains(refusal("sizes: 3 1 2", "sizes: 3 1 3", values), "no complete NRRD file");
   expectContains(refusal("double", "doubt", values), "no complete NRRD file");
-  expectContains(refusal("spacings", "spacings", { 1.0, 0.5, notANumber, 0.5, 0.2, 0.1 }), "lateral 1, elevational 0, depth 5 mm");
-  expectContains(refusal("spacings", "spacings", { 1.0, 0.5, 0.5, 0.5, -0.2, 0.1 }), "lateral 0.5, elevational 0, depth 15");
-  expectContains(refusal("spacings", "spacings", { 1.0, 0.5, std::numeric_limits<double>::infinity(), 0.5, 0.2, 0.1 }), "holds inf");
+  expectContains(refusal("spacings", "spacings", { 1.0, 0.5, notANumber, 0.5, 0.2, 0.1 }),
+                 "lateral 1, elevational 0, depth 5 mm");
+  expectContains(refusal("spacings", "spacings", { 1.0, 0.5, 0.5, 0.5, -0.2, 0.1 }),
+                 "lateral 0.5, elevational 0, depth 15");
+  expectContains(refusal("spacings", "spacings", { 1.0, 0.5, std::numeric_limits<double>::infinity(), 0.5, 0.2, 0.1 }),
+                 "holds inf");
   write("NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 2\nsizes: 3 2\n\n", values);
   expectContains(errorOf([&] { readPulseEchoField(path); }), "has 2 axes");
   fs::remove(path);

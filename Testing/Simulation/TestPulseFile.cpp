@@ -18,8 +18,7 @@ using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 
-namespace
-{
+namespace {
 
 constexpr double pi = 3.141592653589793;
 constexpr double speedMmPerUs = 1.54;
@@ -33,8 +32,8 @@ SampledPulse gaussian(double frequencyMHz, double sigmaUs, double phase, double 
   for (int n = 0; n < 81; ++n)
   {
     const double t = pulse.startUs + n * pulse.stepUs - shiftUs;
-    pulse.amplitude.push_back(
-      scale * std::exp(-0.5 * t * t / (sigmaUs * sigmaUs)) * std::cos(2.0 * pi * frequencyMHz * t + phase));
+    pulse.amplitude.push_back(scale * std::exp(-0.5 * t * t / (sigmaUs * sigmaUs)) *
+                              std::cos(2.0 * pi * frequencyMHz * t + phase));
   }
   return pulse;
 }
@@ -122,13 +121,11 @@ TEST_F(PulseFile, UndoesTheLossOfALinearSplit)
   const double sampleMm = 0.05; // 2.6 samples a sigma
   const auto envelope = pulseBaseband(pulse, 3.6, sampleMm, sampleMm);
   const auto plain = pulseBaseband(pulse, 3.6, sampleMm);
-  const auto at = [&](const std::vector<std::complex<float>>& e, int n)
-  {
+  const auto at = [&](const std::vector<std::complex<float>>& e, int n) {
     const int index = int(e.size() / 2) + n;
     return index >= 0 && index < int(e.size()) ? std::complex<double>(e[std::size_t(index)]) : std::complex<double>();
   };
-  const auto averageError = [&](const std::vector<std::complex<float>>& e)
-  {
+  const auto averageError = [&](const std::vector<std::complex<float>>& e) {
     // Correlated with the true pulse of each place, in baseband at that place
     std::complex<double> sum = 0.0;
     double energy = 0.0;

@@ -12,8 +12,7 @@
 
 using namespace sono;
 
-namespace
-{
+namespace {
 
 /// 0 dB is 1, black is -60 dB.
 BModeSettings plainSettings()
@@ -158,8 +157,7 @@ TEST(GreyMaps, ClosedForms)
 {
   BModeSettings settings = plainSettings();
   const std::vector<float> envelope{ 1.0f, 0.1f, 0.0316227766f, 0.01f, 0.0005f }; // x = 1, 2/3, 1/2, 1/3, 0
-  const auto grey = [&](GreyMap map)
-  {
+  const auto grey = [&](GreyMap map) {
     settings.greyMap = map;
     return makeBMode(envelope, 1, 5, 1.0, settings).grey;
   };

@@ -19,8 +19,7 @@ using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 
-namespace
-{
+namespace {
 
 constexpr double pi = 3.141592653589793;
 
@@ -49,7 +48,8 @@ ScanGeometry radial(double sectorDeg)
 
 void expectNear(const Vec3d& a, const Vec3d& b, double tolerance)
 {
-  EXPECT_LE(glm::length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z << " for " << b.x << ' ' << b.y << ' ' << b.z;
+  EXPECT_LE(glm::length(a - b), tolerance)
+    << a.x << ' ' << a.y << ' ' << a.z << " for " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
 } // namespace
@@ -169,8 +169,7 @@ TEST(MatrixScan, DoesNotDependOnTheNumberOfThreads)
   const ScanGeometry geometry = matrix();
   std::vector<float> values(25 * 17 * 100);
   std::iota(values.begin(), values.end(), 0.0f);
-  const auto run = [&](std::size_t threads)
-  {
+  const auto run = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return scanConvertVolume(geometry, values, 100, 0.6, 1.0).value;
   };
@@ -186,8 +185,7 @@ TEST(MatrixScan, RefusesWhatMakesNoSense)
   expectContains(errorOf([&] { scanConvertVolume(matrix(), values, 2, -1.0, 1.0); }), "sampleMm");
   expectContains(errorOf([&] { scanConvertVolume(matrix(), values, 0, 30.0, 1.0); }), "sampleCount");
   expectContains(errorOf([&] { scanConvertVolume(matrix(), values, 3, 30.0, 1.0); }), "must have elevations");
-  const auto refusal = [](const std::function<void(ScanGeometry&)>& change)
-  {
+  const auto refusal = [](const std::function<void(ScanGeometry&)>& change) {
     ScanGeometry geometry = matrix();
     change(geometry);
     return errorOf([&] { makeScanLines(geometry, ProbePose()); });
@@ -261,8 +259,8 @@ TEST(RadialScan, PlaneAndBeamAreInverse)
 
 TEST(RadialScan, FullCircleHasNoSeam)
 {
-  // A function of position that is linear from line to line is not periodic; one harmonic is, and 200 lines sample it to
-  // (2 pi / 200)^2 / 8 = 1.2e-4 of its amplitude.
+  // A function of position that is linear from line to line is not periodic; one harmonic is, and 200 lines sample it
+  // to (2 pi / 200)^2 / 8 = 1.2e-4 of its amplitude.
   const ScanGeometry geometry = radial(360.0);
   std::vector<float> values;
   for (int l = 0; l < 200; ++l)
@@ -381,10 +379,10 @@ TEST(ScanOutline, LiesOnTheBorderOfTheScannedArea)
 TEST(ProbePreset, MatrixAndRadial)
 {
   const std::string path = (std::filesystem::temp_directory_path() / "sono_preset_volume.json").string();
-  const auto entry = [](const std::string& key, const std::string& value)
-  { return ", \"" + key + "\": {\"value\": " + value + ", \"source\": \"test\"}"; };
-  const auto write = [&](const std::string& scan, const std::string& more)
-  {
+  const auto entry = [](const std::string& key, const std::string& value) {
+    return ", \"" + key + "\": {\"value\": " + value + ", \"source\": \"test\"}";
+  };
+  const auto write = [&](const std::string& scan, const std::string& more) {
     std::string text = "{\"name\": \"n\", \"scan\": \"" + scan + "\"" + entry("numberOfLines", "64") + more;
     for (const char* key : { "depthMm", "centreFrequencyMHz", "fractionalBandwidth", "elementCount", "elementWidthMm",
                              "kerfMm", "elementHeightMm", "elevationFocusMm", "transmitFocusMm" })
