@@ -59,31 +59,33 @@ SONO_HD inline std::uint32_t reverseBits(std::uint32_t x)
   return x;
 }
 
-/// Nested uniform (Owen) scrambling of a base-2 fraction by a hash in which higher bits steer lower ones
-/// (Laine and Karras 2011, with Burley's 2020 constants, applied to reversed bits).
-SONO_HD inline std::uint32_t owenScramble(std::uint32_t fraction, std::uint32_t seed)
+/// A hash in which lower bits steer higher ones (Laine and Karras 2011, with Burley's 2020 constants).
+SONO_HD inline std::uint32_t hashUpward(std::uint32_t x, std::uint32_t seed)
 {
-  std::uint32_t x = reverseBits(fraction);
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return reverseBits(x);
+  return x;
 }
 
-/// Second dimension of Sobol's sequence, as a base-2 fraction.
-SONO_HD inline std::uint32_t sobolSecond(std::uint32_t index)
+/// Nested uniform (Owen) scrambling of a base-2 fraction, in which higher bits steer lower ones.
+SONO_HD inline std::uint32_t owenScramble(std::uint32_t fraction, std::uint32_t seed)
 {
-  std::uint32_t result = 0;
-  for (std::uint32_t v = 0x80000000u; index != 0; index >>= 1, v ^= v >> 1)
-  {
-    if (index & 1u)
-    {
-      result ^= v;
-    }
-  }
-  return result;
+  return reverseBits(hashUpward(reverseBits(fraction), seed));
+}
+
+/// The second dimension of Sobol's sequence, bits reversed: bit j is the sum modulo 2 of the index bits k with C(k, j)
+/// odd, that is (Lucas) of the k that contain j, five steps of a superset sum.
+SONO_HD inline std::uint32_t sobolSecondReversed(std::uint32_t index)
+{
+  index ^= (index >> 1) & 0x55555555u;
+  index ^= (index >> 2) & 0x33333333u;
+  index ^= (index >> 4) & 0x0f0f0f0fu;
+  index ^= (index >> 8) & 0x00ff00ffu;
+  index ^= (index >> 16) & 0x0000ffffu;
+  return index;
 }
 
 /// Stream keys: (seed; line, path, bounce, batch). A path's numbers depend on nothing else.
@@ -119,9 +121,10 @@ SONO_HD inline BounceSample lowDiscrepancySample(const BounceScramble& s, std::u
 {
   const std::uint32_t choiceIndex = owenScramble(path, s.shuffle ^ 0x9e3779b9u);
   const std::uint32_t index = owenScramble(path, s.shuffle);
-  return { uniformFrom(owenScramble(reverseBits(choiceIndex), s.choice)),
-           uniformFrom(owenScramble(reverseBits(index), s.polar)),
-           uniformFrom(owenScramble(sobolSecond(index), s.azimuth)) };
+  // owenScramble of the sequences' elements, whose bits are at hand in reverse.
+  return { uniformFrom(reverseBits(hashUpward(choiceIndex, s.choice))),
+           uniformFrom(reverseBits(hashUpward(index, s.polar))),
+           uniformFrom(reverseBits(hashUpward(sobolSecondReversed(index), s.azimuth))) };
 }
 
 } // namespace sono

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <glm/vector_relational.hpp>
 
 namespace sono {
 
@@ -23,13 +24,19 @@ struct TissueCells
   Vec3f spacing{ 1.0f, 1.0f, 1.0f };
   float meanSpacing = 1.0f; ///< cube root of the voxel's volume
 
-  static Vec3i blocksFor(const Vec3i& size) { return { (size.x + 3) >> 2, (size.y + 3) >> 2, (size.z + 1) >> 1 }; }
+  /// With a border of one voxel all around, which holds `outsideWord`: a march needs no other test for the region's
+  /// end.
+  static Vec3i blocksFor(const Vec3i& size) { return { (size.x + 5) >> 2, (size.y + 5) >> 2, (size.z + 3) >> 1 }; }
+  static constexpr std::uint16_t outsideWord = 255;
   SONO_HD std::size_t offset(const Vec3i& c) const { return offset(c.x, c.y, c.z); }
+  /// For -1 <= x <= size.x, and so on.
   SONO_HD std::size_t offset(int x, int y, int z) const
   {
-    const unsigned block =
-      unsigned(x >> 2) + unsigned(blocks.x) * (unsigned(y >> 2) + unsigned(blocks.y) * unsigned(z >> 1));
-    return (std::size_t(block) << 5) | unsigned((x & 3) | ((y & 3) << 2) | ((z & 1) << 4));
+    const unsigned ux = unsigned(x + 1);
+    const unsigned uy = unsigned(y + 1);
+    const unsigned uz = unsigned(z + 1);
+    const unsigned block = (ux >> 2) + unsigned(blocks.x) * ((uy >> 2) + unsigned(blocks.y) * (uz >> 1));
+    return (std::size_t(block) << 5) | ((ux & 3u) | ((uy & 3u) << 2) | ((uz & 1u) << 4));
   }
   /// The record of the voxel with that offset and word; 0 where it has none.
   SONO_HD std::uint32_t recordOf(std::size_t offset, std::uint32_t word) const
@@ -151,17 +158,18 @@ SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& 
     x += alongX ? ax.sign : 0;
     y += alongY ? ay.sign : 0;
     z += alongZ ? az.sign : 0;
-    const int axis = alongX ? 0 : (alongY ? 1 : 2);
-    const Vec3i before(x - (alongX ? ax.sign : 0), y - (alongY ? ay.sign : 0), z - (alongZ ? az.sign : 0));
-    if (!cells.contains(Vec3i(x, y, z)))
-    {
-      return { t, before, before, -1, axis };
-    }
     const std::uint32_t word = cells.cell[cells.offset(x, y, z)];
     const int tissue = int(word & 255u);
     if (tissue != current && (tissue != ignored || t >= ignoreUntil))
     {
-      return { t, before, Vec3i(x, y, z), tissue, axis };
+      const int axis = alongX ? 0 : (alongY ? 1 : 2);
+      const Vec3i after(x, y, z);
+      const Vec3i before(x - (alongX ? ax.sign : 0), y - (alongY ? ay.sign : 0), z - (alongZ ? az.sign : 0));
+      if (tissue == int(TissueCells::outsideWord))
+      {
+        return { t, before, before, -1, axis };
+      }
+      return { t, before, after, tissue, axis };
     }
     // 128 and above are ranks of records.
     const int skip = int(word >> 8);
@@ -215,7 +223,7 @@ SONO_HD inline Vec3f interpolateNormal(const TissueCells& cells, const Vec3f& po
   const Vec3f g = point / cells.spacing - 0.5f;
   const Vec3i low(int(floorf(g.x)), int(floorf(g.y)), int(floorf(g.z)));
   const Vec3f f = g - Vec3f(low);
-  if (!cells.contains(low) || !cells.contains(low + 1))
+  if (glm::any(glm::lessThan(low, Vec3i(-1))) || glm::any(glm::greaterThanEqual(low, cells.size)))
   {
     return fallback;
   }

@@ -352,14 +352,16 @@ struct PathKey
 {
   std::uint32_t line;
   std::uint32_t batch;
-  std::uint32_t path; ///< within its batch
+  std::uint32_t path;                        ///< within its batch
+  const BounceScramble* scrambles = nullptr; ///< of the batch, one a bounce up to maxCollisions, or null to make them
 };
 
 SONO_HD inline BounceSample drawBounce(const TraceView& view, const PathKey& key, std::uint32_t bounce)
 {
   if (view.lowDiscrepancy)
   {
-    return lowDiscrepancySample(makeBounceScramble(view.seed, key.line, key.batch, bounce), key.path);
+    return lowDiscrepancySample(
+      key.scrambles ? key.scrambles[bounce] : makeBounceScramble(view.seed, key.line, key.batch, bounce), key.path);
   }
   return independentSample(view.seed, key.line, key.batch, key.path, bounce);
 }

@@ -144,11 +144,12 @@ public:
   {
     const Vec3i blocks = TissueCells::blocksFor(n_);
     const std::size_t count = std::size_t(blocks.x) * blocks.y * blocks.z;
-    region_.cell.assign(count * 32, 0);
+    region_.cell.assign(count * 32, TissueCells::outsideWord);
     region_.firstRecord.assign(count, 0);
     const TissueCells layout = region_.view();
     parallelFor(blocks.z, {}, [&](int layer) {
-      for (int k = 2 * layer; k < std::min(2 * layer + 2, n_.z); ++k)
+      // A layer of blocks holds the border and the voxels 2 layer - 1 and 2 layer.
+      for (int k = std::max(0, 2 * layer - 1); k < std::min(2 * layer + 1, n_.z); ++k)
       {
         for (int j = 0; j < n_.y; ++j)
         {

@@ -38,14 +38,20 @@ inline bool traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   tally.setEchoWeight(1.0f / float(setup.paths));
   const int batches = std::min(batchCount, setup.paths);
   std::vector<std::vector<float>> means;
+  std::vector<BounceScramble> scrambles(std::size_t(view.maxCollisions));
   for (int batch = 0; batch < batches; ++batch)
   {
     const auto [first, last] = batchRange(setup.paths, batches, batch);
+    for (std::size_t b = 0; b < scrambles.size(); ++b)
+    {
+      scrambles[b] = makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
+    }
     tally.clearBins();
     for (int path = first; path < last; ++path)
     {
       tracePath(view, space, line, start,
-                PathKey{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first) }, tally);
+                PathKey{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() },
+                tally);
     }
     std::vector<float> mean = tally.bins();
     for (float& v : mean)
