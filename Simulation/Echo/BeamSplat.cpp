@@ -30,40 +30,116 @@ struct LineGrid
   float lastSample;
 };
 
+/// A scatterer in the beam's frame: depth in samples, distances from the axis in mm.
+struct Place
+{
+  float position;
+  float lateral;
+  float elevational;
+};
+
+inline Place placeOf(const ScattererView& v, int i, const Beam& b, const LineGrid& g)
+{
+  const float px = v.x[i] - b.origin.x;
+  const float py = v.y[i] - b.origin.y;
+  const float pz = v.z[i] - b.origin.z;
+  return { (px * b.axis.x + py * b.axis.y + pz * b.axis.z) * g.samplesPerMm,
+           px * b.lateral.x + py * b.lateral.y + pz * b.lateral.z,
+           px * b.elevation.x + py * b.elevation.y + pz * b.elevation.z };
+}
+
+/// Splits amplitude a, seen at a position on the line, between its two samples.
+inline void split(float a, float position, bool seen, const LineGrid& g, int i, Splats& out)
+{
+  const float whole = std::floor(position);
+  const float fraction = position - whole;
+  // Phase as seen from halfway between the two samples, which keeps it below pi / 2; each is half a turn away.
+  const float phase = g.radPerSample * (fraction - 0.5f);
+  const float re = a * cosSmall(phase);
+  const float im = -a * sinSmall(phase);
+  const float near = 1.0f - fraction;
+  out.added[i][0] = (re * g.halfTurnRe + im * g.halfTurnIm) * near;
+  out.added[i][1] = (im * g.halfTurnRe - re * g.halfTurnIm) * near;
+  out.added[i][2] = (re * g.halfTurnRe - im * g.halfTurnIm) * fraction;
+  out.added[i][3] = (im * g.halfTurnRe + re * g.halfTurnIm) * fraction;
+  out.sample[i] = seen ? std::int32_t(whole) : 0;
+}
+
 /// Where each scatterer falls and what it adds there; nothing, to sample 0, where the beam does not see it.
-SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const GaussianBeam b, LineGrid g, Splats& out)
+SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const Beam b, LineGrid g, Splats& out)
 {
   const float il = 1.0f / b.lateralSigmaMm;
   const float ie = 1.0f / b.elevationalSigmaMm;
   for (int i = 0; i < count; ++i)
   {
-    const float px = v.x[first + i] - b.origin.x;
-    const float py = v.y[first + i] - b.origin.y;
-    const float pz = v.z[first + i] - b.origin.z;
-    const float position = (px * b.axis.x + py * b.axis.y + pz * b.axis.z) * g.samplesPerMm;
-    const float dl = (px * b.lateral.x + py * b.lateral.y + pz * b.lateral.z) * il;
-    const float de = (px * b.elevation.x + py * b.elevation.y + pz * b.elevation.z) * ie;
+    const Place p = placeOf(v, first + i, b, g);
+    const float dl = p.lateral * il;
+    const float de = p.elevational * ie;
     const float squared = dl * dl + de * de;
-    const float whole = std::floor(position);
-    const float fraction = position - whole;
-    const bool seen = (squared < beamCutSigma * beamCutSigma) & (whole >= 0.0f) & (whole < g.lastSample);
-    const float a = seen ? v.amplitude[first + i] * expNegative(-0.5f * squared) : 0.0f;
-    // Phase as seen from halfway between the two samples, which keeps it below pi / 2; each is half a turn away.
-    const float phase = g.radPerSample * (fraction - 0.5f);
-    const float re = a * cosSmall(phase);
-    const float im = -a * sinSmall(phase);
-    const float near = 1.0f - fraction;
-    out.added[i][0] = (re * g.halfTurnRe + im * g.halfTurnIm) * near;
-    out.added[i][1] = (im * g.halfTurnRe - re * g.halfTurnIm) * near;
-    out.added[i][2] = (re * g.halfTurnRe - im * g.halfTurnIm) * fraction;
-    out.added[i][3] = (im * g.halfTurnRe + re * g.halfTurnIm) * fraction;
-    out.sample[i] = seen ? std::int32_t(whole) : 0;
+    const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
+    split(seen ? v.amplitude[first + i] * expNegative(-0.5f * squared) : 0.0f, p.position, seen, g, i, out);
+  }
+}
+
+/// beamFieldCell without a branch. The share is between 0 and 1 outside of the table, too.
+inline BeamFieldCell cellOf(const BeamFieldAxis& axis, float fold, float positionMm)
+{
+  const float p = std::max(positionMm, fold * positionMm); // |position| where the table is mirrored
+  const bool inside = (p >= axis.lowMm) & (p <= axis.highMm);
+  const float lastCell = float(axis.lastCell);
+  const float place = std::min(std::max((p - axis.minMm) * axis.perMm, 0.0f), lastCell + 1.0f);
+  const float cell = std::min(std::floor(place), lastCell);
+  return { std::int32_t(cell), place - cell, inside };
+}
+
+/// The same with a field. Arrays of its own between the loops let the compiler see that the lookups do not touch what
+/// is written.
+SONO_SIMD_CLONES void weighByField(const ScattererView v, int first, int count, const Beam b, const BeamFieldView f,
+                                   LineGrid g, Splats& out)
+{
+  std::int32_t value[chunk];
+  float position[chunk], lateral[chunk], elevational[chunk], depth[chunk], weight[chunk];
+  const float mmPerSample = 1.0f / g.samplesPerMm;
+  const float foldLateral = f.lateral.mirrored ? -1.0f : 1.0f;
+  const float foldElevational = f.elevational.mirrored ? -1.0f : 1.0f;
+  const float* values = f.values;
+  const int la = f.lateral.stride;
+  const int el = f.elevational.stride;
+  const int de = f.depth.stride;
+  for (int i = 0; i < count; ++i)
+  {
+    const Place p = placeOf(v, first + i, b, g);
+    const BeamFieldCell l = cellOf(f.lateral, foldLateral, p.lateral);
+    const BeamFieldCell e = cellOf(f.elevational, foldElevational, p.elevational);
+    const BeamFieldCell d = cellOf(f.depth, 1.0f, std::min(p.position * mmPerSample, f.depth.highMm));
+    const bool seen = l.inside & e.inside & d.inside & (p.position >= 0.0f) & (p.position < g.lastSample);
+    value[i] = l.index + e.index * el + d.index * de;
+    lateral[i] = l.share;
+    elevational[i] = e.share;
+    depth[i] = d.share;
+    position[i] = p.position;
+    weight[i] = seen ? v.amplitude[first + i] : 0.0f;
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const int n = value[i];
+    const float nearLow = values[n] + lateral[i] * (values[n + la] - values[n]);
+    const float nearHigh = values[n + el] + lateral[i] * (values[n + el + la] - values[n + el]);
+    const float farLow = values[n + de] + lateral[i] * (values[n + de + la] - values[n + de]);
+    const float farHigh = values[n + de + el] + lateral[i] * (values[n + de + el + la] - values[n + de + el]);
+    const float near = nearLow + elevational[i] * (nearHigh - nearLow);
+    const float far = farLow + elevational[i] * (farHigh - farLow);
+    weight[i] *= near + depth[i] * (far - near);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    split(weight[i], position[i], weight[i] != 0.0f, g, i, out);
   }
 }
 
 } // namespace
 
-void splat(const ScattererView& scatterers, const GaussianBeam& beam, LineSum& sum)
+void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum)
 {
   const double turn = sum.radPerMm * double(sum.sampleMm);
   const LineGrid grid{ 1.0f / sum.sampleMm, float(turn), float(std::cos(0.5 * turn)), float(std::sin(0.5 * turn)),
@@ -72,7 +148,14 @@ void splat(const ScattererView& scatterers, const GaussianBeam& beam, LineSum& s
   for (int first = 0; first < scatterers.count; first += chunk)
   {
     const int count = std::min(chunk, scatterers.count - first);
-    weigh(scatterers, first, count, beam, grid, splats);
+    if (beam.field)
+    {
+      weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
+    }
+    else
+    {
+      weigh(scatterers, first, count, beam, grid, splats);
+    }
     for (int i = 0; i < count; ++i)
     {
       float* to = sum.iq.data() + 2 * std::size_t(splats.sample[i]);

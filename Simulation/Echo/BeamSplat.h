@@ -1,24 +1,26 @@
 #pragma once
 
 #include "Echo/ScattererView.h"
+#include "Kernel/BeamField.h"
 #include "Kernel/Vec.h"
 
 #include <vector>
 
 namespace sono {
 
-/// A main beam with a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2).
-struct GaussianBeam
+/// A main beam in its scatterers' coordinates.
+struct Beam
 {
   Vec3f origin;
   Vec3f axis;
   Vec3f lateral;
   Vec3f elevation;
-  float lateralSigmaMm;
+  float lateralSigmaMm; ///< of a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2)
   float elevationalSigmaMm;
+  const BeamFieldView* field = nullptr; ///< the profile instead of the Gaussian; null: the Gaussian
 };
 
-/// Beyond this many sigma a scatterer is not seen: it would add less than exp(-16/2) of its amplitude.
+/// Beyond this many sigma a Gaussian beam does not see a scatterer: it would add less than exp(-16/2) of its amplitude.
 constexpr float beamCutSigma = 4.0f;
 
 /// A line's scatterer sum before the pulse: sample s holds the sum of w a exp(-i 2 k (r - r_s)), each scatterer split
@@ -32,7 +34,7 @@ struct LineSum
   int sampleCount() const { return int(iq.size() / 2); }
 };
 
-/// Adds the scatterers at depths in [0, last sample).
-void splat(const ScattererView& scatterers, const GaussianBeam& beam, LineSum& sum);
+/// Adds the scatterers at depths in [0, last sample). Beyond its last depth a field stays as it is there.
+void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum);
 
 } // namespace sono

@@ -12,7 +12,7 @@ struct Seer
 {
   BeamReach reach;
   std::size_t index;
-  float radius; ///< the centre of a seen brick is no further from the axis
+  Vec3f radius; ///< the centre of a seen brick is no further from the axis, along x, y and z
   float axial;  ///< half a brick's extent along the beam's three directions
   float lateral;
   float elevation;
@@ -23,17 +23,26 @@ float halfExtent(const Vec3f& direction, float edge)
   return 0.5f * edge * (std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z));
 }
 
+Vec3f seenRadius(const BeamReach& reach, float edge)
+{
+  const Beam& b = reach.beam;
+  if (reach.sight)
+  {
+    return glm::abs(b.lateral) * reach.sight->lateralMm() + glm::abs(b.elevation) * reach.sight->elevationalMm();
+  }
+  return Vec3f(beamCutSigma * std::max(b.lateralSigmaMm, b.elevationalSigmaMm) + 0.5f * edge * std::sqrt(3.0f));
+}
+
 std::vector<Seer> makeSeers(const std::vector<BeamReach>& group, float edge)
 {
   std::vector<Seer> seers;
   for (std::size_t i = 0; i < group.size(); ++i)
   {
-    const GaussianBeam& b = group[i].beam;
+    const Beam& b = group[i].beam;
     if (group[i].depthMm > 0.0f)
     {
-      const float cut = beamCutSigma * std::max(b.lateralSigmaMm, b.elevationalSigmaMm);
-      seers.push_back({ group[i], i, cut + 0.5f * edge * std::sqrt(3.0f), halfExtent(b.axis, edge),
-                        halfExtent(b.lateral, edge), halfExtent(b.elevation, edge) });
+      seers.push_back({ group[i], i, seenRadius(group[i], edge), halfExtent(b.axis, edge), halfExtent(b.lateral, edge),
+                        halfExtent(b.elevation, edge) });
     }
   }
   return seers;
@@ -41,12 +50,22 @@ std::vector<Seer> makeSeers(const std::vector<BeamReach>& group, float edge)
 
 bool sees(const Seer& s, const Vec3f& centre)
 {
-  const GaussianBeam& b = s.reach.beam;
+  const Beam& b = s.reach.beam;
   const Vec3f q = centre - b.origin;
   const float r = glm::dot(q, b.axis);
-  const float dl = std::max(0.0f, std::fabs(glm::dot(q, b.lateral)) - s.lateral) / b.lateralSigmaMm;
-  const float de = std::max(0.0f, std::fabs(glm::dot(q, b.elevation)) - s.elevation) / b.elevationalSigmaMm;
-  return r > -s.axial && r < s.reach.depthMm + s.axial && dl * dl + de * de < beamCutSigma * beamCutSigma;
+  if (r <= -s.axial || r >= s.reach.depthMm + s.axial)
+  {
+    return false;
+  }
+  const float lateral = glm::dot(q, b.lateral);
+  const float elevational = glm::dot(q, b.elevation);
+  if (s.reach.sight)
+  {
+    return s.reach.sight->sees(lateral, elevational, r);
+  }
+  const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / b.lateralSigmaMm;
+  const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / b.elevationalSigmaMm;
+  return dl * dl + de * de < beamCutSigma * beamCutSigma;
 }
 
 /// The axis that the beams follow most.
@@ -111,13 +130,14 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
     Vec2f last(-1e30f);
     for (const Seer& s : seers)
     {
-      const Vec2f part = clipToSlab(s.reach, axis, float(layer) * edge - s.radius, float(layer + 1) * edge + s.radius);
+      const Vec2f part =
+        clipToSlab(s.reach, axis, float(layer) * edge - s.radius[axis], float(layer + 1) * edge + s.radius[axis]);
       // Between the two ends of the part the axis is straight: its bounds are theirs.
       for (int end = 0; end < 2 && part[0] <= part[1]; ++end)
       {
         const Vec3f p = s.reach.beam.origin + s.reach.beam.axis * part[end];
-        first = glm::min(first, Vec2f(p[u], p[v]) - s.radius);
-        last = glm::max(last, Vec2f(p[u], p[v]) + s.radius);
+        first = glm::min(first, Vec2f(p[u] - s.radius[u], p[v] - s.radius[v]));
+        last = glm::max(last, Vec2f(p[u] + s.radius[u], p[v] + s.radius[v]));
       }
     }
     first = glm::max(first, Vec2f(low[u], low[v]));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Echo/BeamSplat.h"
+#include "Echo/FieldSight.h"
 #include "Kernel/Vec.h"
 
 #include <cstddef>
@@ -12,8 +13,9 @@ namespace sono {
 /// A beam and the depth to which it is needed.
 struct BeamReach
 {
-  GaussianBeam beam;
-  float depthMm; ///< <= 0: not needed at all
+  Beam beam;
+  float depthMm;                     ///< <= 0: not needed at all
+  const FieldSight* sight = nullptr; ///< of the beam's field, for bricks of this size; null when it is a Gaussian
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

@@ -1,5 +1,7 @@
 #include "Echo/FormRf.h"
 
+#include "Echo/FieldLevel.h"
+#include "Echo/FieldSight.h"
 #include "Echo/LineFinisher.h"
 #include "Echo/Pulse.h"
 #include "Echo/TissueScatterers.h"
@@ -26,14 +28,30 @@ void require(bool ok, const char* parameter, double value, const std::string& ra
   }
 }
 
-/// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
-/// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * pi sL sE * sqrt(pi) sr.
-double scattererScale(const EchoSettings& s)
+double gaussianAreaMm2(const EchoSettings& s)
 {
-  const double pulseSigma = pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth);
-  const double seen = pi * s.lateralSigmaMm * s.elevationalSigmaMm * std::sqrt(pi) * pulseSigma /
-                      (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
+  return pi * s.lateralSigmaMm * s.elevationalSigmaMm;
+}
+
+/// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
+/// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * A * integral of g^2, with the beam's area
+/// A = pi sL sE for a Gaussian and that at the focus for a field.
+double scattererScale(const EchoSettings& s, double areaMm2)
+{
+  const double seen = areaMm2 * pulseEnergyMm(s) / (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
   return std::pow(10.0, s.scattererLevelDb / 20.0) / std::sqrt(seen);
+}
+
+void requireReaches(const PulseEchoField& field, double depthMm)
+{
+  const BeamFieldAxis depth = field.view().depth;
+  const double slackMm = 1e-3; // for rounded steps
+  if (depth.highMm < depthMm - slackMm || depth.lowMm > depthMm)
+  {
+    throw Error("the pulse-echo field covers depths of " + std::to_string(depth.lowMm) + " to " +
+                std::to_string(depth.highMm) + " mm but the image is " + std::to_string(depthMm) +
+                " mm deep: give a field that reaches there, or lower the depth");
+  }
 }
 
 void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings)
@@ -75,21 +93,36 @@ void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& 
   }
 }
 
-/// The beams of the lines [first, last) in the coordinates of their scatterers.
-std::vector<BeamReach> makeBeams(const std::vector<ScanLine>& lines, int first, int last, const EchoSettings& settings,
-                                 const LineFinisher& finisher, const std::function<Vec3d(const Vec3d&)>& toFrame,
-                                 const Mat3d& rotation)
+/// What the beams of all lines are made of.
+struct BeamMaker
 {
-  std::vector<BeamReach> beams;
-  for (int l = first; l < last; ++l)
+  const std::vector<ScanLine>& lines;
+  const EchoSettings& settings;
+  const LineFinisher& finisher;
+  std::optional<BeamFieldView> field;
+
+  /// The beams of the lines [first, last) in the coordinates of their scatterers, which the sight's bricks hold.
+  std::vector<BeamReach> make(int first, int last, const std::function<Vec3d(const Vec3d&)>& toFrame,
+                              const Mat3d& rotation, const std::optional<FieldSight>& sight) const
   {
-    const ScanLine& w = lines[std::size_t(l)];
-    beams.push_back(
-      { { Vec3f(toFrame(w.originMm)), Vec3f(rotation * w.axis), Vec3f(rotation * w.lateral),
-          Vec3f(rotation * w.elevation), float(settings.lateralSigmaMm), float(settings.elevationalSigmaMm) },
-        finisher.reachMm(l) });
+    std::vector<BeamReach> beams;
+    for (int l = first; l < last; ++l)
+    {
+      const ScanLine& w = lines[std::size_t(l)];
+      beams.push_back({ { Vec3f(toFrame(w.originMm)), Vec3f(rotation * w.axis), Vec3f(rotation * w.lateral),
+                          Vec3f(rotation * w.elevation), float(settings.lateralSigmaMm),
+                          float(settings.elevationalSigmaMm), field ? &*field : nullptr },
+                        finisher.reachMm(l),
+                        sight ? &*sight : nullptr });
+    }
+    return beams;
   }
-  return beams;
+};
+
+/// Where the settings' field matters to bricks of this size; nothing for a Gaussian beam.
+std::optional<FieldSight> sightOf(const EchoSettings& settings, const BrickGrid& grid)
+{
+  return settings.field ? std::optional<FieldSight>(std::in_place, *settings.field, grid.edgeMm) : std::nullopt;
 }
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
@@ -130,6 +163,10 @@ void EchoSettings::validate() const
           "more than 0 and at most 50");
   require(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0, "elevational beam sigma (mm)", elevationalSigmaMm,
           "more than 0 and at most 50");
+  if (field)
+  {
+    requireReaches(*field, depthMm);
+  }
   require(scattererCellMm >= 0.05 && scattererCellMm <= 10.0, "scatterer cell (mm)", scattererCellMm, "0.05 to 10");
   require(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0, "scatterer level (dB)",
           scattererLevelDb, "-200 to 200");
@@ -184,11 +221,29 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
   out.centreFrequencyMHz = settings.centreFrequencyMHz;
   out.samplingMHz = settings.samplingMHz;
 
-  const LineFinisher finisher(settings, sources.traced);
+  std::optional<FieldLevel> level;
+  if (settings.field)
+  {
+    level.emplace(*settings.field);
+  }
+  const LineFinisher finisher(settings, sources.traced, level ? &*level : nullptr);
+  BeamMaker beams{ lines, settings, finisher, std::nullopt };
+  if (settings.field)
+  {
+    beams.field = settings.field->view();
+  }
   std::optional<TissueScatterers> tissues;
+  std::optional<FieldSight> tissueSight;
   if (sources.scene)
   {
-    tissues.emplace(*sources.scene, settings.scattererCellMm, scattererScale(settings), settings.seed);
+    const double scale = scattererScale(settings, level ? level->focusAreaMm2() : gaussianAreaMm2(settings));
+    tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
+    tissueSight = sightOf(settings, tissues->grid());
+  }
+  std::optional<FieldSight> pointSight;
+  if (sources.points)
+  {
+    pointSight = sightOf(settings, sources.points->grid());
   }
   out.iq.resize(std::size_t(out.lineCount) * std::size_t(out.sampleCount));
   const auto formGroup = [&](int group) {
@@ -199,12 +254,12 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     {
       const Scene& scene = *sources.scene;
       const auto toLocal = [&](const Vec3d& world) { return scene.localFromWorld(world); };
-      addTissues(*tissues, makeBeams(lines, first, last, settings, finisher, toLocal, scene.rotationToLocal()), sums);
+      addTissues(*tissues, beams.make(first, last, toLocal, scene.rotationToLocal(), tissueSight), sums);
     }
     if (sources.points)
     {
       const auto toPoints = [&](const Vec3d& world) { return world - sources.points->originMm(); };
-      addPoints(*sources.points, makeBeams(lines, first, last, settings, finisher, toPoints, Mat3d(1.0)), sums);
+      addPoints(*sources.points, beams.make(first, last, toPoints, Mat3d(1.0), pointSight), sums);
     }
     for (int l = first; l < last; ++l)
     {

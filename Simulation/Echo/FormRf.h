@@ -1,6 +1,8 @@
 #pragma once
 
 #include "Echo/PointScatterers.h"
+#include "Probe/PulseEchoField.h"
+#include "Probe/PulseFile.h"
 #include "Probe/ScanGeometry.h"
 #include "Progress.h"
 #include "Scene/Scene.h"
@@ -8,6 +10,7 @@
 
 #include <complex>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace sono {
@@ -20,10 +23,18 @@ struct EchoSettings
   double depthMm = 160.0;           ///< > 0
   double lateralSigmaMm = 1.0;      ///< Gaussian beam, > 0
   double elevationalSigmaMm = 1.0;  ///< > 0
+  /// The beam's two-way weights instead of the Gaussian, of every line; the sigmas are then not used. It must reach
+  /// the image's depth. What lies in front of its first depth or beside it does not echo. Null: the Gaussian.
+  std::shared_ptr<const PulseEchoField> field;
+  /// The pulse instead of the Gaussian, demodulated with the centre frequency and scaled to an envelope of peak 1; the
+  /// fractional bandwidth is then not used. Null: the Gaussian.
+  std::shared_ptr<const SampledPulse> pulse;
   double scattererCellMm = 0.5; ///< edge h of the scatterer cells; density is mu1 / h^3. Below half a wavelength cells
                                 ///< are too regular for equal scatterers: their level falls
-  double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect plane reflector
-  std::uint64_t seed = 1;          ///< of the scatterers
+  double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect reflector across
+                                   ///< the beam. With a field, both fall off alike in depth from its focus, where the
+                                   ///< reflector's echo is 1 (see FieldLevel)
+  std::uint64_t seed = 1; ///< of the scatterers
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
@@ -55,9 +66,11 @@ struct EchoSources
 };
 
 /// COLE on the analytic signal (PHYSICS section 4; Gao 2009, Storve 2017): scatterers weighted by the beam and the
-/// traced intensity, plus the traced boundary echoes, convolved with a Gaussian pulse. What lies behind the transducer
-/// does not echo. The result depends on the arguments alone, to the bit, not on the threads.
-/// Throws Error naming the parameter that is out of range, Aborted when asked to stop.
+/// traced intensity, plus the traced boundary echoes, convolved with the pulse. What lies behind the transducer does
+/// not echo. At 50 MHz the result is within 0.1 % (NRMSE) of the sum over all scatterers at their exact places: each is
+/// split linearly between two samples, which costs a band b MHz wide about (b / samplingMHz)^2 of its amplitude; that
+/// loss is undone on average over the places between two samples. The result depends on the arguments alone, to the
+/// bit, not on the threads. Throws Error naming the parameter that is out of range, Aborted when asked to stop.
 RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
                const Progress& progress = {});
 

@@ -1,7 +1,5 @@
 #include "Echo/LineFinisher.h"
 
-#include "Echo/Pulse.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,15 +12,14 @@ constexpr float darkIntensity = 1e-8f; // -160 dB
 
 } // namespace
 
-LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* traced)
+LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* traced, const FieldLevel* level)
   : traced_(traced)
   , samples_(settings.sampleCount())
   , sampleMm_(settings.sampleMm())
   , radPerMm_(4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs)
-  , envelope_(pulseEnvelope(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth), sampleMm_))
+  , pulse_(settings)
 {
-  half_ = int(envelope_.size() / 2);
-  for (int s = 0; s < samples_ + half_; ++s)
+  for (int s = 0; s < samples_ + pulse_.half(); ++s)
   {
     const double phase = radPerMm_ * s * sampleMm_;
     carrierRe_.push_back(float(std::cos(phase)));
@@ -36,6 +33,10 @@ LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* trac
       binShare_.push_back(float(position - bin));
     }
   }
+  for (int e = 0; traced && level && e < traced->echoCount; ++e)
+  {
+    boundaryLevel_.push_back(float(level->at(e * traced->echoSampleMm)));
+  }
 }
 
 LineSum LineFinisher::emptySum() const
@@ -45,7 +46,7 @@ LineSum LineFinisher::emptySum() const
 
 float LineFinisher::reachMm(int line) const
 {
-  const double deepest = (samples_ + half_) * sampleMm_;
+  const double deepest = (samples_ + pulse_.half()) * sampleMm_;
   if (!traced_)
   {
     return float(deepest);
@@ -83,6 +84,7 @@ void LineFinisher::addBoundaryEchoes(int line, LineSum& sum) const
     {
       continue;
     }
+    const std::complex<float> seen = boundaryLevel_.empty() ? echo[e] : echo[e] * boundaryLevel_[std::size_t(e)];
     const double position = e * traced_->echoSampleMm / sampleMm_;
     const int s = int(std::floor(position + 1e-6)); // on a common grid, exactly the sample
     const double fraction = std::max(0.0, position - s);
@@ -92,7 +94,7 @@ void LineFinisher::addBoundaryEchoes(int line, LineSum& sum) const
       if (share > 0.0 && s + i < sum.sampleCount())
       {
         const double phase = radPerMm_ * sampleMm_ * (fraction - i);
-        const std::complex<float> v = echo[e] * std::complex<float>(std::polar(share, -phase));
+        const std::complex<float> v = seen * std::complex<float>(std::polar(share, -phase));
         sum.iq[2 * std::size_t(s + i)] += v.real();
         sum.iq[2 * std::size_t(s + i) + 1] += v.imag();
       }
@@ -108,7 +110,7 @@ void LineFinisher::finish(int line, LineSum& sum, std::complex<float>* iq) const
     addBoundaryEchoes(line, sum);
   }
   // In baseband the phases no longer depend on the sample: the pulse is its envelope. Nothing lies above the first.
-  const std::size_t half = std::size_t(half_);
+  const std::size_t half = std::size_t(pulse_.half());
   std::vector<float> re(half + carrierRe_.size(), 0.0f);
   std::vector<float> im(half + carrierRe_.size(), 0.0f);
   for (std::size_t s = 0; s < carrierRe_.size(); ++s)
@@ -118,14 +120,7 @@ void LineFinisher::finish(int line, LineSum& sum, std::complex<float>* iq) const
     re[half + s] = a * carrierRe_[s] - b * carrierIm_[s];
     im[half + s] = a * carrierIm_[s] + b * carrierRe_[s];
   }
-  std::vector<float> outRe(static_cast<std::size_t>(samples_));
-  std::vector<float> outIm(static_cast<std::size_t>(samples_));
-  convolve(re.data(), envelope_, samples_, outRe.data());
-  convolve(im.data(), envelope_, samples_, outIm.data());
-  for (std::size_t s = 0; s < outRe.size(); ++s)
-  {
-    iq[s] = { outRe[s], outIm[s] };
-  }
+  pulse_.convolve(re.data(), im.data(), samples_, iq);
 }
 
 } // namespace sono

@@ -1,21 +1,24 @@
 #pragma once
 
 #include "Echo/BeamSplat.h"
+#include "Echo/FieldLevel.h"
 #include "Echo/FormRf.h"
+#include "Echo/Pulse.h"
 
 #include <complex>
 #include <vector>
 
 namespace sono {
 
-/// Turns a line's scatterer sum into IQ: times the traced intensity, plus the traced boundary echoes, convolved with
-/// the pulse. The sum goes half a pulse deeper than the line, since what lies there still echoes into it.
+/// Turns a line's scatterer sum into IQ: times the traced intensity, plus the traced boundary echoes (times the level
+/// of the field at their depth, where there is one), convolved with the pulse. The sum goes half a pulse deeper than
+/// the line, since what lies there still echoes into it.
 class LineFinisher
 {
 public:
-  /// `traced` may be null (intensity 1, no boundaries); it must outlive this. Throws Error when the sampling cannot
-  /// carry the pulse.
-  LineFinisher(const EchoSettings& settings, const TracedLines* traced);
+  /// `traced` may be null (intensity 1, no boundaries); it must outlive this. `level` is that of the settings' field,
+  /// null for a Gaussian beam. Throws Error when the sampling cannot carry the pulse.
+  LineFinisher(const EchoSettings& settings, const TracedLines* traced, const FieldLevel* level);
 
   LineSum emptySum() const;
   /// Depth, mm, below which scatterers cannot be seen in this line.
@@ -29,11 +32,11 @@ private:
 
   const TracedLines* traced_;
   int samples_;
-  int half_; // samples of the pulse's half
   double sampleMm_;
   double radPerMm_;
-  std::vector<float> envelope_;
-  std::vector<float> carrierRe_; // of the demodulation, for each sample of a sum
+  PulseKernel pulse_;
+  std::vector<float> boundaryLevel_; // at each sample of the traced echoes; empty: 1
+  std::vector<float> carrierRe_;     // of the demodulation, for each sample of a sum
   std::vector<float> carrierIm_;
   std::vector<int> bin_; // of the traced intensity before each sample, and the share of the one behind it
   std::vector<float> binShare_;

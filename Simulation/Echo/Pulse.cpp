@@ -1,5 +1,6 @@
 #include "Echo/Pulse.h"
 
+#include "Echo/FormRf.h"
 #include "Progress.h"
 #include "Simd.h"
 #include "Trace/Trace.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// out[s] = sum over k of kernel[k] in[s + k]
 SONO_SIMD_CLONES void weightedSums(const float* in, const float* kernel, int taps, int count, float* out)
 {
   constexpr int tile = 64; // the sums of a tile stay in registers
@@ -41,16 +43,9 @@ SONO_SIMD_CLONES void weightedSums(const float* in, const float* kernel, int tap
   }
 }
 
-} // namespace
-
-double pulseSigmaMm(double centreFrequencyMHz, double fractionalBandwidth)
-{
-  const double root = pi * centreFrequencyMHz * fractionalBandwidth;
-  const double k = root * root / (4.0 * 0.3 * std::log(10.0)); // per microsecond squared
-  return assumedSoundSpeedMmPerUs / (2.0 * std::sqrt(2.0 * k));
-}
-
-std::vector<float> pulseEnvelope(double sigmaMm, double sampleMm)
+/// A Gaussian's envelope every `sampleMm` (odd count, centred). The split adds a variance of sampleMm^2 / 6 on average,
+/// which is taken off.
+std::vector<float> gaussianEnvelope(double sigmaMm, double sampleMm)
 {
   const double sigma = sigmaMm / sampleMm;
   if (sigma < 0.8)
@@ -68,9 +63,83 @@ std::vector<float> pulseEnvelope(double sigmaMm, double sampleMm)
   return envelope;
 }
 
-void convolve(const float* in, const std::vector<float>& envelope, int count, float* out)
+void requireSampled(const SampledPulse& pulse)
 {
-  weightedSums(in, envelope.data(), int(envelope.size()), count, out);
+  const auto finite = [](double a) { return std::isfinite(a); };
+  if (pulse.amplitude.empty() || !(pulse.stepUs > 0.0) || !std::isfinite(pulse.startUs + pulse.stepUs) ||
+      !std::all_of(pulse.amplitude.begin(), pulse.amplitude.end(), finite) ||
+      std::all_of(pulse.amplitude.begin(), pulse.amplitude.end(), [](double a) { return a == 0.0; }))
+  {
+    throw Error("the sampled pulse has no samples, only zeros, or a time or amplitude that is not finite: give the "
+                "echo of a point at evenly spaced times");
+  }
+}
+
+} // namespace
+
+double pulseSigmaMm(double centreFrequencyMHz, double fractionalBandwidth)
+{
+  const double root = pi * centreFrequencyMHz * fractionalBandwidth;
+  const double k = root * root / (4.0 * 0.3 * std::log(10.0)); // per microsecond squared
+  return assumedSoundSpeedMmPerUs / (2.0 * std::sqrt(2.0 * k));
+}
+
+double pulseEnergyMm(const EchoSettings& settings)
+{
+  if (!settings.pulse)
+  {
+    return std::sqrt(pi) * pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth);
+  }
+  requireSampled(*settings.pulse);
+  double sum = 0.0;
+  for (const std::complex<float> e : pulseBaseband(*settings.pulse, settings.centreFrequencyMHz, settings.sampleMm()))
+  {
+    sum += double(std::norm(e));
+  }
+  return sum * settings.sampleMm();
+}
+
+PulseKernel::PulseKernel(const EchoSettings& settings)
+{
+  const double sampleMm = settings.sampleMm();
+  if (!settings.pulse)
+  {
+    re_ = gaussianEnvelope(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth), sampleMm);
+    return;
+  }
+  requireSampled(*settings.pulse);
+  const auto envelope = pulseBaseband(*settings.pulse, settings.centreFrequencyMHz, sampleMm, sampleMm);
+  for (auto e = envelope.rbegin(); e != envelope.rend(); ++e)
+  {
+    re_.push_back(e->real());
+    im_.push_back(e->imag());
+  }
+}
+
+void PulseKernel::convolve(const float* re, const float* im, int count, std::complex<float>* out) const
+{
+  const int taps = int(re_.size());
+  const std::size_t samples = std::size_t(count);
+  std::vector<float> outRe(samples);
+  std::vector<float> outIm(samples);
+  weightedSums(re, re_.data(), taps, count, outRe.data());
+  weightedSums(im, re_.data(), taps, count, outIm.data());
+  if (!im_.empty())
+  {
+    std::vector<float> crossRe(samples);
+    std::vector<float> crossIm(samples);
+    weightedSums(im, im_.data(), taps, count, crossRe.data());
+    weightedSums(re, im_.data(), taps, count, crossIm.data());
+    for (std::size_t s = 0; s < samples; ++s)
+    {
+      outRe[s] -= crossRe[s];
+      outIm[s] += crossIm[s];
+    }
+  }
+  for (std::size_t s = 0; s < samples; ++s)
+  {
+    out[s] = { outRe[s], outIm[s] };
+  }
 }
 
 } // namespace sono

@@ -1,10 +1,11 @@
-// Image formation: scene S1 on one thread and its error, A4C of the bundled thorax, a change of gain, speckle
-// statistics.
+// Image formation: scene S1 on one thread and its error, A4C of the bundled thorax with a Gaussian beam and with the
+// field of a P4-2, a change of gain, speckle statistics.
 #include "Echo/FormRf.h"
 #include "EchoScenes.h"
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"
 #include "PhantomScene.h"
+#include "Probe/ArrayBeam.h"
 #include "Scene/ThoraxPhantom.h"
 #include "Stage.h"
 #include "Trace/Trace.h"
@@ -13,6 +14,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numeric>
 
 namespace sono {
@@ -86,6 +88,13 @@ void measureA4C()
 
   RfLines rf;
   printFigure("echo_a4c_s", medianSeconds([&] { rf = formRf(*scene, lines, traced, echo); }), "s");
+
+  ArrayAperture p42 = apertureOf(readProbePreset(SONOVDB_DATA_DIR "/probes/phased_p4-2.json"));
+  p42.centreFrequencyMHz = echo.centreFrequencyMHz;
+  p42.fractionalBandwidth = echo.fractionalBandwidth;
+  EchoSettings withField = echo;
+  withField.field = std::make_shared<PulseEchoField>(pulseEchoField(p42, suggestedFieldGrid(p42, geometry.depthMm)));
+  printFigure("echo_field_a4c_s", medianSeconds([&] { formRf(*scene, lines, traced, withField); }), "s");
 
   const std::vector<float> envelope = rf.envelope();
   BModeSettings bmode;
