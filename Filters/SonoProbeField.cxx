@@ -74,6 +74,8 @@ void writeProbe(const ProbeField& probe, vtkFieldData* field)
   writeNumber("SectorDeg", geometry.sectorDeg, field);
   writeNumber("RadiusMm", geometry.radiusMm, field);
   writeNumber("WidthMm", geometry.widthMm, field);
+  writeNumber("ElevationLineCount", geometry.elevationLineCount, field);
+  writeNumber("ElevationSectorDeg", geometry.elevationSectorDeg, field);
   writeVector("ProbePositionMm", probe.pose.positionMm, field);
   writeVector("ProbeAxial", probe.pose.axial, field);
   writeVector("ProbeLateral", probe.pose.lateral, field);
@@ -91,6 +93,8 @@ ProbeField readProbe(vtkFieldData* field)
   geometry.sectorDeg = readNumber("SectorDeg", field);
   geometry.radiusMm = readNumber("RadiusMm", field);
   geometry.widthMm = readNumber("WidthMm", field);
+  geometry.elevationLineCount = static_cast<int>(readNumber("ElevationLineCount", field));
+  geometry.elevationSectorDeg = readNumber("ElevationSectorDeg", field);
   geometry.validate();
   probe.pose.positionMm = readVector("ProbePositionMm", field);
   probe.pose.axial = readVector("ProbeAxial", field);

@@ -1,14 +1,75 @@
 #include "SonoStage.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCommand.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkExecutive.h"
 #include "vtkInformation.h"
+#include "vtkInformationStringKey.h"
+#include "vtkInformationUnsignedLongKey.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkOutputWindow.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <cstring>
 #include <new>
 #include <thread>
 
 namespace sono {
+namespace {
+
+/// After an algorithm has said what is wrong, its executive adds messages of its own: that the request failed, with the
+/// request's innards, or that the image which could not be announced has no extent. They are dropped; others pass.
+class OneSentence : public vtkCommand
+{
+public:
+  static OneSentence* New() { return new OneSentence; }
+  void Execute(vtkObject*, unsigned long, void* text) override
+  {
+    const auto* message = static_cast<const char*>(text);
+    if (!std::strstr(message, "returned failure for request") && !std::strstr(message, "No whole extent has been set"))
+    {
+      vtkOutputWindowDisplayErrorText(message);
+    }
+  }
+};
+
+/// The last sentence of an algorithm and the pipeline's time then.
+vtkInformationStringKey* saidKey()
+{
+  static auto* const key = vtkInformationStringKey::MakeKey("SAID", "SonoVDB");
+  return key;
+}
+
+vtkInformationUnsignedLongKey* saidAtKey()
+{
+  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("SAID_AT", "SonoVDB");
+  return key;
+}
+
+/// Says what is wrong, but not twice while nothing changes: a viewer asks a failed pipeline again and again.
+void say(vtkAlgorithm* algorithm, const char* sentence)
+{
+  vtkExecutive* executive = algorithm->GetExecutive();
+  if (!executive->HasObserver(vtkCommand::ErrorEvent))
+  {
+    vtkNew<OneSentence> filter;
+    executive->AddObserver(vtkCommand::ErrorEvent, filter);
+  }
+  auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
+  const unsigned long now = pipeline ? pipeline->GetPipelineMTime() : algorithm->GetMTime();
+  vtkInformation* memory = algorithm->GetInformation();
+  const char* said = memory->Get(saidKey());
+  if (!said || std::strcmp(said, sentence) != 0 || memory->Get(saidAtKey()) != now)
+  {
+    memory->Set(saidKey(), sentence);
+    memory->Set(saidAtKey(), now);
+    vtkErrorWithObjectMacro(algorithm, << sentence);
+  }
+}
+
+} // namespace
 
 Progress progressOf(vtkAlgorithm* algorithm)
 {
@@ -40,22 +101,25 @@ int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorWithObjectMacro(algorithm, << "There is not enough memory for this stage; use a coarser or smaller input.");
+    say(algorithm, "There is not enough memory for this stage; use a coarser or smaller input.");
   }
   catch (const std::exception& error)
   {
-    vtkErrorWithObjectMacro(algorithm, << error.what());
+    say(algorithm, error.what());
   }
   return 0;
 }
 
 int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const std::function<void()>& work)
 {
-  vtkInformation* outInfo = outputVector->GetInformationObject(0);
   const auto piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
-  if (outInfo->Has(piece) && outInfo->Get(piece) > 0)
+  for (int port = 0; port < outputVector->GetNumberOfInformationObjects(); ++port)
   {
-    return 1;
+    vtkInformation* outInfo = outputVector->GetInformationObject(port);
+    if (outInfo->Has(piece) && outInfo->Get(piece) > 0)
+    {
+      return 1;
+    }
   }
   return announceStage(algorithm, work);
 }

@@ -32,6 +32,10 @@ void vtkSonoBMode::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ReferenceAmplitude: " << this->ReferenceAmplitude << endl;
   os << indent << "DynamicRangeDb: " << this->DynamicRangeDb << endl;
   os << indent << "RejectDb: " << this->RejectDb << endl;
+  os << indent << "GreyMap: " << this->GreyMap << endl;
+  os << indent << "AddNoise: " << this->AddNoise << endl;
+  os << indent << "NoiseDb: " << this->NoiseDb << endl;
+  os << indent << "NoiseSeed: " << this->NoiseSeed << endl;
 }
 
 void vtkSonoBMode::AddTgcPoint(double depthMm, double gainDb)
@@ -47,6 +51,25 @@ void vtkSonoBMode::RemoveAllTgcPoints()
     this->TgcPoints.clear();
     this->Modified();
   }
+}
+
+sono::BModeSettings vtkSonoBMode::Settings() const
+{
+  sono::BModeSettings settings;
+  settings.tgcDbPerCm = this->TgcDbPerCm;
+  settings.tgcCurve = this->TgcPoints;
+  settings.gainDb = this->GainDb;
+  settings.automaticReference = this->AutomaticReference;
+  settings.referenceAmplitude = this->ReferenceAmplitude;
+  settings.dynamicRangeDb = this->DynamicRangeDb;
+  settings.rejectDb = this->RejectDb;
+  settings.greyMap = static_cast<sono::GreyMap>(this->GreyMap);
+  if (this->AddNoise)
+  {
+    settings.noiseDb = this->NoiseDb;
+  }
+  settings.noiseSeed = static_cast<std::uint64_t>(this->NoiseSeed);
+  return settings;
 }
 
 int vtkSonoBMode::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
@@ -68,15 +91,11 @@ int vtkSonoBMode::RequestData(vtkInformation*, vtkInformationVector** input, vtk
   return sono::runStage(this, output, [&] {
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
-    const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.lineCount);
+    const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
     const std::vector<float> envelope =
       sono::lineValues("Envelope", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
-    const sono::BModeSettings settings{
-      this->TgcDbPerCm,         this->TgcPoints,      this->GainDb,  this->AutomaticReference,
-      this->ReferenceAmplitude, this->DynamicRangeDb, this->RejectDb
-    };
     const sono::BModeLines result =
-      sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm, settings);
+      sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm, this->Settings());
 
     vtkImageData* image = vtkImageData::GetData(output);
     sono::setLineImageLayout(layout, image);

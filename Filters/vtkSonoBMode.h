@@ -7,6 +7,10 @@
 #include <utility>
 #include <vector>
 
+namespace sono {
+struct BModeSettings;
+}
+
 /**
  * @class vtkSonoBMode
  * @brief Depth gain and log compression of the envelope
@@ -23,7 +27,7 @@ public:
 
   ///@{
   /**
-   * Gain that grows with depth in dB/cm, -100 to 100. Default 1.5.
+   * Gain that grows with depth in dB/cm, -100 to 100. Default 5.
    */
   vtkSetMacro(TgcDbPerCm, double);
   vtkGetMacro(TgcDbPerCm, double);
@@ -80,6 +84,47 @@ public:
   vtkGetMacro(RejectDb, double);
   ///@}
 
+  enum GreyMaps
+  {
+    LINEAR = 0,
+    SQUARE_ROOT = 1,
+    SIGMOID = 2
+  };
+
+  ///@{
+  /**
+   * What turns the compressed level into grey: the level itself, its square root, which lifts weak echoes, or an
+   * S-shaped curve with more contrast in the middle. Default LINEAR.
+   */
+  vtkSetMacro(GreyMap, int);
+  vtkGetMacro(GreyMap, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the receiver adds noise, before any gain. Default off.
+   */
+  vtkSetMacro(AddNoise, bool);
+  vtkGetMacro(AddNoise, bool);
+  vtkBooleanMacro(AddNoise, bool);
+  ///@}
+
+  ///@{
+  /**
+   * RMS of that noise in dB to the echo of a perfect plane reflector, up to 200. Default -80.
+   */
+  vtkSetMacro(NoiseDb, double);
+  vtkGetMacro(NoiseDb, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seed of the noise, at least 0. Default 1.
+   */
+  vtkSetMacro(NoiseSeed, int);
+  vtkGetMacro(NoiseSeed, int);
+  ///@}
+
 protected:
   vtkSonoBMode();
   ~vtkSonoBMode() override;
@@ -89,16 +134,22 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
+  sono::BModeSettings Settings() const;
+
   vtkSonoBMode(const vtkSonoBMode&) = delete;
   void operator=(const vtkSonoBMode&) = delete;
 
-  double TgcDbPerCm = 1.5;
+  double TgcDbPerCm = 5.0;
   std::vector<std::pair<double, double>> TgcPoints;
   double GainDb = 0.0;
   bool AutomaticReference = true;
   double ReferenceAmplitude = 1.0;
   double DynamicRangeDb = 60.0;
   double RejectDb = 0.0;
+  int GreyMap = LINEAR;
+  bool AddNoise = false;
+  double NoiseDb = -80.0;
+  int NoiseSeed = 1;
 };
 
 #endif

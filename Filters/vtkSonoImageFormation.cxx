@@ -6,12 +6,16 @@
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
+#include "vtkDataArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
+
+#include <optional>
 
 vtkStandardNewMacro(vtkSonoImageFormation);
 
@@ -19,7 +23,7 @@ namespace {
 
 sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe, double echoSampleMm)
 {
-  const sono::LineImageLayout layout = sono::lineImageLayout(image, probe.geometry.lineCount);
+  const sono::LineImageLayout layout = sono::lineImageLayout(image, probe.geometry.totalLineCount());
   const std::size_t count = std::size_t(layout.lineCount) * layout.sampleCount;
   sono::TracedLines traced;
   traced.lineCount = layout.lineCount;
@@ -33,9 +37,36 @@ sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe
   return traced;
 }
 
+/// Nothing where no scatterers are connected.
+std::optional<sono::PointScatterers> pointScatterers(vtkPointSet* points)
+{
+  if (!points || points->GetNumberOfPoints() == 0)
+  {
+    return std::nullopt;
+  }
+  vtkDataArray* amplitude = points->GetPointData()->GetArray("Amplitude");
+  if (!amplitude || amplitude->GetNumberOfComponents() != 1)
+  {
+    throw sono::Error("The scatterers have no point array 'Amplitude' with one component; add it, for example with a "
+                      "Calculator.");
+  }
+  std::vector<sono::PointScatterer> scatterers(static_cast<std::size_t>(points->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < scatterers.size(); ++i)
+  {
+    const auto id = static_cast<vtkIdType>(i);
+    points->GetPoint(id, &scatterers[i].positionMm.x);
+    scatterers[i].amplitude = static_cast<float>(amplitude->GetTuple1(id));
+  }
+  return sono::PointScatterers(scatterers);
+}
+
 } // namespace
 
-vtkSonoImageFormation::vtkSonoImageFormation() = default;
+vtkSonoImageFormation::vtkSonoImageFormation()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
 vtkSonoImageFormation::~vtkSonoImageFormation() = default;
 
 void vtkSonoImageFormation::PrintSelf(ostream& os, vtkIndent indent)
@@ -46,6 +77,16 @@ void vtkSonoImageFormation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScattererCellMm: " << this->ScattererCellMm << endl;
   os << indent << "ScattererLevelDb: " << this->ScattererLevelDb << endl;
   os << indent << "Seed: " << this->Seed << endl;
+}
+
+int vtkSonoImageFormation::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPointSet");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
 }
 
 sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) const
@@ -71,7 +112,7 @@ int vtkSonoImageFormation::RequestInformation(vtkInformation*, vtkInformationVec
   return sono::announceStage(this, [&] {
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
     const sono::EchoSettings settings = this->Settings(acquisition);
-    const int lineCount = sono::readProbe(acquisition).geometry.lineCount;
+    const int lineCount = sono::readProbe(acquisition).geometry.totalLineCount();
     vtkInformation* outInfo = output->GetInformationObject(0);
     sono::announceLineImage({ settings.sampleCount(), lineCount, 0.0, settings.sampleMm() }, 1, outInfo);
     sono::announceFields(acquisition, outInfo);
@@ -86,13 +127,15 @@ int vtkSonoImageFormation::RequestUpdateExtent(vtkInformation*, vtkInformationVe
 int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    vtkImageData* traced = vtkImageData::GetData(input[0]);
-    const sono::ProbeField probe = sono::readProbe(traced->GetFieldData());
-    const sono::EchoSettings settings = this->Settings(traced->GetFieldData());
-    const auto scene = vtkSonoSceneHandle::Get(traced->GetFieldData());
+    vtkImageData* input0 = vtkImageData::GetData(input[0]);
+    const sono::ProbeField probe = sono::readProbe(input0->GetFieldData());
+    const sono::EchoSettings settings = this->Settings(input0->GetFieldData());
+    const auto scene = vtkSonoSceneHandle::Get(input0->GetFieldData());
+    const sono::TracedLines traced = tracedLines(input0, probe, settings.sampleMm());
+    const auto points = pointScatterers(vtkPointSet::GetData(input[1]));
+    const sono::EchoSources sources{ scene.get(), &traced, points ? &*points : nullptr };
     const sono::RfLines lines =
-      sono::formRf(*scene, sono::makeScanLines(probe.geometry, probe.pose),
-                   tracedLines(traced, probe, settings.sampleMm()), settings, sono::progressOf(this));
+      sono::formRf(sources, sono::makeScanLines(probe.geometry, probe.pose), settings, sono::progressOf(this));
 
     vtkImageData* image = vtkImageData::GetData(output);
     sono::setLineImageLayout({ lines.sampleCount, lines.lineCount, 0.0, lines.sampleMm }, image);

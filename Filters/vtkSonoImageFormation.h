@@ -13,7 +13,9 @@ class vtkFieldData;
  * @class vtkSonoImageFormation
  * @brief Turns traced scan lines into radio-frequency lines
  *
- * Takes output 0 of vtkSonoRayTracer, which carries scene and probe. The output holds lines x RF samples, x the
+ * Takes output 0 of vtkSonoRayTracer, which carries scene and probe (port 0), and, optionally, scatterers of the user's
+ * own besides those of the tissues (port 1): points in world coordinates, LPS mm, with the point array "Amplitude", the
+ * echo of each on the axis of a beam where the intensity is 1. The output holds lines x RF samples, x the
  * depth in mm and y the number of the scan line, with the point arrays "RF", "IQ" (complex, demodulated) and
  * "Envelope" (the modulus of IQ).
  */
@@ -50,7 +52,7 @@ public:
 
   ///@{
   /**
-   * RMS echo of a tissue full of scatterers against a perfect plane reflector in dB. Default -30.
+   * RMS echo of a tissue full of scatterers against a perfect plane reflector in dB, -200 to 200. Default -30.
    */
   vtkSetMacro(ScattererLevelDb, double);
   vtkGetMacro(ScattererLevelDb, double);
@@ -68,6 +70,7 @@ protected:
   vtkSonoImageFormation();
   ~vtkSonoImageFormation() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

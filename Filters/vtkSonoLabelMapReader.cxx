@@ -7,7 +7,10 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkXMLImageDataReader.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -15,11 +18,40 @@ vtkStandardNewMacro(vtkSonoLabelMapReader);
 
 namespace {
 
+bool endsWith(const std::string& fileName, const char* ending)
+{
+  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(fileName), ending);
+}
+
+sono::LabelVolume readVti(const std::string& fileName)
+{
+  vtkNew<vtkXMLImageDataReader> reader;
+  if (!vtksys::SystemTools::FileExists(fileName, true) || !reader->CanReadFile(fileName.c_str()))
+  {
+    throw sono::Error("The file " + fileName + " is missing or no VTK image; name a label map that can be read.");
+  }
+  reader->SetFileName(fileName.c_str());
+  reader->Update();
+  vtkImageData* image = reader->GetOutput();
+  try
+  {
+    return sono::labelVolumeFromImage(image, image->GetPointData()->GetScalars());
+  }
+  catch (const sono::Error& error)
+  {
+    throw sono::Error(fileName + ": " + error.what());
+  }
+}
+
 std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName)
 {
   if (fileName.empty())
   {
-    throw sono::Error("No label map is named; set FileName to a .nii, .nii.gz, .nrrd or .seg.nrrd file.");
+    throw sono::Error("No label map is named; set FileName to a .nii, .nii.gz, .nrrd, .mha, .mhd or .vti file.");
+  }
+  if (endsWith(fileName, ".vti"))
+  {
+    return std::make_shared<const sono::LabelVolume>(readVti(fileName));
   }
   return std::make_shared<const sono::LabelVolume>(sono::readLabelMap(fileName));
 }
@@ -41,10 +73,9 @@ void vtkSonoLabelMapReader::PrintSelf(ostream& os, vtkIndent indent)
 
 int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
 {
-  const std::string name = fileName ? vtksys::SystemTools::LowerCase(fileName) : "";
-  for (const char* ending : { ".nii", ".nii.gz", ".nrrd" })
+  for (const char* ending : { ".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".vti" })
   {
-    if (vtksys::SystemTools::StringEndsWith(name, ending))
+    if (fileName && endsWith(fileName, ending))
     {
       return 1;
     }

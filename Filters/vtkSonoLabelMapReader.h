@@ -15,9 +15,10 @@ struct LabelVolume;
  * @class vtkSonoLabelMapReader
  * @brief Reads a label map and places it in the world
  *
- * Reads NIfTI (.nii, .nii.gz) and NRRD (.nrrd, .seg.nrrd). The output has unsigned short point scalars "Labels" and
- * stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels that occur:
- * LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label.
+ * Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and VTK images (.vti, whose point
+ * scalars are the labels and whose field data may name them as this reader's does). The output has unsigned short point
+ * scalars "Labels" and stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels
+ * that occur: LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLabelMapReader : public vtkImageAlgorithm
 {

@@ -15,61 +15,6 @@
 
 vtkStandardNewMacro(vtkSonoProbeSource);
 
-namespace {
-
-/// Draws lines of constant depth and constant line number in the world.
-class Outline
-{
-public:
-  explicit Outline(const sono::ProbeField& probe)
-    : probe_(probe)
-  {
-  }
-
-  void beginCell() { first_ = this->points->GetNumberOfPoints(); }
-
-  void addPoint(double line, double depthMm)
-  {
-    const sono::Vec2f plane = sono::planeFromBeam(probe_.geometry, line, depthMm);
-    const sono::Vec3d world =
-      probe_.pose.positionMm + double(plane.x) * probe_.pose.lateral + double(plane.y) * probe_.pose.axial;
-    this->points->InsertNextPoint(&world.x);
-  }
-
-  /// Along the scan lines' near ends (or far ends) from line `from` to line `to`.
-  void addArc(double from, double to, double depthMm)
-  {
-    constexpr int steps = 64;
-    for (int i = 0; i <= steps; ++i)
-    {
-      this->addPoint(from + (to - from) * i / steps, depthMm);
-    }
-  }
-
-  void endCell(bool closed)
-  {
-    const vtkIdType count = this->points->GetNumberOfPoints() - first_;
-    this->lines->InsertNextCell(static_cast<int>(count) + (closed ? 1 : 0));
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      this->lines->InsertCellPoint(first_ + i);
-    }
-    if (closed)
-    {
-      this->lines->InsertCellPoint(first_);
-    }
-  }
-
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> lines;
-
-private:
-  const sono::ProbeField& probe_;
-  vtkIdType first_ = 0;
-};
-
-} // namespace
-
 vtkSonoProbeSource::vtkSonoProbeSource()
 {
   this->SetNumberOfInputPorts(0);
@@ -90,6 +35,8 @@ void vtkSonoProbeSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SectorDeg: " << this->SectorDeg << endl;
   os << indent << "RadiusMm: " << this->RadiusMm << endl;
   os << indent << "WidthMm: " << this->WidthMm << endl;
+  os << indent << "ElevationLineCount: " << this->ElevationLineCount << endl;
+  os << indent << "ElevationSectorDeg: " << this->ElevationSectorDeg << endl;
   printVector("PositionMm", this->PositionMm);
   printVector("Axial", this->Axial);
   printVector("Lateral", this->Lateral);
@@ -102,17 +49,19 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   sono::ProbeField probe;
   if (this->PresetFile.empty())
   {
-    if (this->ScanKind < LINEAR || this->ScanKind > CURVILINEAR)
+    if (this->ScanKind < LINEAR || this->ScanKind > RADIAL)
     {
       throw sono::Error("ScanKind is " + std::to_string(this->ScanKind) +
-                        " but must be 0 (linear), 1 (phased sector) or 2 (curvilinear).");
+                        " but must be 0 (linear), 1 (phased sector), 2 (curvilinear), 3 (matrix) or 4 (radial).");
     }
     probe.geometry = { static_cast<sono::ScanKind>(this->ScanKind),
                        this->LineCount,
                        this->DepthMm,
                        this->SectorDeg,
                        this->RadiusMm,
-                       this->WidthMm };
+                       this->WidthMm,
+                       this->ElevationLineCount,
+                       this->ElevationSectorDeg };
     probe.centreFrequencyMHz = this->CentreFrequencyMHz;
     probe.fractionalBandwidth = this->FractionalBandwidth;
   }
@@ -144,19 +93,22 @@ int vtkSonoProbeSource::RequestData(vtkInformation*, vtkInformationVector**, vtk
 {
   return sono::runStage(this, output, [&] {
     const sono::ProbeField probe = this->Probe();
-    const double lastLine = probe.geometry.lineCount - 1;
-    Outline outline(probe);
-    outline.beginCell();
-    outline.addArc(0.0, lastLine, probe.geometry.depthMm);
-    outline.addArc(lastLine, 0.0, 0.0);
-    outline.endCell(true);
-    outline.beginCell();
-    outline.addArc(0.0, lastLine, 0.0);
-    outline.endCell(false);
-
+    const sono::ProbePose& pose = probe.pose;
+    const sono::Vec3d elevation = glm::cross(pose.axial, pose.lateral);
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> lines;
+    for (const std::vector<sono::Vec3d>& polyline : sono::scanOutline(probe.geometry))
+    {
+      lines->InsertNextCell(static_cast<int>(polyline.size()));
+      for (const sono::Vec3d& p : polyline)
+      {
+        const sono::Vec3d world = pose.positionMm + p.x * pose.lateral + p.y * elevation + p.z * pose.axial;
+        lines->InsertCellPoint(points->InsertNextPoint(&world.x));
+      }
+    }
     vtkPolyData* polyData = vtkPolyData::GetData(output);
-    polyData->SetPoints(outline.points);
-    polyData->SetLines(outline.lines);
+    polyData->SetPoints(points);
+    polyData->SetLines(lines);
     sono::writeProbe(probe, polyData->GetFieldData());
   });
 }

@@ -14,8 +14,9 @@ struct ProbeField;
  * @class vtkSonoProbeSource
  * @brief An ultrasound probe: its scan lines, where it stands, and its pulse
  *
- * The output shows the outline of the scanned area (cell 0) and the transducer's face (cell 1) in world coordinates,
- * LPS mm. Its field data hold everything that later stages need of the probe.
+ * The output shows the outline of the scanned area (cell 0) and the transducer's face (cell 1), or the far border and
+ * the four edges of a matrix's volume, in world coordinates, LPS mm. Its field data hold everything that later stages
+ * need of the probe.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoProbeSource : public vtkPolyDataAlgorithm
 {
@@ -36,7 +37,9 @@ public:
   {
     LINEAR = 0,
     PHASED_SECTOR = 1,
-    CURVILINEAR = 2
+    CURVILINEAR = 2,
+    MATRIX = 3,
+    RADIAL = 4
   };
 
   ///@{
@@ -49,7 +52,7 @@ public:
 
   ///@{
   /**
-   * Number of scan lines, 1 to 4096. Default 128.
+   * Number of scan lines, 1 to 4096; of a matrix, in each elevation. Default 128.
    */
   vtkSetMacro(LineCount, int);
   vtkGetMacro(LineCount, int);
@@ -65,7 +68,8 @@ public:
 
   ///@{
   /**
-   * Angle between the outermost lines in degrees, between 0 and 180; not for linear probes. Default 90.
+   * Angle between the outermost lines in degrees, between 0 and 180, or up to 360 for radial probes; not for linear
+   * ones. Default 90.
    */
   vtkSetMacro(SectorDeg, double);
   vtkGetMacro(SectorDeg, double);
@@ -73,7 +77,7 @@ public:
 
   ///@{
   /**
-   * Radius of a curvilinear probe's face in mm, above 0. Default 60.
+   * Radius of a curvilinear or radial probe's face in mm, above 0. Default 60.
    */
   vtkSetMacro(RadiusMm, double);
   vtkGetMacro(RadiusMm, double);
@@ -89,7 +93,24 @@ public:
 
   ///@{
   /**
-   * Centre of the transducer's face in world coordinates, LPS mm. Default (0, 0, 0).
+   * Elevations of a matrix probe, 1 to 4096, at most 65536 lines altogether. Default 32.
+   */
+  vtkSetMacro(ElevationLineCount, int);
+  vtkGetMacro(ElevationLineCount, int);
+  ///@}
+
+  ///@{
+  /**
+   * Angle between the outermost elevations of a matrix probe in degrees, between 0 and 180. Default 60.
+   */
+  vtkSetMacro(ElevationSectorDeg, double);
+  vtkGetMacro(ElevationSectorDeg, double);
+  ///@}
+
+  ///@{
+  /**
+   * Centre of the transducer's face in world coordinates, LPS mm. Default (87.8, -86.5, -45): with the
+   * two directions' defaults, the apical four-chamber view of the bundled thorax.
    */
   vtkSetVector3Macro(PositionMm, double);
   vtkGetVector3Macro(PositionMm, double);
@@ -97,7 +118,7 @@ public:
 
   ///@{
   /**
-   * Direction into the body, of any length above 0. Default (0, 0, 1).
+   * Direction into the body, of any length above 0. Default (-0.53, 0.65, 0.545).
    */
   vtkSetVector3Macro(Axial, double);
   vtkGetVector3Macro(Axial, double);
@@ -105,7 +126,7 @@ public:
 
   ///@{
   /**
-   * Direction along the array, not parallel to Axial; made orthogonal to it. Default (1, 0, 0).
+   * Direction along the array, not parallel to Axial; made orthogonal to it. Default (0.843, 0.333, 0.423).
    */
   vtkSetVector3Macro(Lateral, double);
   vtkGetVector3Macro(Lateral, double);
@@ -147,9 +168,11 @@ private:
   double SectorDeg = 90.0;
   double RadiusMm = 60.0;
   double WidthMm = 38.0;
-  double PositionMm[3] = { 0.0, 0.0, 0.0 };
-  double Axial[3] = { 0.0, 0.0, 1.0 };
-  double Lateral[3] = { 1.0, 0.0, 0.0 };
+  int ElevationLineCount = 32;
+  double ElevationSectorDeg = 60.0;
+  double PositionMm[3] = { 87.8, -86.5, -45.0 };
+  double Axial[3] = { -0.53, 0.65, 0.545 };
+  double Lateral[3] = { 0.843, 0.333, 0.423 };
   double CentreFrequencyMHz = 2.5;
   double FractionalBandwidth = 0.6;
 };

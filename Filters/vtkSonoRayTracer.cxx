@@ -2,11 +2,14 @@
 
 #include "Echo/FormRf.h"
 #include "SonoLineImage.h"
+#include "SonoPaths.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
+#include "SonoTargets.h"
 #include "Trace/Trace.h"
 #include "vtkSonoSceneHandle.h"
 
+#include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -38,8 +41,8 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
 
 vtkSonoRayTracer::vtkSonoRayTracer()
 {
-  this->SetNumberOfInputPorts(2);
-  this->SetNumberOfOutputPorts(2);
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(3);
 }
 
 vtkSonoRayTracer::~vtkSonoRayTracer() = default;
@@ -59,12 +62,25 @@ void vtkSonoRayTracer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LobeMaxDeg: " << this->LobeMaxDeg << endl;
   os << indent << "RadialBinMm: " << this->RadialBinMm << endl;
   os << indent << "SamplingMHz: " << this->SamplingMHz << endl;
+  os << indent << "RouletteDb: " << this->RouletteDb << endl;
+  os << indent << "TargetTissue: " << this->TargetTissue << endl;
+  os << indent << "NumberOfShownPaths: " << this->NumberOfShownPaths << endl;
   os << indent << "Seed: " << this->Seed << endl;
 }
 
 int vtkSonoRayTracer::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkMultiBlockDataSet" : "vtkPolyData");
+  if (port == 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 2 ? "vtkPolyData" : "vtkImageData");
   return 1;
 }
 
@@ -85,6 +101,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.depthMm = probe.geometry.depthMm;
   settings.radialBinMm = this->RadialBinMm;
   settings.echoSampleMm = rfGrid(this->SamplingMHz, settings.depthMm).sampleMm();
+  settings.rouletteDb = this->RouletteDb;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   settings.validate();
   return settings;
@@ -98,7 +115,7 @@ int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector**
     sono::writeNumber("SamplingMHz", this->SamplingMHz, acquisition);
     const sono::ProbeField probe = sono::readProbe(acquisition);
     const sono::TraceSettings settings = this->Settings(probe);
-    const int lineCount = probe.geometry.lineCount;
+    const int lineCount = probe.geometry.totalLineCount();
     const int binCount = static_cast<int>(std::ceil(settings.depthMm / settings.radialBinMm));
     const int echoCount = rfGrid(this->SamplingMHz, settings.depthMm).sampleCount();
 
@@ -114,10 +131,20 @@ int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector**
 int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    const auto scene = vtkSonoSceneHandle::Get(vtkMultiBlockDataSet::GetData(input[0]));
+    vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(input[0]);
+    const auto scene = vtkSonoSceneHandle::Get(blocks);
+    const auto tissues = vtkSonoSceneHandle::GetTissues(blocks->GetFieldData());
     const sono::ProbeField probe = sono::readProbe(vtkPolyData::GetData(input[1])->GetFieldData());
-    const sono::TracedLines traced = sono::trace(*scene, sono::makeScanLines(probe.geometry, probe.pose),
-                                                 this->Settings(probe), sono::progressOf(this));
+    const std::vector<sono::TargetSurface> targets =
+      sono::targetSurfaces(vtkPolyData::GetData(input[2]), this->TargetTissue, *tissues);
+    const sono::TraceSettings settings = this->Settings(probe);
+    const std::vector<sono::ScanLine> scanLines = sono::makeScanLines(probe.geometry, probe.pose);
+    const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
+    if (this->NumberOfShownPaths != 0)
+    {
+      sono::fillPaths(sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets),
+                      vtkPolyData::GetData(output, 2));
+    }
 
     vtkImageData* lines = vtkImageData::GetData(output, 0);
     sono::setLineImageLayout({ traced.binCount, traced.lineCount, traced.binMm / 2.0, traced.binMm }, lines);

@@ -4,6 +4,8 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <string>
+
 namespace sono {
 struct ProbeField;
 struct TraceSettings;
@@ -13,11 +15,16 @@ struct TraceSettings;
  * @class vtkSonoRayTracer
  * @brief Traces the scan lines of a probe through the anatomy
  *
- * Inputs: the scene of vtkSonoSceneBuilder (port 0) and the probe of vtkSonoProbeSource (port 1).
+ * Inputs: the scene of vtkSonoSceneBuilder (port 0), the probe of vtkSonoProbeSource (port 1) and, optionally, targets
+ * (port 2): closed polygon surfaces in world coordinates, LPS mm, such as needles and test objects, inside which the
+ * label map does not count. Their tissue is named, in this order, by a cell array of strings "Tissue", a field array of
+ * one string "Tissue", or TargetTissue.
  * Output 0: lines x radial bins, x the depth in mm and y the number of the scan line, with the point arrays
  * "Intensity" (mean one-way intensity, 1 at the transducer) and "StandardError" (of that mean). Its field data carry
  * the scene, the probe and the boundary echoes, so that it alone suffices for vtkSonoImageFormation.
  * Output 1: lines x RF samples with the complex point array "BoundaryEcho".
+ * Output 2: some of the paths as polylines in the world, for display, with the point arrays "Intensity" (on arrival),
+ * "IntensityDb" (20 log10 of it) and "Bounce" (boundaries met before), and the cell array "Line".
  */
 class VTKSONOFILTERS_EXPORT vtkSonoRayTracer : public vtkImageAlgorithm
 {
@@ -140,6 +147,31 @@ public:
 
   ///@{
   /**
+   * Paths fainter than this, 20 log10 of the intensity, -1000 to 0, are ended by chance and the others of their kind
+   * count more. Default -100.
+   */
+  vtkSetMacro(RouletteDb, double);
+  vtkGetMacro(RouletteDb, double);
+  ///@}
+
+  ///@{
+  /**
+   * Tissue of the targets where they name none of their own; one of the scene's tissue table. Default cortical_bone.
+   */
+  vtkSetStdStringFromCharMacro(TargetTissue);
+  vtkGetCharFromStdStringMacro(TargetTissue);
+  ///@}
+
+  ///@{
+  /**
+   * Paths on output 2, 0 to 100,000, chosen evenly from all. Default 0.
+   */
+  vtkSetMacro(NumberOfShownPaths, int);
+  vtkGetMacro(NumberOfShownPaths, int);
+  ///@}
+
+  ///@{
+  /**
    * Seed of the paths, at least 0: the same seed gives the same result. Default 1.
    */
   vtkSetMacro(Seed, int);
@@ -151,6 +183,7 @@ protected:
   ~vtkSonoRayTracer() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -172,6 +205,9 @@ private:
   double LobeMaxDeg = 90.0;
   double RadialBinMm = 0.25;
   double SamplingMHz = 50.0;
+  double RouletteDb = -100.0;
+  std::string TargetTissue = "cortical_bone";
+  int NumberOfShownPaths = 0;
   int Seed = 1;
 };
 

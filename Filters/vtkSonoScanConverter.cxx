@@ -61,7 +61,7 @@ int vtkSonoScanConverter::RequestInformation(vtkInformation*, vtkInformationVect
     const sono::ProbeField probe = sono::readProbe(acquisition);
     // Converting one sample a line is cheap and tells the size by the one rule that there is
     // for it.
-    const std::vector<float> blank(std::size_t(probe.geometry.lineCount), 0.0f);
+    const std::vector<float> blank(std::size_t(probe.geometry.totalLineCount()), 0.0f);
     const sono::PlaneImage plane = sono::scanConvert(probe.geometry, blank, 1, probe.geometry.depthMm, this->PixelMm);
     const Placement placement(plane, probe.pose);
 
@@ -87,7 +87,7 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
   return sono::runStage(this, output, [&] {
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
-    const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.lineCount);
+    const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
     const std::vector<float> grey =
       sono::lineValues("BMode", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
     const sono::PlaneImage plane =

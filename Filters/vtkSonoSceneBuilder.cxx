@@ -78,15 +78,16 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     sono::LabelVolume volume = sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->LabelArray(input));
     sono::report(progress, 0.05);
 
-    const auto table = sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv"));
+    const auto table = std::make_shared<const sono::TissueTable>(
+      sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
     const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
-    const std::vector<std::string> unmapped = sono::assignTissues(volume, map, table, this->FallbackTissue);
+    const std::vector<std::string> unmapped = sono::assignTissues(volume, map, *table, this->FallbackTissue);
     if (!unmapped.empty())
     {
       vtkWarningMacro("No pattern of the label tissue map matches these labels, which become "
                       << this->FallbackTissue << ": " << joined(unmapped) << ".");
     }
-    const auto scene = std::make_shared<const sono::Scene>(std::move(volume), table, this->OutsideTissue);
+    const auto scene = std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue);
     sono::report(progress, 0.1);
 
     vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
@@ -99,6 +100,6 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
       sono::addOutline(*scene, blocks);
     }
     sono::writeLabelTable(scene->volume().labels, blocks->GetFieldData());
-    vtkSonoSceneHandle::Attach(scene, blocks);
+    vtkSonoSceneHandle::Attach(scene, table, blocks);
   });
 }

@@ -37,12 +37,14 @@ void vtkSonoSceneHandle::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Scene: " << (this->Scene ? summary(*this->Scene) : "none") << endl;
 }
 
-void vtkSonoSceneHandle::Attach(std::shared_ptr<const sono::Scene> scene, vtkMultiBlockDataSet* blocks)
+void vtkSonoSceneHandle::Attach(std::shared_ptr<const sono::Scene> scene,
+                                std::shared_ptr<const sono::TissueTable> tissues, vtkMultiBlockDataSet* blocks)
 {
   vtkNew<vtkSonoSceneHandle> handle;
   handle->SetName(handleName);
   handle->InsertNextValue(summary(*scene));
   handle->Scene = std::move(scene);
+  handle->Tissues = std::move(tissues);
   blocks->GetBounds(handle->Bounds);
   blocks->GetFieldData()->AddArray(handle);
 }
@@ -66,13 +68,12 @@ std::shared_ptr<const sono::Scene> vtkSonoSceneHandle::Get(vtkMultiBlockDataSet*
 
 std::shared_ptr<const sono::Scene> vtkSonoSceneHandle::Get(vtkFieldData* field)
 {
-  vtkSonoSceneHandle* handle = Find(field);
-  if (!handle)
-  {
-    throw sono::Error("The input carries no ultrasound scene, which files do not keep; connect the output of an "
-                      "Ultrasound Ray Tracer.");
-  }
-  return handle->Scene;
+  return Need(field)->Scene;
+}
+
+std::shared_ptr<const sono::TissueTable> vtkSonoSceneHandle::GetTissues(vtkFieldData* field)
+{
+  return Need(field)->Tissues;
 }
 
 void vtkSonoSceneHandle::DeepCopy(vtkAbstractArray* other)
@@ -81,8 +82,20 @@ void vtkSonoSceneHandle::DeepCopy(vtkAbstractArray* other)
   if (auto* handle = vtkSonoSceneHandle::SafeDownCast(other))
   {
     this->Scene = handle->Scene;
+    this->Tissues = handle->Tissues;
     std::copy(handle->Bounds, handle->Bounds + 6, this->Bounds);
   }
+}
+
+vtkSonoSceneHandle* vtkSonoSceneHandle::Need(vtkFieldData* field)
+{
+  vtkSonoSceneHandle* handle = Find(field);
+  if (!handle)
+  {
+    throw sono::Error("The input carries no ultrasound scene, which files do not keep; connect the output of an "
+                      "Ultrasound Ray Tracer.");
+  }
+  return handle;
 }
 
 vtkSonoSceneHandle* vtkSonoSceneHandle::Find(vtkFieldData* field)

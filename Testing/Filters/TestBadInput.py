@@ -5,9 +5,11 @@ import numpy as np
 from chain import Chain, label_image, listen, make
 from sonovdb.vtkSonoFilters import (vtkSonoLabelMapReader, vtkSonoProbeSource, vtkSonoScanConverter,
                                     vtkSonoSceneBuilder, vtkSonoThoraxSource)
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 
 
 class TestBadInput(unittest.TestCase):
@@ -26,6 +28,55 @@ class TestBadInput(unittest.TestCase):
 
     def test_missing_file(self):
         self.expect(make(vtkSonoLabelMapReader, FileName="nowhere/no.nii.gz"), "nowhere/no.nii.gz")
+
+    def test_missing_vtk_image(self):
+        self.expect(make(vtkSonoLabelMapReader, FileName="nowhere/no.vti"), "nowhere/no.vti")
+
+    def test_matrix_has_no_plane(self):
+        chain = Chain()
+        chain.probe.SetScanKind(3)
+        chain.probe.SetElevationLineCount(2)
+        self.expect(chain.converter, "matrix")
+
+    def test_failure_is_told_once(self):
+        """The executive does not add its own message, for which the window has no use."""
+        window, messages = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
+        vtkOutputWindow.SetInstance(messages)
+        self.scene_of(np.full((3, 3, 3), 0.37, np.float32)).Update()
+        vtkOutputWindow.SetInstance(window)
+        self.assertEqual(messages.GetOutput().count("ERROR:"), 1, messages.GetOutput())
+        self.assertIn("0.37", messages.GetOutput())
+
+    def test_failure_is_told_again_only_after_a_change(self):
+        reader = make(vtkSonoLabelMapReader, FileName="nowhere/no.nii.gz")
+        said = listen(reader)
+        for _ in range(3):
+            reader.Update()
+        self.assertEqual(len(said), 1)
+        reader.Modified()
+        reader.Update()
+        self.assertEqual(len(said), 2)
+
+    def test_target_that_is_not_closed(self):
+        chain, plane = Chain(), vtkPlaneSource()
+        chain.tracer.SetInputConnection(2, plane.GetOutputPort())
+        self.expect(chain.tracer, "not a closed surface")
+
+    def test_target_of_an_unknown_tissue(self):
+        chain, sphere = Chain(), vtkSphereSource()
+        chain.tracer.SetInputConnection(2, sphere.GetOutputPort())
+        chain.tracer.SetTargetTissue("unobtainium")
+        self.expect(chain.tracer, "unobtainium", "tissue table")
+
+    def test_too_many_shown_paths(self):
+        chain = Chain()
+        chain.tracer.SetNumberOfShownPaths(-1)
+        self.expect(chain.tracer, "paths")
+
+    def test_scatterers_without_amplitude(self):
+        chain, sphere = Chain(), vtkSphereSource()
+        chain.formation.SetInputConnection(1, sphere.GetOutputPort())
+        self.expect(chain.formation, "'Amplitude'")
 
     def test_no_file_named(self):
         self.expect(vtkSonoLabelMapReader(), "FileName")
@@ -76,6 +127,7 @@ class TestBadInput(unittest.TestCase):
 
     def test_probe_directions_parallel(self):
         probe = vtkSonoProbeSource()
+        probe.SetAxial(0, 0, 1)
         probe.SetLateral(0, 0, 3)
         self.expect(probe, "lateral")
 

@@ -56,7 +56,7 @@ class TestStages(unittest.TestCase):
         depth_cm = np.arange(lines.GetDimensions()[0]) * lines.GetSpacing()[0] / 10
         envelope = values(self.chain.formation.GetOutput(), "Envelope").reshape(12, -1).astype(float)
         with np.errstate(divide="ignore"):
-            level = 20 * np.log10(envelope / reference) + 1.5 * depth_cm
+            level = 20 * np.log10(envelope / reference) + 5 * depth_cm
         expected = np.clip(1 + level / 60, 0, 1)
         np.testing.assert_allclose(values(lines, "BMode").reshape(12, -1), expected, atol=2e-5)
 
@@ -75,6 +75,8 @@ class TestStages(unittest.TestCase):
         for name in ("thorax", "tracer", "formation", "bmode", "converter"):
             stage = self.chain.stages()[name]
             for port in range(stage.GetNumberOfOutputPorts()):
+                if not stage.GetOutputDataObject(port).IsA("vtkImageData"):
+                    continue
                 with self.subTest(stage=name, port=port):
                     announced = stage.GetOutputInformation(port).Get(whole_extent)
                     self.assertEqual(tuple(announced), stage.GetOutputDataObject(port).GetExtent())
@@ -109,6 +111,23 @@ class TestRunningAgain(unittest.TestCase):
     def test_probe(self):
         self.assertEqual(self.changed(lambda chain: chain.probe.SetDepthMm(80)),
                          {"probe", "tracer", "formation", "bmode", "converter"})
+
+    def test_grey_map_is_applied_to_the_level(self):
+        chain = Chain()
+        chain.bmode.Update()
+        level = values(chain.bmode.GetOutput(), "BMode").copy()
+        chain.bmode.SetGreyMap(1)
+        chain.bmode.Update()
+        np.testing.assert_allclose(values(chain.bmode.GetOutput(), "BMode"), np.sqrt(level), atol=1e-5)
+
+    def test_noise_is_added_only_when_asked_for(self):
+        chain = Chain()
+        chain.bmode.SetNoiseDb(-60)
+        chain.bmode.Update()
+        clean = values(chain.bmode.GetOutput(), "BMode").copy()
+        chain.bmode.AddNoiseOn()
+        chain.bmode.Update()
+        self.assertGreater(values(chain.bmode.GetOutput(), "BMode").mean(), clean.mean() + 0.01)
 
     def test_gain_brightens_by_its_decibels(self):
         chain = Chain()

@@ -7,6 +7,9 @@ import numpy as np
 from chain import Chain, make
 from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoProbeSource
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+AT_ORIGIN = {"PositionMm": (0, 0, 0), "Axial": (0, 0, 1), "Lateral": (1, 0, 0)}
 
 OBLIQUE_NRRD = b"""NRRD0004
 type: uint8
@@ -22,6 +25,19 @@ Segment0_Name:=liver
 Segment0_LabelValue:=5
 Segment0_Color:=1 0.5 0.25
 
+"""
+
+OBLIQUE_MHA = b"""ObjectType = Image
+NDims = 3
+BinaryData = True
+BinaryDataByteOrderMSB = False
+CompressedData = False
+TransformMatrix = 0 1 0 -1 0 0 0 0 1
+Offset = 10 20 30
+ElementSpacing = 2 1.5 3
+DimSize = 4 3 2
+ElementType = MET_UCHAR
+ElementDataFile = LOCAL
 """
 
 
@@ -52,8 +68,34 @@ class TestLabelMap(unittest.TestCase):
 
     def test_reader_knows_its_files_by_their_names(self):
         can_read = vtkSonoLabelMapReader.CanReadFile
-        self.assertEqual([can_read(name) for name in ("a.nii", "a.NII.GZ", "a.seg.nrrd", "a.nrrd", "a.vti", "nii")],
-                         [1, 1, 1, 1, 0, 0])
+        self.assertEqual([can_read(name) for name in ("a.nii", "a.NII.GZ", "a.seg.nrrd", "a.nrrd", "a.mha", "a.mhd", "a.vti", "a.vtu", "nii")],
+                         [1, 1, 1, 1, 1, 1, 1, 0, 0])
+
+    def test_vtk_image_keeps_its_place_and_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "oblique.vti"))
+            writer = make(vtkXMLImageDataWriter, FileName=path)
+            writer.SetInputData(self.image)
+            writer.Write()
+            reader = make(vtkSonoLabelMapReader, FileName=path)
+            reader.Update()
+        image = reader.GetOutput()
+        labels = vtk_to_numpy(image.GetPointData().GetScalars())
+        (index,) = np.flatnonzero(labels == 5)
+        np.testing.assert_allclose(image.GetPoint(int(index)), (7, 26, 33), atol=1e-12)
+        self.assertEqual(image.GetFieldData().GetAbstractArray("LabelNames").GetValue(1), "liver")
+
+    def test_meta_image_stands_where_its_header_says(self):
+        voxels = np.zeros((2, 3, 4), np.uint8)
+        voxels[1, 2, 3] = 5
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "oblique.mha")
+            path.write_bytes(OBLIQUE_MHA + voxels.tobytes())
+            reader = make(vtkSonoLabelMapReader, FileName=str(path))
+            reader.Update()
+        image = reader.GetOutput()
+        (index,) = np.flatnonzero(vtk_to_numpy(image.GetPointData().GetScalars()) == 5)
+        np.testing.assert_allclose(image.GetPoint(int(index)), (7, 26, 33), atol=1e-12)
 
 
 class TestProbe(unittest.TestCase):
@@ -72,15 +114,24 @@ class TestProbe(unittest.TestCase):
         np.testing.assert_allclose(fan.max(axis=0), (21, 52, 3), atol=1e-5)
         np.testing.assert_allclose([face[0], face[-1]], [(-19, 2, 3), (21, 2, 3)], atol=1e-5)
 
+    def test_matrix_volume_reaches_across_the_plane(self):
+        probe = make(vtkSonoProbeSource, ScanKind=3, DepthMm=100.0, SectorDeg=60.0, ElevationSectorDeg=60.0, **AT_ORIGIN)
+        border = self.cell(probe, 0)
+        np.testing.assert_allclose(np.linalg.norm(border, axis=1), 100, atol=1e-4)
+        np.testing.assert_allclose(border.max(axis=0)[:2], (50, 50), atol=0.1)  # elevation is axial x lateral: +y
+
     def test_sector_is_an_arc_about_its_apex(self):
-        probe = make(vtkSonoProbeSource, DepthMm=100.0, SectorDeg=60.0)
+        probe = make(vtkSonoProbeSource, DepthMm=100.0, SectorDeg=60.0, **AT_ORIGIN)
         fan = self.cell(probe, 0)
-        np.testing.assert_allclose(np.linalg.norm(fan[:65], axis=1), 100, atol=1e-4)
-        np.testing.assert_allclose(fan[0], (-50, 0, 100 * np.cos(np.pi / 6)), atol=1e-4)
-        np.testing.assert_allclose(fan[32], (0, 0, 100), atol=1e-4)
+        distance = np.linalg.norm(fan, axis=1)
+        arc = fan[distance > 1]
+        np.testing.assert_allclose(np.linalg.norm(arc, axis=1), 100, atol=1e-4)
+        np.testing.assert_allclose(arc[arc[:, 0].argmin()], (-50, 0, 100 * np.cos(np.pi / 6)), atol=1e-4)
+        np.testing.assert_allclose(arc[:, 2].max(), 100, atol=0.02)
+        np.testing.assert_allclose(fan[distance <= 1], 0, atol=1e-4)
 
     def test_curvilinear_face_is_convex(self):
-        probe = make(vtkSonoProbeSource, ScanKind=2, RadiusMm=60.0, SectorDeg=60.0, DepthMm=100.0)
+        probe = make(vtkSonoProbeSource, ScanKind=2, RadiusMm=60.0, SectorDeg=60.0, DepthMm=100.0, **AT_ORIGIN)
         face = self.cell(probe, 1)
         np.testing.assert_allclose(np.linalg.norm(face - (0, 0, -60), axis=1), 60, atol=1e-4)
         np.testing.assert_allclose(face[-1], (30, 0, 60 * np.cos(np.pi / 6) - 60), atol=1e-4)

@@ -32,8 +32,8 @@ def grey(picture):
     return vtk_to_numpy(Fetch(picture).GetPointData().GetArray("BMode")).copy()
 
 
-def errors_of(proxy):
-    """What a stage complains about while it runs."""
+def errors_of(proxy, **settings):
+    """What a stage complains about while it gets these settings and runs."""
     heard = []
 
     def on_error(_object, _event, text):
@@ -42,6 +42,8 @@ def errors_of(proxy):
     on_error.CallDataType = "string0"
     stage = proxy.GetClientSideObject()
     tag = stage.AddObserver("ErrorEvent", on_error)
+    for name, value in settings.items():
+        setattr(proxy, name, value)
     proxy.UpdatePipeline()
     stage.RemoveObserver(tag)
     return heard
@@ -57,6 +59,39 @@ class TestChain(unittest.TestCase):
         pixels = grey(picture)
         self.assertGreater(pixels.max(), 200)
         self.assertEqual(picture.GetDataInformation().GetPointDataInformation().GetNumberOfArrays(), 2)
+
+    def test_default_probe_sees_the_thorax(self):
+        make_chain()
+        posed = simple.FindSource("probe")
+        fresh = simple.UltrasoundProbe()
+        for name, tolerance in (("Positionmm", 0.05), ("AxialDirection", 1e-3), ("LateralDirection", 1e-3)):
+            for mine, theirs in zip(getattr(fresh, name), getattr(posed, name)):
+                self.assertAlmostEqual(mine, theirs, delta=tolerance)
+
+    def test_target_can_be_connected_and_taken_away(self):
+        bare = grey(make_chain())
+        posed, traced = simple.FindSource("probe"), simple.FindSource("traced")
+        place = [p + 40 * a for p, a in zip(posed.Positionmm, posed.AxialDirection)]
+        traced.Targets = simple.Sphere(Center=place, Radius=8, ThetaResolution=24, PhiResolution=24)
+        with_target = grey(simple.FindSource("picture"))
+        self.assertFalse((with_target == bare).all())
+        traced.Targets = None
+        self.assertTrue((grey(simple.FindSource("picture")) == bare).all())
+
+    def test_ray_paths_are_the_third_output(self):
+        make_chain()
+        traced = simple.FindSource("traced")
+        traced.NumberofShownPaths = 7
+        self.assertEqual(Fetch(traced, idx=2).GetNumberOfCells(), 7)
+
+    def test_scatterers_of_ones_own(self):
+        bare = grey(make_chain())
+        posed = simple.FindSource("probe")
+        place = [p + 40 * a for p, a in zip(posed.Positionmm, posed.AxialDirection)]
+        points = simple.Calculator(Input=simple.PointSource(Center=place, Radius=0, NumberOfPoints=1),
+                                   Function="10", ResultArrayName="Amplitude")
+        simple.FindSource("rf").Scatterers = points
+        self.assertFalse((grey(simple.FindSource("picture")) == bare).all())
 
     def test_both_outputs_of_the_tracer(self):
         make_chain()
@@ -86,7 +121,8 @@ class TestChain(unittest.TestCase):
         self.assertEqual(scene.GetDataInformation().GetNumberOfPoints(), 8)
 
     def test_missing_file(self):
-        (sentence,) = set(errors_of(simple.LabelMapReader(FileName="nowhere/no.nii.gz")))
+        reader = simple.LabelMapReader()
+        (sentence,) = errors_of(reader, FileName="nowhere/no.nii.gz")  # told as soon as the file is named
         self.assertIn("nowhere/no.nii.gz", sentence)
 
     def test_image_that_holds_no_labels(self):
@@ -108,7 +144,7 @@ class TestChain(unittest.TestCase):
         make_chain()
         probe = simple.FindSource("probe")
         probe.Positionmm, probe.AxialDirection, probe.LateralDirection = (1e4, 0, 0), (1, 0, 0), (0, 1, 0)
-        (sentence,) = set(errors_of(simple.FindSource("traced")))
+        (sentence,) = errors_of(simple.FindSource("traced"))
         self.assertIn("probe", sentence)
 
     def test_zero_sized_image(self):

@@ -9,8 +9,7 @@ simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 processes = vtkProcessModule.GetProcessModule()
 assert processes.GetNumberOfLocalPartitions() == 2, "run me on two ranks, with --symmetric"
 
-probe = simple.UltrasoundProbe(NumberofLines=12, Depthmm=90, Positionmm=(75.8, -136.1, -147.0),
-                               AxialDirection=(-0.53, 0.65, 0.545), LateralDirection=(0.843, 0.333, 0.423))
+probe = simple.UltrasoundProbe(NumberofLines=12, Depthmm=90)  # by default in the thorax's apical view
 scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(VoxelSizemm=4), BuildSurfaces=0)
 traced = simple.UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=20)
 bmode = simple.UltrasoundBMode(Input=simple.UltrasoundImageFormation(Input=traced))

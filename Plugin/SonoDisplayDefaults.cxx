@@ -1,0 +1,76 @@
+#include "SonoDisplayDefaults.h"
+
+#include "vtkCommand.h"
+#include "vtkDataObject.h"
+#include "vtkNew.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMPVRepresentationProxy.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSettings.h"
+#include "vtkSMSourceProxy.h"
+
+#include <cstring>
+
+namespace {
+
+bool equal(const char* a, const char* b)
+{
+  return a && b && std::strcmp(a, b) == 0;
+}
+
+void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene)
+{
+  const bool hasColors = scene->GetDataInformation(0)->GetArrayInformation("Color", vtkDataObject::CELL);
+  if (hasColors && representation->GetProperty("MapScalars") && representation->GetProperty("Opacity"))
+  {
+    vtkSMPropertyHelper(representation, "MapScalars").Set(0); // the colours themselves
+    vtkSMPropertyHelper(representation, "Opacity").Set(0.2);
+    vtkSMPVRepresentationProxy::SetScalarColoring(representation, "Color", vtkDataObject::CELL);
+    representation->UpdateVTKObjects();
+  }
+}
+
+/// Looks at each new representation.
+class DisplayDefaults : public vtkCommand
+{
+public:
+  static DisplayDefaults* New() { return new DisplayDefaults; }
+  void Execute(vtkObject*, unsigned long, void* data) override
+  {
+    const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
+    if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY ||
+        !equal(registered->GroupName, "representations") ||
+        registered->Proxy->GetSessionProxyManager()->GetInLoadXMLState())
+    {
+      return;
+    }
+    auto* input = vtkSMSourceProxy::SafeDownCast(vtkSMPropertyHelper(registered->Proxy, "Input", true).GetAsProxy());
+    if (input && equal(input->GetXMLName(), "SonoSceneBuilder"))
+    {
+      showTranslucent(registered->Proxy, input);
+    }
+    else if (input && equal(input->GetXMLName(), "SonoProbeSource"))
+    {
+      vtkSMPropertyHelper(registered->Proxy, "LineWidth", true).Set(3.0);
+      registered->Proxy->UpdateVTKObjects();
+    }
+  }
+};
+
+} // namespace
+
+void sonoInstallDisplayDefaults()
+{
+  if (!vtkSMProxyManager::IsInitialized())
+  {
+    return;
+  }
+  // The colour map that an array gets when it is first shown; a person's own settings have a higher priority.
+  vtkSMSettings::GetInstance()->AddCollectionFromString(
+    R"({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale"}})", 0.0);
+  vtkNew<DisplayDefaults> defaults;
+  vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
+}
