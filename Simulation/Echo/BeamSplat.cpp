@@ -87,7 +87,7 @@ inline BeamFieldCell cellOf(const BeamFieldAxis& axis, float fold, float positio
   const float p = std::max(positionMm, fold * positionMm); // |position| where the table is mirrored
   const bool inside = (p >= axis.lowMm) & (p <= axis.highMm);
   const float lastCell = float(axis.lastCell);
-  const float place = std::min(std::max((p - axis.minMm) * axis.perMm, 0.0f), lastCell + 1.0f);
+  const float place = std::min(std::max(0.0f, (p - axis.minMm) * axis.perMm), lastCell + 1.0f);
   const float cell = std::min(std::floor(place), lastCell);
   return { std::int32_t(cell), place - cell, inside };
 }

@@ -34,7 +34,7 @@ struct EchoSettings
   double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect reflector across
                                    ///< the beam. With a field, both fall off alike in depth from its focus, where the
                                    ///< reflector's echo is 1 (see FieldLevel)
-  std::uint64_t seed = 1; ///< of the scatterers
+  std::uint64_t seed = 1;          ///< of the scatterers
 
   /// Throws Error naming the parameter and its range.
   void validate() const;

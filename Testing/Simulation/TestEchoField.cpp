@@ -1,6 +1,5 @@
 #include "ErrorText.h"
 #include "FieldScenes.h"
-#include "TestScenes.h"
 
 #include <gtest/gtest.h>
 
