@@ -124,10 +124,14 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
   return announceStage(algorithm, work);
 }
 
-int requestWholeImage(vtkInformationVector** inputVector)
+int requestWholeImage(vtkInformationVector** inputVector, int port)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+  vtkInformation* inInfo = inputVector[port]->GetInformationObject(0);
+  if (!inInfo)
+  {
+    return 1; // an optional input that is not connected
+  }
   int extent[6];
   inInfo->Get(Pipeline::WHOLE_EXTENT(), extent);
   inInfo->Set(Pipeline::UPDATE_EXTENT(), extent, 6);

@@ -24,7 +24,7 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
 /// The same for RequestInformation, which every piece needs.
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work);
 
-/// RequestUpdateExtent for a stage that needs its whole image, whatever part of its output is asked for.
-int requestWholeImage(vtkInformationVector** inputVector);
+/// RequestUpdateExtent for a stage that needs the whole image of a port, whatever part of its output is asked for.
+int requestWholeImage(vtkInformationVector** inputVector, int port = 0);
 
 } // namespace sono

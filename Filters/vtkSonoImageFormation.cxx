@@ -1,6 +1,7 @@
 #include "vtkSonoImageFormation.h"
 
 #include "Echo/FormRf.h"
+#include "SonoFieldImage.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
@@ -64,7 +65,7 @@ std::optional<sono::PointScatterers> pointScatterers(vtkPointSet* points)
 
 vtkSonoImageFormation::vtkSonoImageFormation()
 {
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
 }
 
 vtkSonoImageFormation::~vtkSonoImageFormation() = default;
@@ -77,12 +78,13 @@ void vtkSonoImageFormation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScattererCellMm: " << this->ScattererCellMm << endl;
   os << indent << "ScattererLevelDb: " << this->ScattererLevelDb << endl;
   os << indent << "Seed: " << this->Seed << endl;
+  os << indent << "PulseFileName: " << this->PulseFileName << endl;
 }
 
 int vtkSonoImageFormation::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPointSet");
-  if (port == 1)
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 1 ? "vtkPointSet" : "vtkImageData");
+  if (port > 0)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
@@ -121,6 +123,7 @@ int vtkSonoImageFormation::RequestInformation(vtkInformation*, vtkInformationVec
 
 int vtkSonoImageFormation::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
+  sono::requestWholeImage(input, 2);
   return sono::requestWholeImage(input);
 }
 
@@ -129,7 +132,15 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
   return sono::runStage(this, output, [&] {
     vtkImageData* input0 = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(input0->GetFieldData());
-    const sono::EchoSettings settings = this->Settings(input0->GetFieldData());
+    sono::EchoSettings settings = this->Settings(input0->GetFieldData());
+    if (vtkImageData* field = vtkImageData::GetData(input[2]))
+    {
+      settings.field = std::make_shared<const sono::PulseEchoField>(sono::fieldFromImage(field));
+    }
+    if (!this->PulseFileName.empty())
+    {
+      settings.pulse = std::make_shared<const sono::SampledPulse>(sono::readPulse(this->PulseFileName));
+    }
     const auto scene = vtkSonoSceneHandle::Get(input0->GetFieldData());
     const sono::TracedLines traced = tracedLines(input0, probe, settings.sampleMm());
     const auto points = pointScatterers(vtkPointSet::GetData(input[1]));

@@ -4,6 +4,8 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <string>
+
 namespace sono {
 struct EchoSettings;
 }
@@ -15,9 +17,10 @@ class vtkFieldData;
  *
  * Takes output 0 of vtkSonoRayTracer, which carries scene and probe (port 0), and, optionally, scatterers of the user's
  * own besides those of the tissues (port 1): points in world coordinates, LPS mm, with the point array "Amplitude", the
- * echo of each on the axis of a beam where the intensity is 1. The output holds lines x RF samples, x the
- * depth in mm and y the number of the scan line, with the point arrays "RF", "IQ" (complex, demodulated) and
- * "Envelope" (the modulus of IQ).
+ * echo of each on the axis of a beam where the intensity is 1. An optional pulse-echo field (port 2, the output of
+ * vtkSonoPulseEchoField) takes the place of the Gaussian beam; it must reach the probe's depth. The output holds lines
+ * x RF samples, x the depth in mm and y the number of the scan line, with the point arrays "RF", "IQ" (complex,
+ * demodulated) and "Envelope" (the modulus of IQ).
  */
 class VTKSONOFILTERS_EXPORT vtkSonoImageFormation : public vtkImageAlgorithm
 {
@@ -66,6 +69,15 @@ public:
   vtkGetMacro(Seed, int);
   ///@}
 
+  ///@{
+  /**
+   * A pulse (CSV with the columns time_us and amplitude, time 0 at the scatterer) in place of the Gaussian one of the
+   * probe's bandwidth. Default empty: the Gaussian.
+   */
+  vtkSetStdStringFromCharMacro(PulseFileName);
+  vtkGetCharFromStdStringMacro(PulseFileName);
+  ///@}
+
 protected:
   vtkSonoImageFormation();
   ~vtkSonoImageFormation() override;
@@ -86,6 +98,7 @@ private:
   double ScattererCellMm = 0.5;
   double ScattererLevelDb = -30.0;
   int Seed = 1;
+  std::string PulseFileName;
 };
 
 #endif

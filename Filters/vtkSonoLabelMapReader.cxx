@@ -1,9 +1,11 @@
 #include "vtkSonoLabelMapReader.h"
 
+#include "Labels/LabelTable.h"
 #include "Labels/ReadLabelMap.h"
 #include "SonoLabelImage.h"
 #include "SonoStage.h"
 
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -23,6 +25,18 @@ bool endsWith(const std::string& fileName, const char* ending)
   return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(fileName), ending);
 }
 
+/// Names that the image itself lacks come from a table beside the file.
+void nameLabels(const std::string& fileName, vtkImageData* image, sono::LabelVolume& volume)
+{
+  const std::string stem = fileName.substr(0, fileName.size() - std::string(".vti").size());
+  const std::string table =
+    image->GetFieldData()->HasArray("LabelNames") ? std::string() : sono::labelTableBeside(stem);
+  if (!table.empty())
+  {
+    sono::readLabelTable(table, volume);
+  }
+}
+
 sono::LabelVolume readVti(const std::string& fileName)
 {
   vtkNew<vtkXMLImageDataReader> reader;
@@ -33,14 +47,17 @@ sono::LabelVolume readVti(const std::string& fileName)
   reader->SetFileName(fileName.c_str());
   reader->Update();
   vtkImageData* image = reader->GetOutput();
+  sono::LabelVolume volume;
   try
   {
-    return sono::labelVolumeFromImage(image, image->GetPointData()->GetScalars());
+    volume = sono::labelVolumeFromImage(image, image->GetPointData()->GetScalars());
   }
   catch (const sono::Error& error)
   {
     throw sono::Error(fileName + ": " + error.what());
   }
+  nameLabels(fileName, image, volume);
+  return volume;
 }
 
 std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName)

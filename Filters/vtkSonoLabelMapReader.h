@@ -18,7 +18,8 @@ struct LabelVolume;
  * Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and VTK images (.vti, whose point
  * scalars are the labels and whose field data may name them as this reader's does). The output has unsigned short point
  * scalars "Labels" and stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels
- * that occur: LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label.
+ * that occur: LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label. Where the label map
+ * names none, a table beside it does (CSV, ITK-SNAP .label, 3D Slicer .ctbl or .txt).
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLabelMapReader : public vtkImageAlgorithm
 {

@@ -4,13 +4,24 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
+
+namespace sono {
+struct LabelVolume;
+}
+
 /**
  * @class vtkSonoScanConverter
  * @brief Brings scan lines into their places in the world
  *
- * Takes the output of vtkSonoBMode. The output is an image in the probe's plane that stands in world coordinates, LPS
- * mm, by its direction matrix: x along the array (lateral), y into the body (axial), z = axial x lateral (elevation).
- * Its point arrays are "BMode" (0 to 255, 0 outside the scanned area) and "Mask" (1 inside it).
+ * Takes the output of vtkSonoBMode (port 0). The output stands in world coordinates, LPS mm, by its direction matrix.
+ * It is an image in the probe's plane, x along the array (lateral), y into the body (axial), z = axial x lateral
+ * (elevation); of a matrix it is a volume, x lateral, y elevation, z axial.
+ *
+ * Its point arrays are "BMode" (0 to 255, 0 outside the scanned area), "Mask" (1 inside it) and, as the ground truth,
+ * "Labels": the label of the nearest voxel, 0 outside the mask and outside the label map. The label map is that of the
+ * optional port 1, an image whose active point scalars are labels, else that of the scene that was traced; its names
+ * and colours are in the field data. Without either there are no "Labels".
  */
 class VTKSONOFILTERS_EXPORT vtkSonoScanConverter : public vtkImageAlgorithm
 {
@@ -21,7 +32,7 @@ public:
 
   ///@{
   /**
-   * Edge of a square pixel in mm, above 0. Default 0.23.
+   * Edge of a square pixel, of a matrix a cubic voxel, in mm, above 0; at most 2^28 of them. Default 0.23.
    */
   vtkSetMacro(PixelMm, double);
   vtkGetMacro(PixelMm, double);
@@ -31,6 +42,7 @@ protected:
   vtkSonoScanConverter();
   ~vtkSonoScanConverter() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -39,7 +51,11 @@ private:
   vtkSonoScanConverter(const vtkSonoScanConverter&) = delete;
   void operator=(const vtkSonoScanConverter&) = delete;
 
+  std::shared_ptr<const sono::LabelVolume> ConnectedLabels(vtkImageData* image);
+
   double PixelMm = 0.23;
+  std::shared_ptr<const sono::LabelVolume> Labels; // of port 1, kept while its image is unchanged
+  vtkMTimeType LabelsTime = 0;                     // of that image
 };
 
 #endif

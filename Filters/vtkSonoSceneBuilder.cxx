@@ -1,7 +1,8 @@
 #include "vtkSonoSceneBuilder.h"
 
 #include "Labels/AssignTissues.h"
-#include "Scene/Scene.h"
+#include "Labels/BodyFill.h"
+#include "Scene/SceneFile.h"
 #include "Scene/TissueTable.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
@@ -49,6 +50,11 @@ void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LabelTissueFile: " << this->LabelTissueFile << endl;
   os << indent << "FallbackTissue: " << this->FallbackTissue << endl;
   os << indent << "OutsideTissue: " << this->OutsideTissue << endl;
+  os << indent << "FillBody: " << this->FillBody << endl;
+  os << indent << "ClosingMm: " << this->ClosingMm << endl;
+  os << indent << "WallMm: " << this->WallMm << endl;
+  os << indent << "SkinMm: " << this->SkinMm << endl;
+  os << indent << "CacheFolder: " << this->CacheFolder << endl;
   os << indent << "BuildSurfaces: " << this->BuildSurfaces << endl;
 }
 
@@ -71,13 +77,24 @@ int vtkSonoSceneBuilder::RequestUpdateExtent(vtkInformation*, vtkInformationVect
   return sono::requestWholeImage(input);
 }
 
+sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
+{
+  const sono::Progress progress = sono::progressOf(this);
+  sono::LabelVolume volume = sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->LabelArray(input));
+  sono::report(progress, 0.05);
+  if (this->FillBody)
+  {
+    const sono::BodyFillSettings settings{ this->ClosingMm, this->WallMm, this->SkinMm };
+    sono::fillBody(volume, settings, sono::partOf(progress, 0.05, 0.1));
+  }
+  return volume;
+}
+
 int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
     const sono::Progress progress = sono::progressOf(this);
-    sono::LabelVolume volume = sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->LabelArray(input));
-    sono::report(progress, 0.05);
-
+    sono::LabelVolume volume = this->ReadLabels(input);
     const auto table = std::make_shared<const sono::TissueTable>(
       sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
     const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
@@ -87,13 +104,17 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
       vtkWarningMacro("No pattern of the label tissue map matches these labels, which become "
                       << this->FallbackTissue << ": " << joined(unmapped) << ".");
     }
-    const auto scene = std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue);
-    sono::report(progress, 0.1);
-
+    const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
+    const std::shared_ptr<const sono::Scene> scene =
+      cached ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,
+                                     sono::partOf(progress, 0.1, 0.6))
+             : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue);
     vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
     if (this->BuildSurfaces)
     {
-      sono::addLabelSurfaces(*scene, blocks, sono::partOf(progress, 0.1, 1.0));
+      // Several labels at a time; the blocks are then made one by one.
+      scene->buildAll(sono::partOf(progress, cached ? 0.6 : 0.1, cached ? 0.65 : 0.6));
+      sono::addLabelSurfaces(*scene, blocks, sono::partOf(progress, cached ? 0.65 : 0.6, 1.0));
     }
     else
     {

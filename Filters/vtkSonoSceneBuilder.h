@@ -6,6 +6,9 @@
 
 #include <string>
 
+namespace sono {
+struct LabelVolume;
+}
 class vtkDataArray;
 
 /**
@@ -14,7 +17,8 @@ class vtkDataArray;
  *
  * Takes a label image from any reader (point scalars that are whole numbers from 0 to 65535) and gives every label a
  * tissue by its name. The output holds one block a label, named after it, with its surface; its field data carry the
- * scene itself, for the ray tracer, and the label table with the tissues that were found.
+ * scene itself, for the ray tracer, and the label table with the tissues that were found. What has label 0 inside the
+ * body may be filled first (FillBody), and surfaces that were built before may come from a folder (CacheFolder).
  */
 class VTKSONOFILTERS_EXPORT vtkSonoSceneBuilder : public vtkMultiBlockDataSetAlgorithm
 {
@@ -57,6 +61,50 @@ public:
 
   ///@{
   /**
+   * Whether label 0 inside the body becomes skin and soft tissue, for label maps whose 0 means both the air outside and
+   * tissue without a label. The label map does not show where the skin is: ClosingMm and WallMm estimate it. Default
+   * off.
+   */
+  vtkSetMacro(FillBody, bool);
+  vtkGetMacro(FillBody, bool);
+  vtkBooleanMacro(FillBody, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Gaps between labels up to twice as wide belong to the body, in mm, 0 to 200. Used with FillBody. Default 50.
+   */
+  vtkSetMacro(ClosingMm, double);
+  vtkGetMacro(ClosingMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Unlabelled tissue outside the outermost labels, skin included, in mm, 0 to 100. Used with FillBody. Default 10.
+   */
+  vtkSetMacro(WallMm, double);
+  vtkGetMacro(WallMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Thickness of the skin in mm, 0 to 20. Used with FillBody. Default 2.
+   */
+  vtkSetMacro(SkinMm, double);
+  vtkGetMacro(SkinMm, double);
+  ///@}
+
+  ///@{
+  /**
+   * Folder that keeps built surfaces by the label map's voxels and placement, so that the same label map is quick the
+   * next time; empty keeps nothing. Its files may be deleted at any time. Used with BuildSurfaces. Default empty.
+   */
+  vtkSetStdStringFromCharMacro(CacheFolder);
+  vtkGetCharFromStdStringMacro(CacheFolder);
+  ///@}
+
+  ///@{
+  /**
    * Whether to build the labels' surfaces; without them the output shows the label map's box. The echoes do not
    * depend on it. Default on.
    */
@@ -78,11 +126,17 @@ private:
   void operator=(const vtkSonoSceneBuilder&) = delete;
 
   vtkDataArray* LabelArray(vtkInformationVector** input);
+  sono::LabelVolume ReadLabels(vtkInformationVector** input);
 
   std::string TissueTableFile;
   std::string LabelTissueFile;
   std::string FallbackTissue = "soft_tissue";
   std::string OutsideTissue = "air";
+  bool FillBody = false;
+  double ClosingMm = 50.0;
+  double WallMm = 10.0;
+  double SkinMm = 2.0;
+  std::string CacheFolder;
   bool BuildSurfaces = true;
 };
 

@@ -87,37 +87,6 @@ Extent boundingBox(const ScanGeometry& geometry)
   return { outer * std::sin(widest), map.centreAxialMm + backMm, map.centreAxialMm + outer };
 }
 
-PlaneImage emptyImage(const ScanGeometry& geometry, double pixelMm)
-{
-  if (!(pixelMm > 0.0) || !std::isfinite(pixelMm))
-  {
-    std::ostringstream message;
-    message << "pixelMm is " << pixelMm << " but must be positive and finite.";
-    throw Error(message.str());
-  }
-  const Extent box = boundingBox(geometry);
-  const auto pixelsOver = [&](double lengthMm) { return std::ceil(lengthMm / pixelMm - 1e-6) + 1.0; };
-  const double width = pixelsOver(2.0 * box.halfWidthMm);
-  const double height = pixelsOver(box.axialMaxMm - box.axialMinMm);
-  if (width * height > maxPixels)
-  {
-    std::ostringstream message;
-    message << "pixelMm is " << pixelMm << ", which asks for " << width << " x " << height
-            << " pixels; choose larger pixels, for at most 2^28 of them.";
-    throw Error(message.str());
-  }
-
-  PlaneImage image;
-  image.width = static_cast<int>(width);
-  image.height = static_cast<int>(height);
-  image.pixelMm = pixelMm;
-  image.lateralMinMm = -0.5 * (width - 1.0) * pixelMm; // centred, so that a mirrored scan gives a mirrored image
-  image.axialMinMm = box.axialMinMm;
-  image.value.resize(std::size_t(image.width) * image.height);
-  image.mask.resize(image.value.size());
-  return image;
-}
-
 /// Lines x samples with bilinear lookup; on a closed circle, the first line follows the last.
 struct BeamSamples
 {
@@ -198,11 +167,43 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
 
 } // namespace
 
+PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm)
+{
+  geometry.validate();
+  if (!(pixelMm > 0.0) || !std::isfinite(pixelMm))
+  {
+    std::ostringstream message;
+    message << "pixelMm is " << pixelMm << " but must be positive and finite.";
+    throw Error(message.str());
+  }
+  const Extent box = boundingBox(geometry);
+  const auto pixelsOver = [&](double lengthMm) { return std::ceil(lengthMm / pixelMm - 1e-6) + 1.0; };
+  const double width = pixelsOver(2.0 * box.halfWidthMm);
+  const double height = pixelsOver(box.axialMaxMm - box.axialMinMm);
+  if (width * height > maxPixels)
+  {
+    std::ostringstream message;
+    message << "pixelMm is " << pixelMm << ", which asks for " << width << " x " << height
+            << " pixels; choose larger pixels, for at most 2^28 of them.";
+    throw Error(message.str());
+  }
+
+  PlaneImage image;
+  image.width = static_cast<int>(width);
+  image.height = static_cast<int>(height);
+  image.pixelMm = pixelMm;
+  image.lateralMinMm = -0.5 * (width - 1.0) * pixelMm; // centred, so that a mirrored scan gives a mirrored image
+  image.axialMinMm = box.axialMinMm;
+  return image;
+}
+
 PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
                        double pixelMm)
 {
   validateSizes(geometry, values, sampleCount, sampleMm);
-  PlaneImage image = emptyImage(geometry, pixelMm);
+  PlaneImage image = planeImageLayout(geometry, pixelMm);
+  image.value.resize(std::size_t(image.width) * image.height);
+  image.mask.resize(image.value.size());
 
   const BeamMap map(geometry);
   const BeamSamples samples{ values.data(), geometry.lineCount, sampleCount, geometry.closesCircle() };

@@ -21,6 +21,9 @@ struct PlaneImage
   std::vector<std::uint8_t> mask; ///< 1 inside the sector
 };
 
+/// Size and place of the image that scanConvert makes, without values. Throws as it does.
+PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm);
+
 /// Bilinear scan conversion of lines x samples (`sampleMm` apart, the first at depth 0) onto square pixels that cover
 /// the sector's bounding box, centred laterally. The last sample holds for up to one sample more; depths that no
 /// sample reaches, and what lies beyond the geometry's depth, are outside. A single line is drawn one pixel wide.

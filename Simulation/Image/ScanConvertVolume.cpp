@@ -85,17 +85,10 @@ void requirePositive(const char* parameter, double value)
   }
 }
 
-void validate(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
-              double voxelMm)
+void requireFits(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm)
 {
-  geometry.validate();
-  if (geometry.kind != ScanKind::Matrix)
-  {
-    throw Error("the scan kind fills a plane, not a volume; convert its lines with scanConvert.");
-  }
   requirePositive("sampleCount", sampleCount);
   requirePositive("sampleMm", sampleMm);
-  requirePositive("voxelMm", voxelMm);
   const std::size_t wanted = std::size_t(geometry.totalLineCount()) * std::size_t(sampleCount);
   if (values.size() != wanted)
   {
@@ -104,8 +97,16 @@ void validate(const ScanGeometry& geometry, const std::vector<float>& values, in
   }
 }
 
-VolumeImage emptyImage(const ScanGeometry& geometry, double voxelMm)
+} // namespace
+
+VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm)
 {
+  geometry.validate();
+  if (geometry.kind != ScanKind::Matrix)
+  {
+    throw Error("the scan kind fills a plane, not a volume; convert its lines with scanConvert.");
+  }
+  requirePositive("voxelMm", voxelMm);
   // The widest position of a line is at its end, with the other angle at 0.
   const auto halfWidthMm = [&](int lines, double extentDeg) {
     return lines > 1 ? geometry.depthMm * std::sin(0.5 * extentDeg * radPerDeg) : 0.0;
@@ -125,18 +126,16 @@ VolumeImage emptyImage(const ScanGeometry& geometry, double voxelMm)
   image.size = { int(width), int(height), int(depth) };
   image.voxelMm = voxelMm;
   image.minMm = { -0.5 * (width - 1.0) * voxelMm, -0.5 * (height - 1.0) * voxelMm, 0.0 };
-  image.value.resize(image.voxelCount());
-  image.mask.resize(image.voxelCount());
   return image;
 }
-
-} // namespace
 
 VolumeImage scanConvertVolume(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount,
                               double sampleMm, double voxelMm, const Progress& progress)
 {
-  validate(geometry, values, sampleCount, sampleMm, voxelMm);
-  VolumeImage image = emptyImage(geometry, voxelMm);
+  VolumeImage image = volumeImageLayout(geometry, voxelMm);
+  requireFits(geometry, values, sampleCount, sampleMm);
+  image.value.resize(image.voxelCount());
+  image.mask.resize(image.voxelCount());
   const AngleMap azimuth(geometry.lineCount, geometry.sectorDeg);
   const AngleMap elevation(geometry.elevationLineCount, geometry.elevationSectorDeg);
   const BeamVolume beams{ values.data(), geometry.elevationLineCount, geometry.lineCount, sampleCount };

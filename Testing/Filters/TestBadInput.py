@@ -32,11 +32,17 @@ class TestBadInput(unittest.TestCase):
     def test_missing_vtk_image(self):
         self.expect(make(vtkSonoLabelMapReader, FileName="nowhere/no.vti"), "nowhere/no.vti")
 
-    def test_matrix_has_no_plane(self):
+    def test_too_many_voxels(self):
         chain = Chain()
         chain.probe.SetScanKind(3)
         chain.probe.SetElevationLineCount(2)
-        self.expect(chain.converter, "matrix")
+        chain.converter.SetPixelMm(0.01)
+        self.expect(chain.converter, "voxelMm", "larger")
+
+    def test_label_map_without_labels(self):
+        chain = Chain()
+        chain.converter.SetInputDataObject(1, label_image(np.full((3, 3, 3), 0.37, np.float32)))
+        self.expect(chain.converter, "0.37", "whole number")
 
     def test_failure_is_told_once(self):
         """The executive does not add its own message, for which the window has no use."""

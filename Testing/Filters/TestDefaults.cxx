@@ -4,6 +4,8 @@
 // build here: give it a property in the filter's header, PrintSelf, XML and .cxx, and compare its default below.
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
+#include "Labels/BodyFill.h"
+#include "Probe/ArrayAperture.h"
 #include "Probe/ScanGeometry.h"
 #include "Trace/Trace.h"
 
@@ -14,7 +16,9 @@
 #include "vtkSonoBMode.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoProbeSource.h"
+#include "vtkSonoPulseEchoField.h"
 #include "vtkSonoRayTracer.h"
+#include "vtkSonoSceneBuilder.h"
 #include "vtkSonoThoraxSource.h"
 
 #include <gtest/gtest.h>
@@ -63,15 +67,40 @@ TEST(FilterDefaults, ImageFormationEqualsEchoSettings)
   EXPECT_EQ(formation->GetScattererCellMm(), scattererCellMm);
   EXPECT_EQ(formation->GetScattererLevelDb(), scattererLevelDb);
   EXPECT_EQ(static_cast<std::uint64_t>(formation->GetSeed()), seed);
-  // The filter's beam and pulse are the Gaussian ones.
+  // Nothing is connected and no file named.
   EXPECT_EQ(field, nullptr);
+  EXPECT_EQ(formation->GetNumberOfInputConnections(2), 0);
   EXPECT_EQ(pulse, nullptr);
+  EXPECT_STREQ(formation->GetPulseFileName(), "");
   // The tracer sets the sampling, the probe the rest.
   EXPECT_EQ(vtkNew<vtkSonoRayTracer>()->GetSamplingMHz(), samplingMHz);
   vtkNew<vtkSonoProbeSource> probe;
   EXPECT_EQ(probe->GetCentreFrequencyMHz(), centreFrequencyMHz);
   EXPECT_EQ(probe->GetFractionalBandwidth(), fractionalBandwidth);
   EXPECT_EQ(probe->GetDepthMm(), depthMm);
+}
+
+TEST(FilterDefaults, PulseEchoFieldEqualsArrayAperture)
+{
+  const auto [elementCount, elementWidthMm, elementHeightMm, kerfMm, faceRadiusMm, transmitFocusMm, elevationFocusMm,
+              apodization, centreFrequencyMHz, fractionalBandwidth, attenuationDbPerCmMHz, soundSpeedMmPerUs] =
+    sono::ArrayAperture();
+  vtkNew<vtkSonoPulseEchoField> field;
+  EXPECT_STREQ(field->GetFileName(), "");
+  EXPECT_EQ(field->GetElementCount(), elementCount);
+  EXPECT_EQ(field->GetElementWidthMm(), elementWidthMm);
+  EXPECT_EQ(field->GetElementHeightMm(), elementHeightMm);
+  EXPECT_EQ(field->GetKerfMm(), kerfMm);
+  EXPECT_EQ(field->GetFaceRadiusMm(), faceRadiusMm);
+  EXPECT_EQ(field->GetTransmitFocusMm(), transmitFocusMm);
+  EXPECT_EQ(field->GetElevationFocusMm(), elevationFocusMm);
+  EXPECT_EQ(field->GetApodization(), static_cast<int>(apodization));
+  EXPECT_EQ(field->GetCentreFrequencyMHz(), centreFrequencyMHz);
+  EXPECT_EQ(field->GetAttenuationDbPerCmMHz(), attenuationDbPerCmMHz);
+  // The settings have one frequency, the filter the preset's band, which TestField.py compares.
+  EXPECT_EQ(fractionalBandwidth, 0.0);
+  // The filter offers no choice of the sound speed, which is that of the echoes' depths.
+  EXPECT_EQ(soundSpeedMmPerUs, sono::assumedSoundSpeedMmPerUs);
 }
 
 TEST(FilterDefaults, BModeEqualsBModeSettings)
@@ -104,6 +133,16 @@ TEST(FilterDefaults, ProbeEqualsScanGeometry)
   EXPECT_EQ(probe->GetWidthMm(), widthMm);
   EXPECT_EQ(probe->GetElevationLineCount(), elevationLineCount);
   EXPECT_EQ(probe->GetElevationSectorDeg(), elevationSectorDeg);
+}
+
+TEST(FilterDefaults, SceneBuilderEqualsBodyFillSettings)
+{
+  const auto [closingMm, wallMm, skinMm] = sono::BodyFillSettings();
+  vtkNew<vtkSonoSceneBuilder> builder;
+  EXPECT_EQ(builder->GetClosingMm(), closingMm);
+  EXPECT_EQ(builder->GetWallMm(), wallMm);
+  EXPECT_EQ(builder->GetSkinMm(), skinMm);
+  EXPECT_FALSE(builder->GetFillBody());
 }
 
 /// The probe's own numbers are rounded; half a millimetre further out would be outside the skin.

@@ -58,7 +58,17 @@ class TestChain(unittest.TestCase):
         picture = make_chain()
         pixels = grey(picture)
         self.assertGreater(pixels.max(), 200)
-        self.assertEqual(picture.GetDataInformation().GetPointDataInformation().GetNumberOfArrays(), 2)
+        self.assertEqual({picture.PointData[i].Name for i in range(len(picture.PointData))}, {"BMode", "Mask", "Labels"})
+
+    def test_scene_is_saved_and_opened_as_any_data(self):
+        pixels = grey(make_chain())
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "thorax.nvdb"))
+            simple.SaveData(path, proxy=simple.FindSource("scene"))
+            opened = simple.OpenDataFile(path)
+            self.assertEqual(opened.GetXMLName(), "SonoSceneReader")
+            simple.FindSource("traced").Scene = opened
+            self.assertTrue((grey(simple.FindSource("picture")) == pixels).all())
 
     def test_default_probe_sees_the_thorax(self):
         make_chain()

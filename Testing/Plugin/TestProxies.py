@@ -16,9 +16,9 @@ VECTOR_PROPERTIES = ("IntVectorProperty", "DoubleVectorProperty", "StringVectorP
 
 
 def described(class_name):
-    """The <SourceProxy> of a class and its group."""
+    """The <SourceProxy> or <WriterProxy> of a class and its group."""
     group = ElementTree.parse(XML_FOLDER / f"{class_name}.xml").getroot().find("ProxyGroup")
-    return group.get("name"), group.find("SourceProxy")
+    return group.get("name"), next(e for e in group if e.tag in ("SourceProxy", "WriterProxy"))
 
 
 def values(value):
@@ -32,7 +32,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 8)
+        self.assertEqual(len(CLASSES), 11)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()
@@ -75,7 +75,8 @@ class TestProxies(unittest.TestCase):
 
     def test_every_filter_is_in_the_ultrasound_menu(self):
         for _, _, description in self.each():
-            self.assertEqual(description.find("Hints/ShowInMenu").get("category"), "Ultrasound")
+            if description.tag == "SourceProxy":
+                self.assertEqual(description.find("Hints/ShowInMenu").get("category"), "Ultrasound")
 
 
 if __name__ == "__main__":

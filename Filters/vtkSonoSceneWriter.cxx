@@ -1,0 +1,40 @@
+#include "vtkSonoSceneWriter.h"
+
+#include "Scene/SceneFile.h"
+#include "SonoStage.h"
+#include "vtkSonoSceneHandle.h"
+
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkSonoSceneWriter);
+
+vtkSonoSceneWriter::vtkSonoSceneWriter() = default;
+vtkSonoSceneWriter::~vtkSonoSceneWriter() = default;
+
+void vtkSonoSceneWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << endl;
+}
+
+int vtkSonoSceneWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
+  return 1;
+}
+
+void vtkSonoSceneWriter::WriteData()
+{
+  const int ok = sono::announceStage(this, [&] {
+    if (this->FileName.empty())
+    {
+      throw sono::Error("No scene file is named; set FileName to one that ends in .nvdb or .vdb.");
+    }
+    const auto scene = vtkSonoSceneHandle::Get(vtkMultiBlockDataSet::SafeDownCast(this->GetInput()));
+    sono::writeScene(this->FileName, *scene, sono::progressOf(this));
+  });
+  this->SetErrorCode(ok ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
+}
