@@ -13,7 +13,7 @@ if [[ -z $plugin ]]; then
 fi
 
 picture="$root/build/a4c.png"
-PV_PLUGIN_PATH="$(dirname "$plugin")" pvpython "$root/Plugin/examples/simulate.py" --output "$picture" "$@"
+SONOVDB_PLUGIN="$plugin" pvpython "$root/Plugin/examples/simulate.py" --output "$picture" "$@"
 
 # A later --output overrides ours.
 while (($# > 0)); do
