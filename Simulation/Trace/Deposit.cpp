@@ -88,7 +88,7 @@ void LineTally::clearBins()
   std::fill(bins_.begin(), bins_.end(), 0.0f);
 }
 
-void LineTally::segment(const PathSegment& s)
+SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
 {
   ++segments_;
   const Vec3f q = s.start - line_.origin;
