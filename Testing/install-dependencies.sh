@@ -11,7 +11,7 @@ packages=(
   libswscale-dev libgl2ps-dev libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev
   libfreetype-dev
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
-  libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
+  libopenvdb-dev libopenvdb-tools libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
   nlohmann-json3-dev zlib1g-dev
   # tests
   libgtest-dev libbenchmark-dev libopenimageio-dev openimageio-tools xvfb openmpi-bin python3-mpi4py

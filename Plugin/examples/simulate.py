@@ -59,7 +59,7 @@ def save(image, path):
         grey.write(f"P5 {width} {height} 255\n".encode())
         grey.write(vtk_to_numpy(image.GetPointData().GetArray("BMode")).tobytes())
         grey.flush()
-        subprocess.run(["oiiotool", grey.name, "-o", path], check=True)
+        subprocess.run(["oiiotool", "--nosoftwareattrib", grey.name, "-o", path], check=True)
 
 
 LoadPlugin(args.plugin, remote=False, ns=globals())
