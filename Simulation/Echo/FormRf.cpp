@@ -6,6 +6,7 @@
 #include "Echo/Pulse.h"
 #include "Echo/TissueScatterers.h"
 #include "ParallelFor.h"
+#include "Require.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,14 +20,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
-
-void require(bool ok, const char* parameter, double value, const std::string& range)
-{
-  if (!ok)
-  {
-    throw Error(std::string(parameter) + " is " + std::to_string(value) + ": it must be " + range);
-  }
-}
 
 double gaussianAreaMm2(const EchoSettings& s)
 {
@@ -152,24 +145,26 @@ void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beam
 
 void EchoSettings::validate() const
 {
-  require(centreFrequencyMHz > 0.0 && std::isfinite(centreFrequencyMHz), "centre frequency (MHz)", centreFrequencyMHz,
-          "more than 0");
-  require(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
-          "more than 0 and below 2");
-  require(samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
-          "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
-  require(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
-  require(lateralSigmaMm > 0.0 && lateralSigmaMm <= 50.0, "lateral beam sigma (mm)", lateralSigmaMm,
-          "more than 0 and at most 50");
-  require(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0, "elevational beam sigma (mm)", elevationalSigmaMm,
-          "more than 0 and at most 50");
+  requireInRange(centreFrequencyMHz > 0.0 && std::isfinite(centreFrequencyMHz), "centre frequency (MHz)",
+                 centreFrequencyMHz, "more than 0");
+  requireInRange(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
+                 "more than 0 and below 2");
+  requireInRange(
+    samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
+    "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
+  requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
+  requireInRange(lateralSigmaMm > 0.0 && lateralSigmaMm <= 50.0, "lateral beam sigma (mm)", lateralSigmaMm,
+                 "more than 0 and at most 50");
+  requireInRange(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0, "elevational beam sigma (mm)",
+                 elevationalSigmaMm, "more than 0 and at most 50");
   if (field)
   {
     requireReaches(*field, depthMm);
   }
-  require(scattererCellMm >= 0.05 && scattererCellMm <= 10.0, "scatterer cell (mm)", scattererCellMm, "0.05 to 10");
-  require(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0, "scatterer level (dB)",
-          scattererLevelDb, "-200 to 200");
+  requireInRange(scattererCellMm >= 0.05 && scattererCellMm <= 10.0, "scatterer cell (mm)", scattererCellMm,
+                 "0.05 to 10");
+  requireInRange(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0, "scatterer level (dB)",
+                 scattererLevelDb, "-200 to 200");
 }
 
 int EchoSettings::sampleCount() const

@@ -1,6 +1,7 @@
 #include "Trace/TraceSetup.h"
 
 #include "Kernel/NanoSpace.h"
+#include "Require.h"
 #include "Scene/NanoGridStorage.h"
 
 #include <algorithm>
@@ -9,14 +10,6 @@
 namespace sono {
 
 namespace {
-
-void require(bool ok, const char* parameter, double value, const char* range)
-{
-  if (!ok)
-  {
-    throw Error(std::string(parameter) + " is " + std::to_string(value) + ": it must be " + range);
-  }
-}
 
 /// What the fan can reach: the half balls of radius `depthMm` in front of each line's origin, in voxels.
 VoxelBox reach(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm)
@@ -75,22 +68,22 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
 
 void TraceSettings::validate() const
 {
-  require(pathsPerLine >= 1 && pathsPerLine <= 10000000, "paths per line", pathsPerLine, "1 to 10,000,000");
-  require(maxCollisions >= 0 && maxCollisions <= 1000, "maximum collisions", maxCollisions, "0 to 1000");
-  require(coherenceMm >= 0.0 && std::isfinite(coherenceMm), "beam coherence C0 (mm)", coherenceMm, "0 or more");
-  require(std::isfinite(lobeMeanRad), "lobe mean (rad)", lobeMeanRad, "a finite angle");
-  require(lobeSigmaRad >= 0.0 && std::isfinite(lobeSigmaRad), "lobe sigma (rad)", lobeSigmaRad, "0 or more");
-  require(lobeMinRad >= 0.0 && lobeMinRad < lobeMaxRad, "lobe minimum (rad)", lobeMinRad,
-          "0 or more and below the maximum");
-  require(lobeMaxRad <= 1.5708, "lobe maximum (rad)", lobeMaxRad, "at most pi/2");
-  require(frequencyMHz > 0.0 && std::isfinite(frequencyMHz), "frequency (MHz)", frequencyMHz, "more than 0");
-  require(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
-  require(radialBinMm > 0.0 && radialBinMm <= depthMm, "radial bin (mm)", radialBinMm,
-          "more than 0 and at most the depth");
-  require(depthMm / radialBinMm <= 1e5, "radial bin (mm)", radialBinMm, "at least 1/100,000 of the depth");
-  require(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
-          "more than 0 and at least a millionth of the depth");
-  require(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
+  requireInRange(pathsPerLine >= 1 && pathsPerLine <= 10000000, "paths per line", pathsPerLine, "1 to 10,000,000");
+  requireInRange(maxCollisions >= 0 && maxCollisions <= 1000, "maximum collisions", maxCollisions, "0 to 1000");
+  requireInRange(coherenceMm >= 0.0 && std::isfinite(coherenceMm), "beam coherence C0 (mm)", coherenceMm, "0 or more");
+  requireInRange(std::isfinite(lobeMeanRad), "lobe mean (rad)", lobeMeanRad, "a finite angle");
+  requireInRange(lobeSigmaRad >= 0.0 && std::isfinite(lobeSigmaRad), "lobe sigma (rad)", lobeSigmaRad, "0 or more");
+  requireInRange(lobeMinRad >= 0.0 && lobeMinRad < lobeMaxRad, "lobe minimum (rad)", lobeMinRad,
+                 "0 or more and below the maximum");
+  requireInRange(lobeMaxRad <= 1.5708, "lobe maximum (rad)", lobeMaxRad, "at most pi/2");
+  requireInRange(frequencyMHz > 0.0 && std::isfinite(frequencyMHz), "frequency (MHz)", frequencyMHz, "more than 0");
+  requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
+  requireInRange(radialBinMm > 0.0 && radialBinMm <= depthMm, "radial bin (mm)", radialBinMm,
+                 "more than 0 and at most the depth");
+  requireInRange(depthMm / radialBinMm <= 1e5, "radial bin (mm)", radialBinMm, "at least 1/100,000 of the depth");
+  requireInRange(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
+                 "more than 0 and at least a millionth of the depth");
+  requireInRange(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
 }
 
 TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,

@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "LabelFolder.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadLabelMap.h"
@@ -26,31 +27,8 @@ void expectNear(const Vec3d& a, const Vec3d& b, double tolerance)
     << "(" << a.x << ", " << a.y << ", " << a.z << ") for (" << b.x << ", " << b.y << ", " << b.z << ")";
 }
 
-class LabelFormats : public ::testing::Test
+class LabelFormats : public sono::testing::LabelFolder
 {
-protected:
-  void SetUp() override
-  {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("sono_formats_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string text(const std::string& name, const std::string& content) const
-  {
-    std::ofstream(file(name), std::ios::binary) << content;
-    return file(name);
-  }
-  std::string refusal(const std::string& name) const
-  {
-    return errorOf([&] { readLabelMap(file(name)); });
-  }
-
-private:
-  fs::path folder_;
 };
 
 std::string metaText(const std::string& fields, const std::string& data, const std::string& size = "2 1 1",

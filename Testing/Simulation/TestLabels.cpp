@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "LabelFolder.h"
 #include "Labels/LabelVolume.h"
 #include "Labels/ReadLabelMap.h"
 #include "NiftiBytes.h"
@@ -26,29 +27,9 @@ void expectNear(const Vec3d& a, const Vec3d& b, double tolerance)
     << "(" << a.x << ", " << a.y << ", " << a.z << ") for (" << b.x << ", " << b.y << ", " << b.z << ")";
 }
 
-/// Every test has a folder of its own that goes away with it.
-class LabelFiles : public ::testing::Test
+class LabelFiles : public sono::testing::LabelFolder
 {
 protected:
-  void SetUp() override
-  {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("sono_labels_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string text(const std::string& name, const std::string& content) const
-  {
-    std::ofstream(file(name), std::ios::binary) << content;
-    return file(name);
-  }
-  std::string refusal(const std::string& name) const
-  {
-    return errorOf([&] { readLabelMap(file(name)); });
-  }
   /// A 2 x 1 x 1 NIfTI file of one number type.
   template<class T>
   std::string pair(const std::string& name, std::int16_t type, T first, T second) const
@@ -56,9 +37,6 @@ protected:
     NiftiBytes({ 3, 2, 1, 1, 1, 1, 1, 1 }, type, sizeof(T)).voxels<T>({ first, second }).write(file(name));
     return file(name);
   }
-
-private:
-  fs::path folder_;
 };
 
 fs::path sharedData(const std::string& name)
