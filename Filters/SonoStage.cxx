@@ -5,6 +5,7 @@
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringKey.h"
 #include "vtkInformationUnsignedLongKey.h"
 #include "vtkInformationVector.h"
@@ -48,6 +49,12 @@ vtkInformationUnsignedLongKey* saidAtKey()
   return key;
 }
 
+vtkInformationIntegerKey* quietKey()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("QUIET", "SonoVDB");
+  return key;
+}
+
 /// Says what is wrong, but not twice while nothing changes: a viewer asks a failed pipeline again and again.
 void say(vtkAlgorithm* algorithm, const char* sentence)
 {
@@ -65,7 +72,10 @@ void say(vtkAlgorithm* algorithm, const char* sentence)
   {
     memory->Set(saidKey(), sentence);
     memory->Set(saidAtKey(), now);
-    vtkErrorWithObjectMacro(algorithm, << sentence);
+    if (!memory->Has(quietKey()))
+    {
+      vtkErrorWithObjectMacro(algorithm, << sentence);
+    }
   }
 }
 
@@ -88,8 +98,23 @@ Progress partOf(const Progress& whole, double from, double to)
   return [=](double fraction) { return !whole || whole(from + fraction * (to - from)); };
 }
 
+void keepQuiet(vtkAlgorithm* algorithm)
+{
+  algorithm->GetInformation()->Set(quietKey(), 1);
+}
+
+std::string saidBy(vtkAlgorithm* algorithm)
+{
+  const char* said = algorithm->GetInformation()->Get(saidKey());
+  return said ? said : "";
+}
+
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
 {
+  if (algorithm->GetInformation()->Has(quietKey()))
+  {
+    algorithm->GetInformation()->Remove(saidKey());
+  }
   try
   {
     work();

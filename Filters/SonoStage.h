@@ -3,6 +3,7 @@
 #include "Progress.h"
 
 #include <functional>
+#include <string>
 
 class vtkAlgorithm;
 class vtkInformationVector;
@@ -23,6 +24,12 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
 
 /// The same for RequestInformation, which every piece needs.
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work);
+
+/// For a stage inside another filter: what it has to say is kept for `saidBy` and told to nobody.
+void keepQuiet(vtkAlgorithm* algorithm);
+
+/// What a quiet stage said in its last pass; empty where that went well.
+std::string saidBy(vtkAlgorithm* algorithm);
 
 /// RequestUpdateExtent for a stage that needs the whole image of a port, whatever part of its output is asked for.
 int requestWholeImage(vtkInformationVector** inputVector, int port = 0);

@@ -11,6 +11,7 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSonoUltrasound.h"
 
 #include <cstring>
 
@@ -21,9 +22,15 @@ bool equal(const char* a, const char* b)
   return a && b && std::strcmp(a, b) == 0;
 }
 
-void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene)
+/// Whether an output is that of a stage, be it the stage's own or the one that Simulate Ultrasound passes on.
+bool isOutput(vtkSMSourceProxy* source, unsigned int port, const char* stage, unsigned int portOfAll)
 {
-  const bool hasColors = scene->GetDataInformation(0)->GetArrayInformation("Color", vtkDataObject::CELL);
+  return equal(source->GetXMLName(), stage) || (equal(source->GetXMLName(), "SonoUltrasound") && port == portOfAll);
+}
+
+void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsigned int port)
+{
+  const bool hasColors = scene->GetDataInformation(port)->GetArrayInformation("Color", vtkDataObject::CELL);
   if (hasColors && representation->GetProperty("MapScalars") && representation->GetProperty("Opacity"))
   {
     vtkSMPropertyHelper(representation, "MapScalars").Set(0); // the colours themselves
@@ -47,12 +54,19 @@ public:
     {
       return;
     }
-    auto* input = vtkSMSourceProxy::SafeDownCast(vtkSMPropertyHelper(registered->Proxy, "Input", true).GetAsProxy());
-    if (input && equal(input->GetXMLName(), "SonoSceneBuilder"))
+    const vtkSMPropertyHelper helper(registered->Proxy, "Input", true);
+    auto* input = vtkSMSourceProxy::SafeDownCast(helper.GetAsProxy());
+    if (!input)
     {
-      showTranslucent(registered->Proxy, input);
+      return;
     }
-    else if (input && equal(input->GetXMLName(), "SonoProbeSource"))
+    const unsigned int port = helper.GetOutputPort();
+    if (isOutput(input, port, "SonoSceneBuilder", vtkSonoUltrasound::ANATOMY) ||
+        equal(input->GetXMLName(), "SonoSceneReader"))
+    {
+      showTranslucent(registered->Proxy, input, port);
+    }
+    else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {
       vtkSMPropertyHelper(registered->Proxy, "LineWidth", true).Set(3.0);
       registered->Proxy->UpdateVTKObjects();

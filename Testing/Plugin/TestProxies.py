@@ -32,7 +32,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 11)
+        self.assertEqual(len(CLASSES), 12)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()
@@ -72,6 +72,26 @@ class TestProxies(unittest.TestCase):
                 with self.subTest(property=element.get("name")):
                     self.assertTrue(element.findtext("Documentation", "").strip())
                     self.assertTrue(element.tag == "InputProperty" or element.get("number_of_elements"))
+
+    def test_simulate_ultrasound_describes_settings_as_the_stages_do(self):
+        """Labels, ranges and tooltips are those of the stage whose setting it is; some defaults differ."""
+        stages = ("SceneBuilder", "ProbeSource", "ImageFormation", "RayTracer", "BMode", "ScanConverter")
+        theirs = {element.get("name"): element for stage in stages
+                  for element in described("vtkSono" + stage)[1] if element.tag in VECTOR_PROPERTIES}
+        defaults = {"MaxCollisions", "CoherenceMm", "LobeSigmaDeg", "TgcDbPerCm"}
+        own = [element for element in described("vtkSonoUltrasound")[1] if element.tag in VECTOR_PROPERTIES]
+        self.assertGreater(len(own), 50)
+
+        def text(element):
+            # Which of them are advanced is this filter's own choice.
+            hidden = ("panel_visibility",) + (("default_values",) if element.get("name") in defaults else ())
+            attributes = {key: value for key, value in element.attrib.items() if key not in hidden}
+            return [element.tag, attributes, (element.text or "").strip(), [text(child) for child in element]]
+
+        for element in own:
+            with self.subTest(property=element.get("name")):
+                if element.get("name") != "Seed":  # which seeds two stages
+                    self.assertEqual(text(element), text(theirs[element.get("name")]))
 
     def test_every_filter_is_in_the_ultrasound_menu(self):
         for _, _, description in self.each():

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+
+namespace sono {
+
+/// Stages that run inside another filter, which reports their progress and tells of their failures as its own.
+class StageChain
+{
+public:
+  /// One of the stages: what the progress bar says meanwhile, and where its progress ends in that of the whole.
+  struct Link
+  {
+    vtkAlgorithm* stage;
+    const char* text;
+    double progressEnd;
+  };
+
+  /// The links in the order in which they run, for as long as the chain lives.
+  StageChain(vtkAlgorithm* owner, std::vector<Link> links);
+
+  /// The information pass of the last link and all before it. Throws Error with the sentence of the one that failed.
+  void updateInformation();
+
+  /// Makes the data of all links that are not up to date. Throws Error as above, Aborted when the owner is to stop.
+  void update();
+
+private:
+  void reportProgress(std::size_t link, double fraction);
+  [[noreturn]] void throwFailure() const;
+
+  vtkAlgorithm* owner_;
+  std::vector<Link> links_;
+};
+
+} // namespace sono

@@ -1,0 +1,238 @@
+"""The filter that chains all stages makes what they make, and runs only those that a change concerns."""
+import unittest
+
+import numpy as np
+from chain import Chain, label_image, listen, make
+from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoSceneBuilder, vtkSonoUltrasound
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+SETTINGS = {"LineCount": 12, "DepthMm": 90.0, "SectorDeg": 60.0, "PathsPerLine": 20, "BuildSurfaces": False}
+# What the stages' own defaults differ in.
+CHEST = {"MaxCollisions": 20, "CoherenceMm": 20.0, "LobeSigmaDeg": 6.0}
+IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, ANATOMY, PROBE, RAY_PATHS = range(7)
+
+
+def values(data, name):
+    return vtk_to_numpy(data.GetPointData().GetArray(name)).copy()
+
+
+class Ultrasound:
+    """The filter on the coarse thorax of a chain of stages, with the same settings."""
+
+    def __init__(self, **settings):
+        self.stages = Chain()
+        self.filter = make(vtkSonoUltrasound, **{**SETTINGS, **settings})
+        for part in ("PositionMm", "Axial", "Lateral"):
+            getattr(self.filter, "Set" + part)(*getattr(self.stages.probe, "Get" + part)())
+        self.filter.SetInputConnection(self.stages.thorax.GetOutputPort())
+
+    def output(self, port=IMAGE):
+        self.filter.Update()
+        return self.filter.GetOutputDataObject(port)
+
+
+class TestOutputs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.ultrasound = Ultrasound(NumberOfShownPaths=7)
+        cls.filter, cls.chain = cls.ultrasound.filter, cls.ultrasound.stages
+        for name, value in CHEST.items():
+            getattr(cls.chain.tracer, "Set" + name)(value)
+        cls.chain.bmode.SetTgcDbPerCm(3)
+        cls.errors = listen(cls.filter)
+        cls.filter.Update()
+        cls.chain.converter.Update()
+
+    def test_it_says_nothing(self):
+        self.assertEqual(self.errors, [])
+
+    def test_image_and_lines_are_those_of_the_stages(self):
+        for port, stage, names in ((IMAGE, self.chain.converter, ("BMode", "Mask", "Labels")),
+                                   (BMODE_LINES, self.chain.bmode, ("BMode",)),
+                                   (RF_LINES, self.chain.formation, ("RF", "IQ", "Envelope")),
+                                   (TRACED_LINES, self.chain.tracer, ("Intensity", "StandardError"))):
+            made, expected = self.filter.GetOutputDataObject(port), stage.GetOutputDataObject(0)
+            for place in ("GetOrigin", "GetSpacing", "GetDimensions"):
+                self.assertEqual(getattr(made, place)(), getattr(expected, place)())
+            for name in names:
+                with self.subTest(port=port, array=name):
+                    np.testing.assert_array_equal(values(made, name), values(expected, name))
+
+    def test_image_stands_in_the_world(self):
+        made, expected = (image.GetDirectionMatrix() for image in
+                          (self.filter.GetOutputDataObject(IMAGE), self.chain.converter.GetOutput()))
+        for row in range(3):
+            for column in range(3):
+                self.assertEqual(made.GetElement(row, column), expected.GetElement(row, column))
+
+    def test_anatomy_probe_and_paths(self):
+        self.assertEqual(self.filter.GetOutputDataObject(ANATOMY).GetNumberOfBlocks(), 1)  # the box
+        self.assertEqual(self.filter.GetOutputDataObject(PROBE).GetNumberOfCells(), 2)
+        self.assertEqual(self.filter.GetOutputDataObject(RAY_PATHS).GetNumberOfCells(), 7)
+
+    def test_every_image_is_announced_as_it_is_made(self):
+        for port in (IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES):
+            with self.subTest(port=port):
+                announced = self.filter.GetOutputInformation(port).Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
+                self.assertEqual(tuple(announced), self.filter.GetOutputDataObject(port).GetExtent())
+
+    def test_stages_can_be_connected_to_its_outputs(self):
+        self.chain.formation.SetInputConnection(self.filter.GetOutputPort(TRACED_LINES))
+        errors = listen(self.chain.formation)
+        self.chain.formation.Update()
+        self.assertEqual(errors, [])
+        np.testing.assert_array_equal(values(self.chain.formation.GetOutput(), "RF"),
+                                      values(self.filter.GetOutputDataObject(RF_LINES), "RF"))
+
+    def test_a_scene_will_do_as_input(self):
+        scene = make(vtkSonoSceneBuilder, BuildSurfaces=False)
+        scene.SetInputConnection(self.chain.thorax.GetOutputPort())
+        ultrasound = Ultrasound()
+        ultrasound.filter.SetInputConnection(scene.GetOutputPort())
+        np.testing.assert_array_equal(values(ultrasound.output(), "BMode"),
+                                      values(self.filter.GetOutputDataObject(IMAGE), "BMode"))
+
+
+class TestRunningAgain(unittest.TestCase):
+    """An array keeps its modification time where its stage did not run."""
+
+    PORTS = {BMODE_LINES: "BMode", RF_LINES: "RF", TRACED_LINES: "Intensity", IMAGE: "BMode"}
+
+    def times(self, ultrasound):
+        made = {port: ultrasound.output(port).GetPointData().GetArray(name).GetMTime()
+                for port, name in self.PORTS.items()}
+        made[ANATOMY] = ultrasound.output(ANATOMY).GetFieldData().GetAbstractArray("SonoScene").GetMTime()
+        return made
+
+    def changed(self, change):
+        """The outputs that are made again after a change."""
+        ultrasound = Ultrasound()
+        before = self.times(ultrasound)
+        change(ultrasound.filter)
+        return {port for port, time in self.times(ultrasound).items() if time != before[port]}
+
+    def test_nothing_changed_nothing_runs(self):
+        self.assertEqual(self.changed(lambda _: None), set())
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.Modified()), set())
+
+    def test_gain_does_not_trace_again(self):
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetGainDb(6)), {BMODE_LINES, IMAGE})
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.AddTgcPoint(10, 3)), {BMODE_LINES, IMAGE})
+
+    def test_pixel_size_makes_the_image_only(self):
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetPixelMm(0.5)), {IMAGE})
+
+    def test_beam_width_forms_echoes_again(self):
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetLateralSigmaMm(2)), {RF_LINES, BMODE_LINES, IMAGE})
+
+    def test_pose_keeps_the_anatomy(self):
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetPositionMm(80, -86, -45)),
+                         {TRACED_LINES, RF_LINES, BMODE_LINES, IMAGE})
+
+    def test_tissues_change_everything(self):
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetFillBody(True)),
+                         {ANATOMY, TRACED_LINES, RF_LINES, BMODE_LINES, IMAGE})
+
+
+class TestChangingInput(unittest.TestCase):
+    def test_another_label_map_and_back(self):
+        ultrasound = Ultrasound()
+        first = values(ultrasound.output(), "BMode")
+        other = vtkImageData()
+        other.DeepCopy(ultrasound.stages.thorax.GetOutput())
+        vtk_to_numpy(other.GetPointData().GetScalars())[...] = 0
+        other.GetPointData().GetScalars().SetValue(0, 1)
+        ultrasound.filter.SetInputData(other)
+        self.assertFalse((values(ultrasound.output(), "BMode") == first).all())
+        ultrasound.filter.SetInputConnection(ultrasound.stages.thorax.GetOutputPort())
+        np.testing.assert_array_equal(values(ultrasound.output(), "BMode"), first)
+
+    def test_another_label_map_while_it_runs(self):
+        """The next run takes what was connected meanwhile; the one under way says at most that it lost its input."""
+        ultrasound = Ultrasound()
+        whole = values(ultrasound.output(), "BMode")
+        coarse = make(type(ultrasound.stages.thorax), SpacingMm=5.0)
+        for moment in (0, 1, 2):  # before the data are made, while they are
+            with self.subTest(moment=moment):
+                events = []
+
+                def switch(*_):
+                    events.append(1)
+                    if len(events) == moment + 1:
+                        ultrasound.filter.SetInputConnection(coarse.GetOutputPort())
+
+                ultrasound.filter.SetPathsPerLine(21)
+                tag = ultrasound.filter.AddObserver("ProgressEvent", switch)
+                errors = listen(ultrasound.filter)
+                ultrasound.filter.Update()
+                ultrasound.filter.RemoveObserver(tag)
+                self.assertLessEqual(len(errors), 1)
+                ultrasound.filter.SetPathsPerLine(20)
+                self.assertFalse((values(ultrasound.output(), "BMode") == whole).all())
+                ultrasound.filter.SetInputConnection(ultrasound.stages.thorax.GetOutputPort())
+                np.testing.assert_array_equal(values(ultrasound.output(), "BMode"), whole)
+
+    def test_abort_is_quiet_and_the_next_run_is_whole(self):
+        ultrasound = Ultrasound()
+        whole = values(ultrasound.output(), "BMode")
+        errors = listen(ultrasound.filter)
+        for name, value in (("PathsPerLine", 21), ("FillBody", True)):  # stops the tracer, the scene
+            with self.subTest(changed=name):
+                before = getattr(ultrasound.filter, "Get" + name)()
+                getattr(ultrasound.filter, "Set" + name)(value)
+                stop = ultrasound.filter.AddObserver(
+                    "ProgressEvent", lambda *_: ultrasound.filter.SetAbortExecuteAndUpdateTime())
+                ultrasound.filter.Update()
+                ultrasound.filter.RemoveObserver(stop)
+                ultrasound.filter.AbortExecuteOff()
+                getattr(ultrasound.filter, "Set" + name)(before)
+                np.testing.assert_array_equal(values(ultrasound.output(), "BMode"), whole)
+        self.assertEqual(errors, [])
+
+
+class TestBadInput(unittest.TestCase):
+    def expect(self, ultrasound, *words):
+        said = listen(ultrasound)
+        ultrasound.Update()
+        self.assertEqual(len(said), 1, said)
+        for word in words:
+            self.assertIn(word.lower(), said[0].lower())
+
+    def test_the_sentence_of_the_stage_is_its_own(self):
+        for name, value, word in (("LineCount", 0, "lineCount"), ("PathsPerLine", 0, "paths per line"),
+                                  ("PixelMm", 0.0, "pixelMm"), ("TissueTableFile", "nowhere.csv", "nowhere.csv"),
+                                  ("DynamicRangeDb", 0.0, "range")):
+            with self.subTest(setting=name):
+                self.expect(Ultrasound(**{name: value}).filter, word)
+
+    def test_a_failure_is_over_once_its_cause_is(self):
+        ultrasound = Ultrasound(PathsPerLine=0)
+        self.expect(ultrasound.filter, "paths per line")
+        ultrasound.filter.SetPathsPerLine(20)
+        said = listen(ultrasound.filter)
+        self.assertGreater(values(ultrasound.output(), "BMode").max(), 200)
+        self.assertEqual(said, [])
+
+    def test_an_image_without_labels(self):
+        ultrasound = vtkSonoUltrasound()
+        ultrasound.SetInputData(label_image(np.full((3, 3, 3), 0.37, np.float32)))
+        self.expect(ultrasound, "0.37", "whole number")
+
+    def test_an_empty_image(self):
+        ultrasound = vtkSonoUltrasound()
+        ultrasound.SetInputData(vtkImageData())
+        self.expect(ultrasound, "no voxels")
+
+    def test_a_label_map_that_cannot_be_read(self):
+        """The reader says so; the filter has nothing to add."""
+        reader, ultrasound = make(vtkSonoLabelMapReader, FileName="nowhere/no.nii.gz"), vtkSonoUltrasound()
+        ultrasound.SetInputConnection(reader.GetOutputPort())
+        of_reader, of_filter = listen(reader), listen(ultrasound)
+        ultrasound.Update()
+        self.assertEqual((len(of_reader), of_filter), (1, []))
+
+
+if __name__ == "__main__":
+    unittest.main()
