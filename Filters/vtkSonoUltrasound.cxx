@@ -125,7 +125,7 @@ void vtkSonoUltrasound::Stages::connect(vtkDataObject* input)
 {
   if (!input)
   {
-    throw sono::Error("No label map is connected, or it was taken away during the run; connect one and run again.");
+    throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
   }
   std::vector<double> content = contentOf(input);
   if (content == connected_ && tracer->GetNumberOfInputConnections(0) > 0)
@@ -324,6 +324,7 @@ int vtkSonoUltrasound::FillInputPortInformation(int, vtkInformation* info)
   // The composite one first: the pipeline would otherwise hand a scene over block by block.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // so that one clear sentence says what is missing
   return 1;
 }
 

@@ -1,5 +1,7 @@
 #include "SonoDisplayDefaults.h"
 
+#include "SonoFirstPose.h"
+
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkNew.h"
@@ -40,7 +42,7 @@ void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsign
   }
 }
 
-/// Looks at each new representation.
+/// Looks at each new representation and each new Simulate Ultrasound.
 class DisplayDefaults : public vtkCommand
 {
 public:
@@ -49,8 +51,16 @@ public:
   {
     const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
     if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY ||
-        !equal(registered->GroupName, "representations") ||
         registered->Proxy->GetSessionProxyManager()->GetInLoadXMLState())
+    {
+      return;
+    }
+    auto* source = vtkSMSourceProxy::SafeDownCast(registered->Proxy);
+    if (source && equal(registered->GroupName, "sources") && equal(source->GetXMLName(), "SonoUltrasound"))
+    {
+      sonoSetFirstPose(source);
+    }
+    if (!equal(registered->GroupName, "representations"))
     {
       return;
     }

@@ -1,0 +1,157 @@
+"""Simulate Ultrasound as a proxy: its first pose, state files, traces, and what it says when something is missing."""
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+from paraview import simple, smstate, smtrace
+from paraview.servermanager import Fetch
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+PLUGIN = os.environ["SONOVDB_PLUGIN"]
+simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
+QUICK = {"NumberofLines": 12, "Depthmm": 90, "PathsperLine": 20, "BuildSurfaces": 0}
+
+
+def make_ultrasound(**settings):
+    thorax = simple.ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
+    return simple.SimulateUltrasound(registrationName="ultrasound", Input=thorax, **{**QUICK, **settings})
+
+
+def grey(ultrasound):
+    ultrasound.UpdatePipeline()
+    return vtk_to_numpy(Fetch(ultrasound).GetPointData().GetArray("BMode")).copy()
+
+
+POSE = {"Positionmm": [87, -86, -45], "AxialDirection": [-0.5, 0.65, 0.545], "LateralDirection": [0.84, 0.33, 0.42]}
+
+
+def errors_of(proxy, **settings):
+    """What a filter complains about while it gets these settings and runs."""
+    heard = []
+
+    def on_error(_object, _event, text):
+        heard.append(text)
+
+    on_error.CallDataType = "string0"
+    tag = proxy.GetClientSideObject().AddObserver("ErrorEvent", on_error)
+    for name, value in settings.items():
+        setattr(proxy, name, value)
+    proxy.UpdatePipeline()
+    proxy.GetClientSideObject().RemoveObserver(tag)
+    return heard
+
+
+class TestUltrasound(unittest.TestCase):
+    def tearDown(self):
+        for proxy in list(simple.GetSources().values()):
+            simple.Delete(proxy)
+
+    def test_picture_and_the_other_outputs(self):
+        ultrasound = make_ultrasound(NumberofShownPaths=5)
+        self.assertGreater(grey(ultrasound).max(), 200)
+        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(7)],
+                         4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData"])
+        self.assertEqual(Fetch(ultrasound, idx=6).GetNumberOfCells(), 5)
+
+    def test_a_new_one_stands_where_the_acoustic_window_is(self):
+        ultrasound = make_ultrasound()
+        window = Fetch(simple.AcousticWindow(Input=simple.FindSource("thorax"))).GetFieldData()
+        for name, array in (("Positionmm", "ProbePositionMm"), ("AxialDirection", "ProbeAxial"),
+                            ("LateralDirection", "ProbeLateral")):
+            self.assertEqual(tuple(getattr(ultrasound, name)), window.GetArray(array).GetTuple3(0))
+
+    def test_a_pose_that_was_given_stays(self):
+        self.assertEqual(list(make_ultrasound(Positionmm=[80, -86, -45]).Positionmm), [80, -86, -45])
+
+    def test_gain_does_not_build_or_trace_again(self):
+        ultrasound = make_ultrasound()
+        before = grey(ultrasound)
+
+        def made():
+            outputs = ultrasound.GetClientSideObject()
+            return (outputs.GetOutputDataObject(4).GetFieldData().GetAbstractArray("SonoScene").GetMTime(),
+                    outputs.GetOutputDataObject(3).GetPointData().GetArray("Intensity").GetMTime())
+
+        scene_and_lines = made()
+        ultrasound.GaindB = 10
+        self.assertFalse((grey(ultrasound) == before).all())
+        self.assertEqual(made(), scene_and_lines)
+
+    def test_state_file_brings_the_picture_back(self):
+        before = grey(make_ultrasound(GaindB=3, TGCCurvemmdB=[0, 0, 50, 12], **POSE))
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "ultrasound.pvsm"))
+            simple.SaveState(path)
+            self.tearDown()
+            simple.LoadState(path)
+        again = simple.FindSource("ultrasound")
+        self.assertEqual(list(again.Positionmm), POSE["Positionmm"])
+        self.assertTrue((grey(again) == before).all())
+
+    def test_python_state_brings_the_picture_back(self):
+        before = grey(make_ultrasound(GaindB=3, **POSE))
+        state = smstate.get_state()
+        self.tearDown()
+        exec(compile(state, "state", "exec"), {})
+        self.assertTrue((grey(simple.FindSource("ultrasound")) == before).all())
+
+    def test_trace_replays(self):
+        smtrace.start_trace()
+        before = grey(make_ultrasound(GaindB=4, LobeSigmadegrees=8))
+        trace = smtrace.stop_trace()
+        self.assertIn("SimulateUltrasound", trace)
+        self.tearDown()
+        exec(compile(trace, "trace", "exec"), {})
+        again = simple.FindSource("ultrasound")
+        self.assertEqual((again.GaindB, again.LobeSigmadegrees), (4, 8))
+        self.assertTrue((grey(again) == before).all())
+
+    def test_state_file_whose_data_are_gone(self):
+        """The reader says which file is missing, the filter that it got nothing, and both stand there to be mended."""
+        with tempfile.TemporaryDirectory() as folder:
+            labels, state = pathlib.Path(folder, "labels.vti"), str(pathlib.Path(folder, "gone.pvsm"))
+            simple.SaveData(str(labels), proxy=simple.ThoraxPhantom(VoxelSizemm=5))
+            reader = simple.LabelMapReader(registrationName="labels.vti", FileName=str(labels))
+            before = grey(simple.SimulateUltrasound(registrationName="ultrasound", Input=reader, **QUICK))
+            simple.SaveState(state)
+            self.tearDown()
+            labels.rename(labels.with_name("moved.vti"))
+            simple.LoadState(state)
+            reader, ultrasound = simple.FindSource("labels.vti"), simple.FindSource("ultrasound")
+            self.assertIn("no voxels", errors_of(ultrasound)[0])
+            self.assertEqual(ultrasound.GetDataInformation().GetNumberOfPoints(), 0)
+            reader.FileName = str(labels.with_name("moved.vti"))
+            self.assertTrue((grey(ultrasound) == before).all())
+
+    def test_no_label_map_selected(self):
+        """The menus offer the filters only for what can be their input; a script may go without."""
+        for make, setting in ((simple.SimulateUltrasound, "LateralBeamSigmamm"),
+                              (simple.AcousticWindow, "CentreFrequencyMHz")):
+            simple.SetActiveSource(None)
+            (sentence,) = errors_of(make(), **{setting: 2})
+            self.assertIn("No label map is connected", sentence)
+
+    def test_input_that_holds_no_labels(self):
+        (sentence,) = errors_of(simple.SimulateUltrasound(Input=simple.Wavelet(), **QUICK))
+        self.assertIn("RTData", sentence)
+        self.assertIn("whole number", sentence)
+
+    def test_switching_the_input(self):
+        ultrasound = make_ultrasound()
+        first = grey(ultrasound)
+        ultrasound.Input = simple.ThoraxPhantom(VoxelSizemm=5)
+        self.assertFalse((grey(ultrasound) == first).all())
+        ultrasound.Input = simple.UltrasoundScene(Input=simple.FindSource("thorax"), BuildSurfaces=0)
+        self.assertTrue((grey(ultrasound) == first).all())
+
+    def test_the_plugin_is_loaded_twice(self):
+        before = grey(make_ultrasound())
+        simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
+        self.tearDown()
+        self.assertTrue((grey(make_ultrasound()) == before).all())
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
