@@ -49,6 +49,21 @@ struct Placement
     setColumns(pose.lateral, elevation, pose.axial);
   }
 
+  /// The same in the probe's own frame, in cm.
+  Placement flat(const sono::ProbePose& pose) const
+  {
+    const sono::Vec3d elevation = glm::cross(pose.axial, pose.lateral);
+    const sono::Vec3d from = originMm - pose.positionMm;
+    const bool isVolume = size.z > 1;
+    const sono::Vec3d second = isVolume ? elevation : pose.axial;
+    const sono::Vec3d third = isVolume ? pose.axial : elevation;
+    Placement result = *this;
+    result.pixelMm = pixelMm / 10.0;
+    result.originMm = sono::Vec3d(glm::dot(from, pose.lateral), glm::dot(from, second), glm::dot(from, third)) / 10.0;
+    result.setColumns({ 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 });
+    return result;
+  }
+
   void announce(vtkInformation* outInfo) const
   {
     const int extent[6] = { 0, size.x - 1, 0, size.y - 1, 0, size.z - 1 };
@@ -121,13 +136,23 @@ std::shared_ptr<const sono::LabelVolume> sceneLabels(vtkFieldData* field)
 /// A plane or a volume, and the labels there.
 template<class Converted>
 void fillImage(const Converted& converted, const sono::ProbePose& pose, const sono::LabelVolume* labels,
-               vtkImageData* image)
+               vtkImageData* image, vtkImageData* flat)
 {
-  Placement(converted, pose).place(image);
+  const Placement placement(converted, pose);
+  placement.place(image);
   vtkPointData* arrays = image->GetPointData();
+  // From 1 on, so that a colour map can leave out what was not scanned and still show black.
   addArray<vtkUnsignedCharArray>("BMode", converted.value, arrays, [](float value) {
-    return static_cast<unsigned char>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+    return static_cast<unsigned char>(std::max(1L, std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))));
   });
+  auto* grey = vtkUnsignedCharArray::SafeDownCast(arrays->GetArray("BMode"));
+  for (std::size_t i = 0; i < converted.mask.size(); ++i)
+  {
+    if (!converted.mask[i])
+    {
+      grey->SetValue(static_cast<vtkIdType>(i), 0);
+    }
+  }
   arrays->SetActiveScalars("BMode");
   addArray<vtkUnsignedCharArray>("Mask", converted.mask, arrays, [](std::uint8_t inside) { return inside; });
   if (labels)
@@ -136,6 +161,8 @@ void fillImage(const Converted& converted, const sono::ProbePose& pose, const so
                                     [](std::uint16_t label) { return label; });
     sono::writeLabelTable(labels->labels, image->GetFieldData());
   }
+  flat->ShallowCopy(image);
+  placement.flat(pose).place(flat);
 }
 
 } // namespace
@@ -143,6 +170,7 @@ void fillImage(const Converted& converted, const sono::ProbePose& pose, const so
 vtkSonoScanConverter::vtkSonoScanConverter()
 {
   this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkSonoScanConverter::~vtkSonoScanConverter() = default;
@@ -183,9 +211,14 @@ int vtkSonoScanConverter::RequestInformation(vtkInformation*, vtkInformationVect
 {
   return sono::announceStage(this, [&] {
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
-    vtkInformation* outInfo = output->GetInformationObject(0);
-    placementOf(sono::readProbe(acquisition), this->PixelMm).announce(outInfo);
-    sono::announceFields(acquisition, outInfo);
+    const sono::ProbeField probe = sono::readProbe(acquisition);
+    const Placement placement = placementOf(probe, this->PixelMm);
+    placement.announce(output->GetInformationObject(0));
+    placement.flat(probe.pose).announce(output->GetInformationObject(1));
+    for (int port : { 0, 1 })
+    {
+      sono::announceFields(acquisition, output->GetInformationObject(port));
+    }
   });
 }
 
@@ -209,7 +242,8 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
       labels = sceneLabels(lines->GetFieldData());
     }
     const auto fill = [&](const auto& converted) {
-      fillImage(converted, probe.pose, labels.get(), vtkImageData::GetData(output));
+      fillImage(converted, probe.pose, labels.get(), vtkImageData::GetData(output, 0),
+                vtkImageData::GetData(output, 1));
     };
     if (probe.geometry.kind == sono::ScanKind::Matrix)
     {

@@ -18,10 +18,13 @@ struct LabelVolume;
  * It is an image in the probe's plane, x along the array (lateral), y into the body (axial), z = axial x lateral
  * (elevation); of a matrix it is a volume, x lateral, y elevation, z axial.
  *
- * Its point arrays are "BMode" (0 to 255, 0 outside the scanned area), "Mask" (1 inside it) and, as the ground truth,
- * "Labels": the label of the nearest voxel, 0 outside the mask and outside the label map. The label map is that of the
- * optional port 1, an image whose active point scalars are labels, else that of the scene that was traced; its names
- * and colours are in the field data. Without either there are no "Labels".
+ * Its point arrays are "BMode" (1, black, to 255 in the scanned area, 0 outside), "Mask" (1 inside it) and, as the
+ * ground truth, "Labels": the label of the nearest voxel, 0 outside the mask and outside the label map. The label map
+ * is that of the optional port 1, an image whose active point scalars are labels, else that of the scene that was
+ * traced; its names and colours are in the field data. Without either there are no "Labels".
+ *
+ * Output 1 is the same image in the probe's own frame and in centimetres, to look at it flat: x lateral, y depth (of a
+ * matrix y elevation, z depth), 0 at the centre of the transducer's face.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoScanConverter : public vtkImageAlgorithm
 {

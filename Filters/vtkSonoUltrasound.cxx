@@ -162,7 +162,7 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
   switch (outputPort)
   {
     case IMAGE:
-      return converter->GetOutputPort();
+      return converter->GetOutputPort(0);
     case BMODE_LINES:
       return bmode->GetOutputPort();
     case RF_LINES:
@@ -173,15 +173,17 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
       return tracer->GetInputConnection(0, 0);
     case PROBE:
       return probe->GetOutputPort();
-    default:
+    case RAY_PATHS:
       return tracer->GetOutputPort(2);
+    default:
+      return converter->GetOutputPort(1);
   }
 }
 
 vtkSonoUltrasound::vtkSonoUltrasound()
   : Chain(new Stages(this))
 {
-  this->SetNumberOfOutputPorts(7);
+  this->SetNumberOfOutputPorts(8);
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
 }
@@ -342,7 +344,7 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
   return sono::announceStage(this, [&] {
     this->Chain->connect(vtkDataObject::GetData(input[0]));
     this->Chain->chain.updateInformation();
-    for (int port : { IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, PROBE })
+    for (int port : { IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, PROBE, FLAT_IMAGE })
     {
       vtkAlgorithmOutput* made = this->Chain->port(port);
       announceSame(made->GetProducer()->GetOutputInformation(made->GetIndex()), output->GetInformationObject(port));

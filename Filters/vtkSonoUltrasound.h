@@ -16,7 +16,7 @@
  *
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
- * paths.
+ * paths, 7 the image in the probe's own frame, in cm.
  *
  * Settings have the names, units, ranges and defaults of the stages, where they are described, but for these defaults,
  * which suit a chest: MaxCollisions 20, CoherenceMm 20, LobeSigmaDeg 6, TgcDbPerCm 3. Seed is that of the paths and of
@@ -37,7 +37,8 @@ public:
     TRACED_LINES = 3,
     ANATOMY = 4,
     PROBE = 5,
-    RAY_PATHS = 6
+    RAY_PATHS = 6,
+    FLAT_IMAGE = 7
   };
 
   ///@{

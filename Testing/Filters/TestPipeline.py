@@ -3,7 +3,7 @@ import unittest
 
 import numpy as np
 from chain import Chain, count_runs, label_image, listen, make
-from sonovdb.vtkSonoFilters import vtkSonoSceneBuilder
+from sonovdb.vtkSonoFilters import vtkSonoALine, vtkSonoSceneBuilder
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
@@ -69,6 +69,26 @@ class TestStages(unittest.TestCase):
         self.assertGreater(grey[mask == 1].max(), 200)
         sector_mm2 = np.pi * 90**2 * 60 / 360
         self.assertAlmostEqual(mask.sum() * 0.23**2 / sector_mm2, 1, delta=0.01)
+
+    def test_one_line_as_a_table(self):
+        lines = self.chain.formation.GetOutput()
+        a_line = make(vtkSonoALine, Line=5)
+        a_line.SetInputConnection(self.chain.formation.GetOutputPort())
+        a_line.Update()
+        table = a_line.GetOutput()
+
+        def column(name):
+            return vtk_to_numpy(table.GetColumnByName(name))
+
+        envelope = values(lines, "Envelope").reshape(12, -1)
+        np.testing.assert_allclose(column("Depth (cm)"), np.arange(envelope.shape[1]) * lines.GetSpacing()[0] / 10)
+        np.testing.assert_array_equal(column("Envelope"), envelope[5])
+        np.testing.assert_array_equal(column("RF"), values(lines, "RF").reshape(12, -1)[5])
+        expected = 20 * np.log10(np.maximum(envelope[5].astype(float) / envelope.max(), 1e-10))
+        np.testing.assert_allclose(column("Envelope (dB)"), expected, atol=1e-6)
+        a_line.SetLine(99)
+        a_line.Update()
+        np.testing.assert_array_equal(column("Envelope"), envelope[11])
 
     def test_every_image_is_announced_as_it_is_made(self):
         whole_extent = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()

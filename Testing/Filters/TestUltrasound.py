@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 SETTINGS = {"LineCount": 12, "DepthMm": 90.0, "SectorDeg": 60.0, "PathsPerLine": 20, "BuildSurfaces": False}
 # What the stages' own defaults differ in.
 CHEST = {"MaxCollisions": 20, "CoherenceMm": 20.0, "LobeSigmaDeg": 6.0}
-IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, ANATOMY, PROBE, RAY_PATHS = range(7)
+IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, ANATOMY, PROBE, RAY_PATHS, FLAT_IMAGE = range(8)
 
 
 def values(data, name):
@@ -67,13 +67,33 @@ class TestOutputs(unittest.TestCase):
             for column in range(3):
                 self.assertEqual(made.GetElement(row, column), expected.GetElement(row, column))
 
+    def test_flat_image_is_the_same_in_the_probes_frame(self):
+        image, flat = (self.filter.GetOutputDataObject(port) for port in (IMAGE, FLAT_IMAGE))
+        np.testing.assert_array_equal(values(flat, "BMode"), values(image, "BMode"))
+        position, axial, lateral = (np.array(getattr(self.chain.probe, "Get" + name)())
+                                    for name in ("PositionMm", "Axial", "Lateral"))
+        axial /= np.linalg.norm(axial)
+        lateral -= (lateral @ axial) * axial
+        lateral /= np.linalg.norm(lateral)
+        for index in ((0, 0), (100, 30), (17, 200)):
+            at_mm, at_cm = [0.0] * 3, [0.0] * 3
+            image.TransformContinuousIndexToPhysicalPoint(*index, 0, at_mm)
+            flat.TransformContinuousIndexToPhysicalPoint(*index, 0, at_cm)
+            np.testing.assert_allclose(position + 10 * (at_cm[0] * lateral + at_cm[1] * axial), at_mm, atol=1e-9)
+            self.assertAlmostEqual(at_cm[2], 0)
+
+    def test_black_is_one_inside_and_zero_outside(self):
+        image = self.filter.GetOutputDataObject(IMAGE)
+        grey, mask = values(image, "BMode"), values(image, "Mask")
+        self.assertEqual((grey[mask == 1].min(), grey[mask == 0].max()), (1, 0))
+
     def test_anatomy_probe_and_paths(self):
         self.assertEqual(self.filter.GetOutputDataObject(ANATOMY).GetNumberOfBlocks(), 1)  # the box
         self.assertEqual(self.filter.GetOutputDataObject(PROBE).GetNumberOfCells(), 2)
         self.assertEqual(self.filter.GetOutputDataObject(RAY_PATHS).GetNumberOfCells(), 7)
 
     def test_every_image_is_announced_as_it_is_made(self):
-        for port in (IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES):
+        for port in (IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, FLAT_IMAGE):
             with self.subTest(port=port):
                 announced = self.filter.GetOutputInformation(port).Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
                 self.assertEqual(tuple(announced), self.filter.GetOutputDataObject(port).GetExtent())

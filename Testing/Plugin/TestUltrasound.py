@@ -51,8 +51,8 @@ class TestUltrasound(unittest.TestCase):
     def test_picture_and_the_other_outputs(self):
         ultrasound = make_ultrasound(NumberofShownPaths=5)
         self.assertGreater(grey(ultrasound).max(), 200)
-        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(7)],
-                         4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData"])
+        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(8)],
+                         4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData", "vtkImageData"])
         self.assertEqual(Fetch(ultrasound, idx=6).GetNumberOfCells(), 5)
 
     def test_a_new_one_stands_where_the_acoustic_window_is(self):
