@@ -12,13 +12,18 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkXMLImageDataReader.h"
 
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
+
 vtkStandardNewMacro(vtkSonoLabelMapReader);
 
 namespace {
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 bool endsWith(const std::string& fileName, const char* ending)
 {
@@ -60,17 +65,28 @@ sono::LabelVolume readVti(const std::string& fileName)
   return volume;
 }
 
-std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName)
+std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName, int phase)
 {
-  if (fileName.empty())
+  return std::make_shared<const sono::LabelVolume>(endsWith(fileName, ".vti") ? readVti(fileName)
+                                                                              : sono::readLabelMap(fileName, phase));
+}
+
+/// When each phase is: of one file as the file says, of several 0, 1, 2, ...
+std::vector<double> timesOf(const std::vector<std::string>& fileNames)
+{
+  if (fileNames.empty())
   {
     throw sono::Error("No label map is named; set FileName to a .nii, .nii.gz, .nrrd, .mha, .mhd or .vti file.");
   }
-  if (endsWith(fileName, ".vti"))
+  const bool isOne = fileNames.size() == 1;
+  const sono::LabelPhases phases =
+    isOne && !endsWith(fileNames[0], ".vti") ? sono::readLabelPhases(fileNames[0]) : sono::LabelPhases();
+  std::vector<double> times(isOne ? std::size_t(phases.count) : fileNames.size());
+  for (std::size_t i = 0; i < times.size(); ++i)
   {
-    return std::make_shared<const sono::LabelVolume>(readVti(fileName));
+    times[i] = double(i) * phases.stepS;
   }
-  return std::make_shared<const sono::LabelVolume>(sono::readLabelMap(fileName));
+  return times;
 }
 
 } // namespace
@@ -85,7 +101,45 @@ vtkSonoLabelMapReader::~vtkSonoLabelMapReader() = default;
 void vtkSonoLabelMapReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << this->FileName << endl;
+  os << indent << "FileNames:";
+  for (const std::string& fileName : this->FileNames)
+  {
+    os << " " << fileName;
+  }
+  os << endl;
+}
+
+void vtkSonoLabelMapReader::SetFileName(const char* fileName)
+{
+  if (this->FileNames.size() != 1 || !fileName || this->FileNames[0] != fileName)
+  {
+    this->RemoveAllFileNames();
+    this->AddFileName(fileName);
+  }
+}
+
+void vtkSonoLabelMapReader::AddFileName(const char* fileName)
+{
+  if (fileName && *fileName)
+  {
+    this->FileNames.emplace_back(fileName);
+    this->Modified();
+  }
+}
+
+void vtkSonoLabelMapReader::RemoveAllFileNames()
+{
+  if (!this->FileNames.empty())
+  {
+    this->FileNames.clear();
+    this->Modified();
+  }
+}
+
+std::shared_ptr<const sono::LabelVolume> vtkSonoLabelMapReader::ReadPhase(int phase) const
+{
+  return this->FileNames.size() == 1 ? readVolume(this->FileNames[0], phase)
+                                     : readVolume(this->FileNames[std::size_t(phase)], 0);
 }
 
 int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
@@ -103,15 +157,52 @@ int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
 int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    this->Volume = readVolume(this->FileName);
-    sono::announceLabelImage(this->Volume->placement, output->GetInformationObject(0));
+    this->Times.clear(); // should the next line throw
+    this->Times = timesOf(this->FileNames);
+    this->Volume = this->ReadPhase(0);
+    vtkInformation* outInfo = output->GetInformationObject(0);
+    sono::announceLabelImage(this->Volume->placement, outInfo);
+    outInfo->Remove(Pipeline::TIME_STEPS());
+    outInfo->Remove(Pipeline::TIME_RANGE());
+    if (this->Times.size() > 1)
+    {
+      const double range[2] = { this->Times.front(), this->Times.back() };
+      outInfo->Set(Pipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
+      outInfo->Set(Pipeline::TIME_RANGE(), range, 2);
+    }
   });
 }
 
 int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    const auto volume = this->Volume ? std::move(this->Volume) : readVolume(this->FileName);
-    sono::imageFromLabelVolume(*volume, vtkImageData::GetData(output));
+    if (this->Times.empty())
+    {
+      this->Times = timesOf(this->FileNames); // ParaView asks for data even where there was nothing to announce
+    }
+    vtkInformation* outInfo = output->GetInformationObject(0);
+    const double time =
+      outInfo->Has(Pipeline::UPDATE_TIME_STEP()) ? outInfo->Get(Pipeline::UPDATE_TIME_STEP()) : this->Times.front();
+    // The last phase that has begun.
+    const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time + 1e-9);
+    const int phase = std::max(0, static_cast<int>(after - this->Times.begin()) - 1);
+
+    const auto first = std::move(this->Volume);
+    const auto volume = phase == 0 && first ? first : this->ReadPhase(phase);
+    vtkImageData* image = vtkImageData::GetData(output);
+    int announced[6];
+    outInfo->Get(Pipeline::WHOLE_EXTENT(), announced);
+    sono::imageFromLabelVolume(*volume, image);
+    if (!std::equal(announced, announced + 6, image->GetExtent()))
+    {
+      const std::string name = this->FileNames[this->FileNames.size() == 1 ? 0 : std::size_t(phase)];
+      image->Initialize();
+      throw sono::Error("The label map " + name +
+                        " has another number of voxels than the first one; resample it to the same grid.");
+    }
+    if (this->Times.size() > 1)
+    {
+      image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[std::size_t(phase)]);
+    }
   });
 }

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace sono {
 struct LabelVolume;
@@ -20,6 +21,9 @@ struct LabelVolume;
  * scalars "Labels" and stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels
  * that occur: LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label. Where the label map
  * names none, a table beside it does (CSV, ITK-SNAP .label, 3D Slicer .ctbl or .txt).
+ *
+ * Several files, or a NIfTI file with a fourth axis, are the phases of a motion: time steps 0, 1, 2, ... for files, in
+ * seconds for NIfTI. All have the same number of voxels along each axis.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLabelMapReader : public vtkImageAlgorithm
 {
@@ -28,12 +32,18 @@ public:
   vtkTypeMacro(vtkSonoLabelMapReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  /**
+   * Path of the only label map.
+   */
+  void SetFileName(const char* fileName);
+
   ///@{
   /**
-   * Path of the label map.
+   * Paths of the label maps, one a phase.
    */
-  vtkSetStdStringFromCharMacro(FileName);
-  vtkGetCharFromStdStringMacro(FileName);
+  void AddFileName(const char* fileName);
+  void RemoveAllFileNames();
+  int GetNumberOfFileNames() const { return static_cast<int>(this->FileNames.size()); }
   ///@}
 
   /**
@@ -52,8 +62,11 @@ private:
   vtkSonoLabelMapReader(const vtkSonoLabelMapReader&) = delete;
   void operator=(const vtkSonoLabelMapReader&) = delete;
 
-  std::string FileName;
-  std::shared_ptr<const sono::LabelVolume> Volume; // from the information pass, which needs its size, to the data pass
+  std::shared_ptr<const sono::LabelVolume> ReadPhase(int phase) const;
+
+  std::vector<std::string> FileNames;
+  std::vector<double> Times;                       // of the phases
+  std::shared_ptr<const sono::LabelVolume> Volume; // the first: from the information pass, which needs its size
 };
 
 #endif

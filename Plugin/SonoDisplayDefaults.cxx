@@ -13,6 +13,8 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTransferFunctionManager.h"
+#include "vtkSMTransferFunctionProxy.h"
 #include "vtkSonoUltrasound.h"
 
 #include <cstring>
@@ -38,8 +40,25 @@ void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsign
     vtkSMPropertyHelper(representation, "MapScalars").Set(0); // the colours themselves
     vtkSMPropertyHelper(representation, "Opacity").Set(0.2);
     vtkSMPVRepresentationProxy::SetScalarColoring(representation, "Color", vtkDataObject::CELL);
+    // Without a colour map there is no bar to explain it.
+    vtkSMPropertyHelper(representation, "LookupTable").Set(static_cast<vtkSMProxy*>(nullptr));
     representation->UpdateVTKObjects();
   }
+}
+
+/// Grey from 1 on, nothing where the image is 0, outside the scanned area.
+void hideUnscanned(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMTransferFunctionManager> tables;
+  vtkSMProxy* colors = tables->GetColorTransferFunction("BMode", manager);
+  vtkSMProxy* opacity = tables->GetOpacityTransferFunction("BMode", manager);
+  const double points[] = { 0.0, 0.0, 0.5, 0.0, 1.0, 1.0, 0.5, 0.0, 255.0, 1.0, 0.5, 0.0 };
+  vtkSMPropertyHelper(opacity, "Points").Set(points, 12);
+  opacity->UpdateVTKObjects();
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 255.0);
+  vtkSMPropertyHelper(colors, "ScalarOpacityFunction").Set(opacity);
+  vtkSMPropertyHelper(colors, "EnableOpacityMapping").Set(1);
+  colors->UpdateVTKObjects();
 }
 
 /// Looks at each new representation and each new Simulate Ultrasound.
@@ -75,6 +94,11 @@ public:
         equal(input->GetXMLName(), "SonoSceneReader"))
     {
       showTranslucent(registered->Proxy, input, port);
+    }
+    else if (isOutput(input, port, "SonoScanConverter", vtkSonoUltrasound::IMAGE) ||
+             isOutput(input, port, "SonoScanConverter", vtkSonoUltrasound::FLAT_IMAGE))
+    {
+      hideUnscanned(registered->Proxy->GetSessionProxyManager());
     }
     else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {

@@ -63,4 +63,11 @@ struct LabelVolume
   void collectLabels();
 };
 
+/// The label maps of one file, one after the other in time.
+struct LabelPhases
+{
+  int count = 1;
+  double stepS = 1.0; ///< time between two, s; 1 where the file does not say
+};
+
 } // namespace sono

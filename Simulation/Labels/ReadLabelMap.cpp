@@ -37,7 +37,7 @@ std::string knownEnding(const std::string& path)
   return {};
 }
 
-LabelVolume readByEnding(const std::string& path, const std::string& ending)
+void needReadable(const std::string& path, const std::string& ending)
 {
   if (ending.empty())
   {
@@ -49,13 +49,27 @@ LabelVolume readByEnding(const std::string& path, const std::string& ending)
   {
     throw Error("cannot read '" + path + "': no such file, or no permission to read it.");
   }
+}
+
+bool isNifti(const std::string& ending)
+{
+  return ending.compare(0, 4, ".nii") == 0;
+}
+
+LabelVolume readByEnding(const std::string& path, const std::string& ending, int phase)
+{
+  needReadable(path, ending);
+  if (phase != 0 && !isNifti(ending))
+  {
+    throw Error("'" + path + "' holds one label map, so phase " + std::to_string(phase) + " is not in it; choose 0.");
+  }
   try
   {
     if (ending.compare(0, 3, ".mh") == 0)
     {
       return readMeta(path);
     }
-    return ending.compare(0, 4, ".nii") == 0 ? readNifti(path) : readNrrd(path);
+    return isNifti(ending) ? readNifti(path, phase) : readNrrd(path);
   }
   catch (const std::bad_alloc&)
   {
@@ -78,10 +92,17 @@ void copyNameAndColor(const LabelInfo& from, LabelInfo& to)
 
 } // namespace
 
-LabelVolume readLabelMap(const std::string& path)
+LabelPhases readLabelPhases(const std::string& path)
 {
   const std::string ending = knownEnding(path);
-  LabelVolume volume = readByEnding(path, ending);
+  needReadable(path, ending);
+  return isNifti(ending) ? readNiftiPhases(path) : LabelPhases();
+}
+
+LabelVolume readLabelMap(const std::string& path, int phase)
+{
+  const std::string ending = knownEnding(path);
+  LabelVolume volume = readByEnding(path, ending, phase);
   const std::string table = labelTableBeside(path.substr(0, path.size() - ending.size()));
   if (!table.empty())
   {

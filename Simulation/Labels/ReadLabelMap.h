@@ -13,8 +13,12 @@ namespace sono {
 /// Names and colours come from the file where it has them, then from a table beside it (LabelTable.h). They are never
 /// guessed from the numbers: TotalSegmentator's versions give the same number to different organs.
 /// Whole numbers stored as floats are accepted. Throws Error for a missing or unreadable file, a zero-sized image,
-/// voxels that are not whole numbers in 0..65535, or more than three dimensions.
-LabelVolume readLabelMap(const std::string& path);
+/// voxels that are not whole numbers in 0..65535, or more than three dimensions. Only NIfTI may have a fourth one,
+/// time: `phase`, from 0, chooses from it.
+LabelVolume readLabelMap(const std::string& path, int phase = 0);
+
+/// The phases of a label map's file, without its voxels. Throws Error as above.
+LabelPhases readLabelPhases(const std::string& path);
 
 /// Sets names, and colours where the table has them, of the labels that occur. Throws Error as readLabels does.
 void readLabelTable(const std::string& tablePath, LabelVolume& volume);

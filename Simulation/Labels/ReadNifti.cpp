@@ -59,9 +59,9 @@ Image readHeader(const std::string& path)
   {
     throw Error("cannot read '" + path + "': it is not a NIfTI file, or its header is damaged.");
   }
-  if (image->nt > 1 || image->nu > 1 || image->nv > 1 || image->nw > 1)
+  if (image->nu > 1 || image->nv > 1 || image->nw > 1)
   {
-    throw Error("'" + path + "' has more than three dimensions; choose one volume of it.");
+    throw Error("'" + path + "' has more than three dimensions and time; choose one volume of it.");
   }
   if (std::max({ image->nx, image->ny, image->nz }) > 65535 || std::uint64_t(image->nvox) > maxVoxels)
   {
@@ -143,8 +143,21 @@ void appendNumbers(const LabelConversion& conversion, int datatype, const void* 
   }
 }
 
-/// Reads the voxels slice by slice. Not through libnifti, which turns NaN into 0 without a word.
-std::vector<std::uint16_t> readVoxels(const nifti_image& image, const std::string& path)
+double secondsPerUnit(const nifti_image& image)
+{
+  switch (image.time_units)
+  {
+    case NIFTI_UNITS_MSEC:
+      return 1e-3;
+    case NIFTI_UNITS_USEC:
+      return 1e-6;
+    default:
+      return 1.0;
+  }
+}
+
+/// Reads the voxels of one phase slice by slice. Not through libnifti, which turns NaN into 0 without a word.
+std::vector<std::uint16_t> readVoxels(const nifti_image& image, const std::string& path, int phase)
 {
   LabelConversion conversion;
   conversion.path = path;
@@ -160,7 +173,8 @@ std::vector<std::uint16_t> readVoxels(const nifti_image& image, const std::strin
   const std::string truncated =
     "cannot read '" + path + "': its voxel data end too early or are damaged; copy it again.";
   const InputFile file(gzopen(path.c_str(), "rb"));
-  if (!file || gzseek(file.get(), z_off_t(image.iname_offset), SEEK_SET) < 0)
+  const std::int64_t phaseBytes = image.nx * image.ny * image.nz * image.nbyper;
+  if (!file || gzseek(file.get(), z_off_t(image.iname_offset + phase * phaseBytes), SEEK_SET) < 0)
   {
     throw Error(truncated);
   }
@@ -243,12 +257,24 @@ bool writeBytes(gzFile file, const void* data, std::size_t bytes)
 
 } // namespace
 
-LabelVolume readNifti(const std::string& path)
+LabelPhases readNiftiPhases(const std::string& path)
 {
   const Image image = readHeader(path);
+  const double stepS = image->dt * secondsPerUnit(*image);
+  return { int(std::max<std::int64_t>(image->nt, 1)), stepS > 0.0 ? stepS : 1.0 };
+}
+
+LabelVolume readNifti(const std::string& path, int phase)
+{
+  const Image image = readHeader(path);
+  if (phase < 0 || phase >= std::max<std::int64_t>(image->nt, 1))
+  {
+    throw Error("'" + path + "' has " + std::to_string(std::max<std::int64_t>(image->nt, 1)) + " phases, so phase " +
+                std::to_string(phase) + ", counted from 0, is not among them; choose another.");
+  }
   LabelVolume volume;
   volume.placement = placementOf(*image, path);
-  volume.voxels = readVoxels(*image, path);
+  volume.voxels = readVoxels(*image, path, phase);
   for (int n = 0; n < image->num_ext; ++n)
   {
     const nifti1_extension& extension = image->ext_list[n];

@@ -7,8 +7,12 @@
 namespace sono {
 
 /// Reads a NIfTI-1 or NIfTI-2 label map (.nii, .nii.gz) with the names and colours of a label table in its header
-/// extensions; `labels` holds those, also of ids that no voxel carries. Throws Error as readLabelMap does.
-LabelVolume readNifti(const std::string& path);
+/// extensions; `labels` holds those, also of ids that no voxel carries. Of a four-dimensional file it reads one phase.
+/// Throws Error as readLabelMap does.
+LabelVolume readNifti(const std::string& path, int phase = 0);
+
+/// The phases that a file holds along its fourth axis, 1 for a file with three. Throws Error as readLabelMap does.
+LabelPhases readNiftiPhases(const std::string& path);
 
 /// Writes NIfTI-1, uint16; gzip-compressed when the name ends in .gz. Throws Error when that fails.
 void writeNifti(const std::string& path, const LabelVolume& volume);

@@ -19,11 +19,17 @@ def make_ultrasound(**settings):
     return simple.SimulateUltrasound(registrationName="ultrasound", Input=thorax, **{**QUICK, **settings})
 
 
+def grey_now(ultrasound):
+    image = ultrasound.GetClientSideObject().GetOutputDataObject(0)
+    return vtk_to_numpy(image.GetPointData().GetArray("BMode")).copy()
+
+
 def grey(ultrasound):
     ultrasound.UpdatePipeline()
     return vtk_to_numpy(Fetch(ultrasound).GetPointData().GetArray("BMode")).copy()
 
 
+PHASE_BOUNDS = [-145, 145, -105, 105, -124, 124]
 POSE = {"Positionmm": [87, -86, -45], "AxialDirection": [-0.5, 0.65, 0.545], "LateralDirection": [0.84, 0.33, 0.42]}
 
 
@@ -124,6 +130,27 @@ class TestUltrasound(unittest.TestCase):
             self.assertEqual(ultrasound.GetDataInformation().GetNumberOfPoints(), 0)
             reader.FileName = str(labels.with_name("moved.vti"))
             self.assertTrue((grey(ultrasound) == before).all())
+
+    def test_phases_play_in_the_animation(self):
+        with tempfile.TemporaryDirectory() as folder:
+            files = [str(pathlib.Path(folder, f"phase_{i}.vti")) for i in range(2)]
+            for file, size in zip(files, (4, 5)):
+                simple.SaveData(file, proxy=simple.ResampleToImage(Input=simple.ThoraxPhantom(VoxelSizemm=size),
+                                                                   UseInputBounds=0, SamplingBounds=PHASE_BOUNDS,
+                                                                   SamplingDimensions=[60, 45, 50]),
+                                PointDataArrays=["Labels"])
+            reader = simple.LabelMapReader(FileName=files)
+            ultrasound = simple.SimulateUltrasound(Input=reader, **QUICK, **POSE)
+            scene = simple.GetAnimationScene()
+            scene.UpdateAnimationUsingDataTimeSteps()
+            self.assertEqual(list(simple.GetTimeKeeper().TimestepValues), [0, 1])
+            pictures = []
+            for time in (0, 1, 0):
+                scene.AnimationTime = time
+                ultrasound.UpdatePipeline(time)
+                pictures.append(grey_now(ultrasound))
+        self.assertFalse((pictures[0] == pictures[1]).all())
+        self.assertTrue((pictures[0] == pictures[2]).all())
 
     def test_no_label_map_selected(self):
         """The menus offer the filters only for what can be their input; a script may go without."""

@@ -180,6 +180,26 @@ TEST_F(LabelFiles, NumbersThatAreNoLabelsAreNamed)
   expectContains(refusal("rgb.nii"), "RGB");
 }
 
+TEST_F(LabelFiles, NiftiHasPhasesAlongItsFourthAxis)
+{
+  for (const std::string name : { "beat.nii", "beat.nii.gz" })
+  {
+    NiftiBytes({ 4, 2, 1, 1, 3, 1, 1, 1 }, uint8Type, 1)
+      .voxels<std::uint8_t>({ 1, 2, 3, 4, 5, 6 })
+      .write(file(name));
+    const LabelPhases phases = readLabelPhases(file(name));
+    EXPECT_EQ(phases.count, 3);
+    EXPECT_EQ(phases.stepS, 1.0);
+    for (int phase = 0; phase < 3; ++phase)
+    {
+      const LabelVolume volume = readLabelMap(file(name), phase);
+      EXPECT_EQ(volume.placement.size, Vec3i(2, 1, 1));
+      EXPECT_EQ(volume.voxels, (std::vector<std::uint16_t>{ std::uint16_t(2 * phase + 1), std::uint16_t(2 * phase + 2) }));
+    }
+    expectContains(errorOf([&] { readLabelMap(file(name), 3); }), "has 3 phases");
+  }
+}
+
 TEST_F(LabelFiles, BrokenFilesAreErrors)
 {
   expectContains(refusal("missing.nii.gz"), "missing.nii.gz': no such file");
@@ -188,8 +208,8 @@ TEST_F(LabelFiles, BrokenFilesAreErrors)
   expectContains(errorOf([&] { readLabelMap(text("a.nii.gz", "")); }), "not a NIfTI file");
   expectContains(errorOf([&] { readLabelMap(text("a.nrrd", "no header here")); }), "no complete NRRD");
 
-  NiftiBytes({ 4, 1, 1, 1, 2, 1, 1, 1 }, uint8Type, 1).voxels<std::uint8_t>({ 1, 2 }).write(file("time.nii"));
-  expectContains(refusal("time.nii"), "more than three dimensions");
+  NiftiBytes({ 5, 1, 1, 1, 1, 2, 1, 1 }, uint8Type, 1).voxels<std::uint8_t>({ 1, 2 }).write(file("vectors.nii"));
+  expectContains(refusal("vectors.nii"), "more than three dimensions");
   for (std::int16_t axis = 1; axis <= 3; ++axis)
   {
     std::array<std::int16_t, 8> dim{ 3, 2, 2, 2, 1, 1, 1, 1 };

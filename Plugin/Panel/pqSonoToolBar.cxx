@@ -1,0 +1,84 @@
+#include "pqSonoToolBar.h"
+
+#include "SonoLayout.h"
+
+#include "vtkDataObjectTypes.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMSourceProxy.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqObjectBuilder.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
+#include "pqUndoStack.h"
+
+#include <QAction>
+
+#include <cstring>
+
+namespace {
+
+bool isUltrasound(pqPipelineSource* source)
+{
+  return source && std::strcmp(source->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+}
+
+/// Whether Simulate Ultrasound takes it.
+bool isLabelMapOrScene(pqOutputPort* port)
+{
+  if (!port || isUltrasound(port->getSource()))
+  {
+    return false;
+  }
+  vtkPVDataInformation* data = port->getDataInformation();
+  return data->GetDataSetType() == VTK_IMAGE_DATA || data->GetCompositeDataSetType() == VTK_MULTIBLOCK_DATA_SET;
+}
+
+} // namespace
+
+pqSonoToolBar::pqSonoToolBar(QWidget* parent)
+  : QToolBar(tr("Ultrasound"), parent)
+{
+  this->setObjectName("SonoToolBar");
+  simulateAction_ = this->addAction(QIcon(":/sono/simulate.svg"), tr("Simulate Ultrasound"), [this] { simulate(); });
+  simulateAction_->setObjectName("actionSonoSimulate");
+  simulateAction_->setToolTip(tr("Simulate ultrasound of the selected label map and lay out its views"));
+  layoutAction_ = this->addAction(QIcon(":/sono/layout.svg"), tr("Ultrasound Layout"), [this] { showLayout(); });
+  layoutAction_->setObjectName("actionSonoLayout");
+  layoutAction_->setToolTip(
+    tr("Lay out the selected Simulate Ultrasound: in the body, flat with a depth scale, and one of its lines"));
+  auto* active = &pqActiveObjects::instance();
+  QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });
+  QObject::connect(active, &pqActiveObjects::dataUpdated, this, [this] { updateActions(); });
+  updateActions();
+}
+
+void pqSonoToolBar::updateActions()
+{
+  const auto& active = pqActiveObjects::instance();
+  simulateAction_->setEnabled(isLabelMapOrScene(active.activePort()));
+  layoutAction_->setEnabled(isUltrasound(active.activeSource()));
+}
+
+void pqSonoToolBar::simulate()
+{
+  pqOutputPort* port = pqActiveObjects::instance().activePort();
+  BEGIN_UNDO_SET(tr("Simulate Ultrasound"));
+  QMap<QString, QList<pqOutputPort*>> inputs;
+  inputs["Input"] << port;
+  pqPipelineSource* source = pqApplicationCore::instance()->getObjectBuilder()->createFilter(
+    "filters", "SonoUltrasound", inputs, port->getServer());
+  source->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  pqActiveObjects::instance().setActiveSource(source);
+  showLayout();
+  END_UNDO_SET();
+}
+
+void pqSonoToolBar::showLayout()
+{
+  pqPipelineSource* source = pqActiveObjects::instance().activeSource();
+  sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
+  pqActiveObjects::instance().setActiveSource(source);
+  pqApplicationCore::instance()->render();
+}
