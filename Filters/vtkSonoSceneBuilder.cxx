@@ -2,6 +2,7 @@
 
 #include "Labels/AssignTissues.h"
 #include "Labels/BodyFill.h"
+#include "Labels/ReadLabelMap.h"
 #include "Scene/SceneFile.h"
 #include "Scene/TissueTable.h"
 #include "SonoDataFile.h"
@@ -48,6 +49,7 @@ void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "TissueTableFile: " << this->TissueTableFile << endl;
   os << indent << "LabelTissueFile: " << this->LabelTissueFile << endl;
+  os << indent << "LabelTableFile: " << this->LabelTableFile << endl;
   os << indent << "FallbackTissue: " << this->FallbackTissue << endl;
   os << indent << "OutsideTissue: " << this->OutsideTissue << endl;
   os << indent << "FillBody: " << this->FillBody << endl;
@@ -86,6 +88,10 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
   {
     const sono::BodyFillSettings settings{ this->ClosingMm, this->WallMm, this->SkinMm };
     sono::fillBody(volume, settings, sono::partOf(progress, 0.05, 0.1));
+  }
+  if (!this->LabelTableFile.empty())
+  {
+    sono::readLabelTable(this->LabelTableFile, volume);
   }
   return volume;
 }

@@ -45,6 +45,15 @@ public:
 
   ///@{
   /**
+   * Names, colours and tissues of the labels by number (CSV with columns id, name, r, g, b, tissue), instead of those
+   * that the label map brings along and that their names stand for; where it is empty, nothing changes. Default empty.
+   */
+  vtkSetStdStringFromCharMacro(LabelTableFile);
+  vtkGetCharFromStdStringMacro(LabelTableFile);
+  ///@}
+
+  ///@{
+  /**
    * Tissue of the labels whose names no pattern matches; a warning names them. Default soft_tissue.
    */
   vtkSetStdStringFromCharMacro(FallbackTissue);
@@ -130,6 +139,7 @@ private:
 
   std::string TissueTableFile;
   std::string LabelTissueFile;
+  std::string LabelTableFile;
   std::string FallbackTissue = "soft_tissue";
   std::string OutsideTissue = "air";
   bool FillBody = false;

@@ -236,6 +236,7 @@ void vtkSonoUltrasound::ChangeStage(Stage* stage, const Change& change)
 // clang-format off
 sonoForward(scene, const char*, TissueTableFile)
 sonoForward(scene, const char*, LabelTissueFile)
+sonoForward(scene, const char*, LabelTableFile)
 sonoForward(scene, const char*, FallbackTissue)
 sonoForward(scene, const char*, OutsideTissue)
 sonoForward(scene, bool, FillBody)

@@ -49,6 +49,8 @@ public:
   const char* GetTissueTableFile();
   void SetLabelTissueFile(const char* value);
   const char* GetLabelTissueFile();
+  void SetLabelTableFile(const char* value);
+  const char* GetLabelTableFile();
   void SetFallbackTissue(const char* value);
   const char* GetFallbackTissue();
   void SetOutsideTissue(const char* value);

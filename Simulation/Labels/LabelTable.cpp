@@ -65,6 +65,7 @@ std::vector<LabelInfo> labelsFromCsv(const std::string& path)
     csv.requiredColumn("name");
   }
   const bool colored = *std::min_element(column.begin() + 2, column.end()) >= 0;
+  const int tissue = csv.column("tissue");
   std::vector<LabelInfo> labels;
   for (const CsvFile::Row& row : csv.rows)
   {
@@ -78,6 +79,10 @@ std::vector<LabelInfo> labelsFromCsv(const std::string& path)
         label.color[c] = float(tableNumber(csv, row, column[2 + c], 255.0) / 255.0);
       }
       label.hasColor = true;
+    }
+    if (tissue >= 0)
+    {
+      label.tissue = row.fields[std::size_t(tissue)];
     }
     labels.push_back(std::move(label));
   }

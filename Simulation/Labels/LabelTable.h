@@ -9,7 +9,8 @@ namespace sono {
 
 /// Names and colours of labels from a table:
 /// - CSV with a header line and the columns `id,name` and perhaps `r,g,b`, or those of 3D Slicer's colour tables
-///   (`LabelValue,Name,Color_R,Color_G,Color_B`); colours 0..255;
+///   (`LabelValue,Name,Color_R,Color_G,Color_B`); colours 0..255; a column `tissue`, where it is filled, says which
+///   tissue the label is;
 /// - ITK-SNAP label description: lines of `id r g b alpha visible mesh "name"`; its "Clear Label" names nothing;
 /// - 3D Slicer colour table (.ctbl): lines of `id name r g b a`;
 /// - plain text: lines of `id name`, perhaps with one number after it (a voxel count).

@@ -77,7 +77,7 @@ LabelVolume readByEnding(const std::string& path, const std::string& ending, int
   }
 }
 
-void copyNameAndColor(const LabelInfo& from, LabelInfo& to)
+void copyDescription(const LabelInfo& from, LabelInfo& to)
 {
   if (!from.name.empty())
   {
@@ -87,6 +87,10 @@ void copyNameAndColor(const LabelInfo& from, LabelInfo& to)
   {
     to.color = from.color;
     to.hasColor = true;
+  }
+  if (!from.tissue.empty())
+  {
+    to.tissue = from.tissue;
   }
 }
 
@@ -134,7 +138,7 @@ void readLabelTable(const std::string& tablePath, LabelVolume& volume)
     {
       if (label.id == row.id)
       {
-        copyNameAndColor(row, label);
+        copyDescription(row, label);
       }
     }
   }

@@ -68,6 +68,34 @@ double readNumber(const CsvFile& csv, const CsvFile::Row& row, const Property& p
 
 } // namespace
 
+const std::vector<TissueColumn>& tissueColumns()
+{
+  static const std::vector<TissueColumn> columns = [] {
+    std::vector<TissueColumn> all;
+    for (const Property& property : properties)
+    {
+      all.push_back({ property.column, property.member });
+    }
+    return all;
+  }();
+  return columns;
+}
+
+void checkRanges(const Tissue& tissue)
+{
+  for (const Property& property : properties)
+  {
+    const double value = tissue.*property.member;
+    if (!isInRange(property, value))
+    {
+      std::ostringstream message;
+      message << "tissue '" << tissue.name << "' has " << value << " in column '" << property.column << "'; write "
+              << rangeOf(property) << ".";
+      throw Error(message.str());
+    }
+  }
+}
+
 TissueTable TissueTable::read(const std::string& path)
 {
   const CsvFile csv = CsvFile::read(path);
@@ -109,17 +137,7 @@ void TissueTable::add(const Tissue& tissue)
   {
     throw Error("tissue '" + tissue.name + "' is there twice; rename or remove one.");
   }
-  for (const Property& property : properties)
-  {
-    const double value = tissue.*property.member;
-    if (!isInRange(property, value))
-    {
-      std::ostringstream message;
-      message << "tissue '" << tissue.name << "' has " << value << " in column '" << property.column << "'; write "
-              << rangeOf(property) << ".";
-      throw Error(message.str());
-    }
-  }
+  checkRanges(tissue);
   tissues_.push_back(tissue);
 }
 

@@ -20,6 +20,19 @@ struct Tissue
   std::string source;                 ///< where the numbers come from
 };
 
+/// One number of a tissue and its column in a table.
+struct TissueColumn
+{
+  const char* name;
+  double Tissue::*member;
+};
+
+/// In the order of the table.
+const std::vector<TissueColumn>& tissueColumns();
+
+/// Throws Error naming the tissue and the column for a number that is not finite or out of its range.
+void checkRanges(const Tissue& tissue);
+
 /// Tissues by name. The table is a CSV file that a person may edit.
 class TissueTable
 {

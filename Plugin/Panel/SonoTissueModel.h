@@ -1,0 +1,51 @@
+#pragma once
+
+#include <QString>
+#include <QStringList>
+#include <QVector>
+
+class vtkSMSourceProxy;
+
+/// The labels of a scene and the tissues they may be, as they stand in the tissue editor. Fields are text.
+class SonoTissueModel
+{
+public:
+  /// Columns of a label in the editor: its own, then the numbers of its tissue.
+  enum Column
+  {
+    ID,
+    NAME,
+    COLOR, ///< "#rrggbb"
+    TISSUE,
+    FIRST_NUMBER
+  };
+
+  /// Those of the scene at a port, which is updated when it has to be. False when it has none.
+  bool load(vtkSMSourceProxy* scene, unsigned int port);
+
+  int rowCount() const { return labels_.size(); }
+  QStringList columns() const;
+  QString value(int row, int column) const;
+
+  /// Changes a field; a number changes for all labels of that tissue. Returns what is wrong, one sentence, and changes
+  /// nothing then.
+  QString setValue(int row, int column, const QString& text);
+
+  /// Writes the two tables, in the format of the bundled ones. Returns what is wrong, one sentence.
+  QString save(const QString& labelFile, const QString& tissueFile) const;
+
+private:
+  const QStringList* tissueNamed(const QString& name) const;
+  QString setTissueNumber(const QString& tissue, int column, const QString& text);
+
+  struct Label
+  {
+    QString id;
+    QString name;
+    QString color;
+    QString tissue;
+  };
+  QVector<Label> labels_;
+  QStringList tissueColumns_;    ///< tissue, the numbers, source
+  QVector<QStringList> tissues_; ///< fields of these columns
+};

@@ -1,0 +1,157 @@
+#include "pqSonoTissueDock.h"
+
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSonoUltrasound.h"
+
+#include "pqActiveObjects.h"
+#include "pqCoreUtilities.h"
+#include "pqFileDialog.h"
+#include "pqPipelineSource.h"
+
+#include <QAction>
+#include <QColor>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QPushButton>
+#include <QTableWidget>
+#include <QVBoxLayout>
+
+#include <cstring>
+
+namespace {
+
+bool isA(pqPipelineSource* source, const char* name)
+{
+  return source && std::strcmp(source->getProxy()->GetXMLName(), name) == 0;
+}
+
+} // namespace
+
+pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
+  : QDockWidget(tr("Ultrasound Tissues"), parent)
+  , table_(new QTableWidget)
+  , message_(new QLabel)
+  , saveButton_(new QPushButton(tr("Save and Use...")))
+{
+  this->setObjectName("SonoTissueDock");
+  table_->setObjectName("SonoTissueTable");
+  message_->setObjectName("SonoTissueMessage");
+  message_->setWordWrap(true);
+  saveButton_->setObjectName("SonoTissueSave");
+  saveButton_->setToolTip(tr("Write the label table and the tissue table as CSV files and have the filter use them"));
+  auto* loadButton = new QPushButton(tr("Load Selected"));
+  loadButton->setObjectName("SonoTissueLoad");
+  loadButton->setToolTip(tr("Show the labels of the selected Ultrasound Scene or Simulate Ultrasound"));
+
+  auto* contents = new QWidget;
+  contents->setObjectName("SonoTissueContents");
+  auto* rows = new QVBoxLayout(contents);
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(loadButton);
+  buttons->addWidget(saveButton_);
+  buttons->addStretch();
+  rows->addLayout(buttons);
+  rows->addWidget(table_);
+  rows->addWidget(message_);
+  this->setWidget(contents);
+
+  saveButton_->setEnabled(false);
+  say(tr("Select an Ultrasound Scene or a Simulate Ultrasound in the pipeline browser and load it."));
+  QObject::connect(loadButton, &QPushButton::clicked, this, [this] { load(); });
+  QObject::connect(saveButton_, &QPushButton::clicked, this, [this] { save(); });
+  QObject::connect(table_, &QTableWidget::cellChanged, this, [this](int row, int column) { change(row, column); });
+  this->toggleViewAction()->setObjectName("actionSonoTissues");
+  this->hide(); // until it is asked for in the menu View
+}
+
+void pqSonoTissueDock::say(const QString& sentence)
+{
+  message_->setText(sentence);
+}
+
+void pqSonoTissueDock::load()
+{
+  source_ = pqActiveObjects::instance().activeSource();
+  const bool isAll = isA(source_, "SonoUltrasound");
+  if (!isAll && !isA(source_, "SonoSceneBuilder"))
+  {
+    return say(tr("What is selected is no Ultrasound Scene and no Simulate Ultrasound; select one and load it."));
+  }
+  const unsigned int port = isAll ? static_cast<unsigned int>(vtkSonoUltrasound::ANATOMY) : 0;
+  const bool loaded = model_.load(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), port);
+  saveButton_->setEnabled(loaded);
+  say(loaded ? tr("Type into a field to change it. Numbers belong to the tissue: all its labels have them.")
+             : tr("%1 has no labels yet; apply it and load it again.").arg(source_->getSMName()));
+  fill();
+}
+
+void pqSonoTissueDock::fill()
+{
+  filling_ = true;
+  const QStringList columns = model_.columns();
+  table_->setRowCount(model_.rowCount());
+  table_->setColumnCount(columns.size());
+  table_->setHorizontalHeaderLabels(columns);
+  table_->verticalHeader()->hide();
+  for (int row = 0; row < model_.rowCount(); ++row)
+  {
+    for (int column = 0; column < columns.size(); ++column)
+    {
+      const QString text = model_.value(row, column);
+      auto* item = new QTableWidgetItem(text);
+      if (column == SonoTissueModel::ID)
+      {
+        item->setFlags(item->flags() & ~Qt::ItemIsEditable);
+      }
+      else if (column == SonoTissueModel::COLOR)
+      {
+        item->setBackground(QColor(text));
+        item->setForeground(QColor(text).lightness() > 128 ? Qt::black : Qt::white);
+      }
+      table_->setItem(row, column, item);
+    }
+  }
+  table_->resizeColumnsToContents();
+  filling_ = false;
+}
+
+void pqSonoTissueDock::change(int row, int column)
+{
+  if (filling_)
+  {
+    return;
+  }
+  const QString refusal = model_.setValue(row, column, table_->item(row, column)->text());
+  message_->setStyleSheet(refusal.isEmpty() ? "" : "color: #c0392b");
+  say(refusal.isEmpty() ? tr("Changed; save to use it.") : refusal);
+  fill(); // the old text where it was refused, other labels of the tissue where it was not
+}
+
+void pqSonoTissueDock::save()
+{
+  pqFileDialog dialog(nullptr, pqCoreUtilities::mainWidget(), tr("Save the tissues"), QString(), tr("Tables (*.csv)"));
+  dialog.setObjectName("SonoTissueSaveDialog");
+  dialog.setFileMode(pqFileDialog::AnyFile);
+  if (dialog.exec() != QDialog::Accepted || dialog.getSelectedFiles().isEmpty())
+  {
+    return;
+  }
+  QString stem = dialog.getSelectedFiles()[0];
+  stem.chop(stem.endsWith(".csv") ? 4 : 0);
+  const QString labels = stem + "_labels.csv";
+  const QString tissues = stem + "_tissues.csv";
+  const QString refusal = model_.save(labels, tissues);
+  if (!refusal.isEmpty() || !source_)
+  {
+    return say(refusal);
+  }
+  vtkSMProxy* proxy = source_->getProxy();
+  vtkSMPropertyHelper(proxy, "LabelTableFile").Set(labels.toUtf8().data());
+  vtkSMPropertyHelper(proxy, "TissueTableFile").Set(tissues.toUtf8().data());
+  proxy->UpdateVTKObjects();
+  source_->updatePipeline();
+  source_->renderAllViews();
+  say(tr("Saved as %1 and %2, which %3 uses now.").arg(labels, tissues, source_->getSMName()));
+}

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "SonoTissueModel.h"
+
+#include <QDockWidget>
+#include <QPointer>
+
+class QLabel;
+class QPushButton;
+class QTableWidget;
+class pqPipelineSource;
+
+/// The tissue editor: the labels of the selected Ultrasound Scene or Simulate Ultrasound with name, colour, tissue and
+/// the tissue's numbers. What is typed is refused in place where it will not do; saved, it becomes the filter's label
+/// table and tissue table.
+class pqSonoTissueDock : public QDockWidget
+{
+  Q_OBJECT
+
+public:
+  explicit pqSonoTissueDock(QWidget* parent = nullptr);
+
+private:
+  void load();
+  void fill();
+  void change(int row, int column);
+  void save();
+  void say(const QString& sentence);
+
+  SonoTissueModel model_;
+  QPointer<pqPipelineSource> source_;
+  QTableWidget* table_;
+  QLabel* message_;
+  QPushButton* saveButton_;
+  bool filling_ = false; // no change is a person's
+};
