@@ -18,6 +18,8 @@
 #include "vtkSonoUltrasound.h"
 
 #include <cstring>
+#include <set>
+#include <string>
 
 namespace {
 
@@ -40,8 +42,6 @@ void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsign
     vtkSMPropertyHelper(representation, "MapScalars").Set(0); // the colours themselves
     vtkSMPropertyHelper(representation, "Opacity").Set(0.2);
     vtkSMPVRepresentationProxy::SetScalarColoring(representation, "Color", vtkDataObject::CELL);
-    // Without a colour map there is no bar to explain it.
-    vtkSMPropertyHelper(representation, "LookupTable").Set(static_cast<vtkSMProxy*>(nullptr));
     representation->UpdateVTKObjects();
   }
 }
@@ -61,7 +61,42 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
-/// Looks at each new representation and each new Simulate Ultrasound.
+/// Takes a colour bar away when ParaView shows it by itself for the first time, by either of its two switches.
+class HideOnce : public vtkCommand
+{
+public:
+  static HideOnce* New() { return new HideOnce; }
+  void Execute(vtkObject* bar, unsigned long, void* property) override
+  {
+    const auto* name = static_cast<const char*>(property);
+    if ((equal(name, "Visibility") || equal(name, "Enabled")) && this->Seen.count(name) == 0)
+    {
+      vtkSMPropertyHelper shown(vtkSMProxy::SafeDownCast(bar), name);
+      if (shown.GetAsInt() == 1)
+      {
+        this->Seen.insert(name);
+        shown.Set(0);
+      }
+    }
+  }
+
+private:
+  std::set<std::string> Seen;
+};
+
+/// Bars explain neither the labels' own colours nor grey.
+void hideBar(vtkSMProxy* bar)
+{
+  vtkSMProxy* colors = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
+  const char* name = colors ? bar->GetSessionProxyManager()->GetProxyName("lookup_tables", colors) : nullptr;
+  if (name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode.PVLookupTable")))
+  {
+    vtkNew<HideOnce> hide;
+    bar->AddObserver(vtkCommand::PropertyModifiedEvent, hide);
+  }
+}
+
+/// Looks at each new representation, colour bar and Simulate Ultrasound.
 class DisplayDefaults : public vtkCommand
 {
 public:
@@ -78,6 +113,10 @@ public:
     if (source && equal(registered->GroupName, "sources") && equal(source->GetXMLName(), "SonoUltrasound"))
     {
       sonoSetFirstPose(source);
+    }
+    if (equal(registered->GroupName, "scalar_bars"))
+    {
+      hideBar(registered->Proxy);
     }
     if (!equal(registered->GroupName, "representations"))
     {

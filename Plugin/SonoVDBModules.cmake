@@ -37,7 +37,10 @@ paraview_plugin_build(
   PLUGINS ${sono_plugins}
   PLUGINS_FILE_NAME "sonovdb.xml"
   LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
-  DISABLE_XML_DOCUMENTATION ON)
+  DISABLE_XML_DOCUMENTATION OFF)
 
-install(PROGRAMS "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
+install(PROGRAMS
+  "${CMAKE_SOURCE_DIR}/Plugin/examples/plain_vtk.py"
+  "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
+  "${CMAKE_SOURCE_DIR}/Plugin/examples/state.py"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples")

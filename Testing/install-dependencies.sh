@@ -7,6 +7,7 @@ packages=(
   g++ cmake ninja-build ccache
   # ParaView 5.11 and what its CMake package asks for
   paraview paraview-dev python3-paraview python3-numpy qtbase5-dev libqt5svg5-dev libqt5opengl5-dev qttools5-dev
+  qtxmlpatterns5-dev-tools
   libutfcpp-dev libxml2-dev libhdf5-openmpi-dev libogg-dev libtheora-dev libavformat-dev libavcodec-dev libavutil-dev
   libswscale-dev libgl2ps-dev libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev
   libfreetype-dev

@@ -35,7 +35,6 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   , message_(new QLabel)
   , saveButton_(new QPushButton(tr("Save and Use...")))
 {
-  this->setObjectName("SonoTissueDock");
   table_->setObjectName("SonoTissueTable");
   message_->setObjectName("SonoTissueMessage");
   message_->setWordWrap(true);

@@ -1,7 +1,9 @@
 """Plays what a new user clicks in ParaView, on a display of its own, and looks at what is left: the saved state and the
 messages. Needs Xvfb; run by ctest -L gui."""
+import csv
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -9,6 +11,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 PLAYBACKS = pathlib.Path(__file__).resolve().parent / "gui"
+BASELINE = PLAYBACKS / "baseline"
 PLUGIN = pathlib.Path(os.environ["SONOVDB_PLUGIN"])
 
 
@@ -28,12 +31,41 @@ class TestGui(unittest.TestCase):
         cls.server.terminate()
         cls.server.wait()
 
-    def play(self, name, folder):
+    def run_script(self, text, folder, *arguments):
+        """Runs Python with ParaView on the display."""
+        script = pathlib.Path(folder, "script.py")
+        script.write_text("from paraview.simple import *\nimport os, sys\n"
+                          "LoadPlugin(os.environ['SONOVDB_PLUGIN'], remote=False, ns=globals())\n" + text)
+        subprocess.run(["pvpython", str(script), *map(str, arguments)], check=True, timeout=200,
+                       env=dict(os.environ, DISPLAY=self.display))
+
+    def label_map(self, folder):
+        """A thorax that is quick to show, as a file that ParaView opens itself."""
+        path = str(pathlib.Path(folder, "thorax.vti"))
+        self.run_script("SaveData(sys.argv[1], proxy=ThoraxPhantom(VoxelSizemm=4))", folder, path)
+        return path
+
+    def compare(self, picture):
+        """With the picture of this name in baseline, by OpenImageIO; where they differ, all three are left behind."""
+        baseline, left = BASELINE / picture.name, pathlib.Path.cwd() / "gui-differences"
+        difference = picture.with_name("difference.png")
+        # Fonts and triangles are drawn a little differently from driver to driver.
+        done = subprocess.run(["idiff", "-fail", "0.1", "-failpercent", "1", "-abs", "-scale", "4", "-o", str(difference),
+                               str(picture), str(baseline)], stdout=subprocess.PIPE, text=True)
+        if done.returncode > 1:
+            left.mkdir(exist_ok=True)
+            shutil.copy(picture, left / f"{picture.stem}-image.png")
+            for file, name in ((baseline, "reference"), (difference, "difference")):
+                if file.exists():
+                    shutil.copy(file, left / f"{picture.stem}-{name}.png")
+            self.fail(f"{done.stdout}\nThe image, the reference and their difference lie in {left}.")
+
+    def play(self, name, folder, *options):
         """Plays one script; the lines that ParaView calls errors."""
         environment = dict(os.environ, DISPLAY=self.display, HOME=folder, XDG_RUNTIME_DIR=folder)
         done = subprocess.run(
             ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
-             f"--test-directory={folder}", f"--test-script={PLAYBACKS / name}", "--exit"],
+             f"--test-directory={folder}", f"--test-script={PLAYBACKS / name}", "--exit", *options],
             env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=400)
         self.assertEqual(done.returncode, 0, done.stdout)
         return [line for line in done.stdout.splitlines() if "ERR|" in line]
@@ -71,6 +103,31 @@ class TestGui(unittest.TestCase):
         self.assertEqual(values(scene, "ColorArrayName")[-1], "Color")
         self.assertEqual(values(scene, "MapScalars"), ["0"])
         self.assertLess(float(values(scene, "Opacity")[0]), 0.5)
+
+    def test_layout_at_one_click(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("layout.xml", folder, f"--data={self.label_map(folder)}"), [])
+            picture = pathlib.Path(folder, "layout.png")
+            self.run_script("LoadState(sys.argv[1])\n"
+                            "layout = next(l for (name, _), l in GetLayouts().items() if name.startswith('Ultrasound'))\n"
+                            "SaveScreenshot(sys.argv[2], layout, SaveAllViews=1, ImageResolution=[600, 340],\n"
+                            "               FontScaling='Do not scale fonts')",
+                            folder, pathlib.Path(folder, "layout.pvsm"), picture)
+            self.compare(picture)
+
+    def test_tissue_editor(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("tissues.xml", folder, f"--data={self.label_map(folder)}"), [])
+            with open(pathlib.Path(folder, "mine_tissues.csv"), encoding="utf-8", newline="") as file:
+                tissues = {row["tissue"]: row for row in csv.DictReader(file)}
+            with open(pathlib.Path(folder, "mine_labels.csv"), encoding="utf-8", newline="") as file:
+                labels = list(csv.DictReader(file))
+            state = pathlib.Path(folder, "tissues.pvsm").read_text()
+        self.assertEqual(tissues["skin"]["impedance_MRayl"], "1.95")
+        self.assertEqual(tissues["fat"]["impedance_MRayl"], "1.38")  # as it was
+        self.assertEqual([label["tissue"] for label in labels[:3]], ["air", "skin", "muscle"])
+        for file in ("mine_labels.csv", "mine_tissues.csv"):
+            self.assertIn(file, state)
 
     def test_bad_input_gives_one_sentence(self):
         with tempfile.TemporaryDirectory() as folder:

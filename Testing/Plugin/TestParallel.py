@@ -14,7 +14,14 @@ scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(VoxelSizemm=4), BuildS
 traced = simple.UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=20)
 bmode = simple.UltrasoundBMode(Input=simple.UltrasoundImageFormation(Input=traced))
 picture = Fetch(simple.ScanConverter(Input=bmode))  # gathers: every rank takes part, the first one gets it
+ultrasound = simple.SimulateUltrasound(Input=simple.ThoraxPhantom(VoxelSizemm=4), NumberofLines=12, Depthmm=90,
+                                       PathsperLine=20)
+in_one = Fetch(ultrasound)
+anatomy = Fetch(ultrasound, idx=4)
 
 if processes.GetPartitionId() == 0:
-    brightest = picture.GetPointData().GetArray("BMode").GetRange()[1]
-    assert brightest > 200, brightest  # sys.exit would skip MPI's own farewell, which counts as a failure
+    for image in (picture, in_one):
+        brightest = image.GetPointData().GetArray("BMode").GetRange()[1]
+        assert brightest > 200, brightest
+    # sys.exit would skip MPI's own farewell, which counts as a failure
+    assert anatomy.GetNumberOfPoints() > 1000, anatomy.GetNumberOfPoints()

@@ -1,0 +1,60 @@
+"""A client and a pvserver on this machine: the simulation runs on the server, and the first pose comes back."""
+import os
+import socket
+import subprocess
+import sys
+import unittest
+
+from paraview import simple
+from paraview.servermanager import Fetch
+
+PLUGIN = os.environ["SONOVDB_PLUGIN"]
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+class TestServer(unittest.TestCase):
+    def setUp(self):
+        port = free_port()
+        self.server = subprocess.Popen(["pvserver", f"--server-port={port}"],
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(self.server.stdout.close)
+        self.addCleanup(self.server.wait)
+        self.addCleanup(self.server.kill)
+        for line in self.server.stdout:
+            if "Accepting connection" in line:
+                break
+        simple.Connect("127.0.0.1", port)
+        simple.LoadPlugin(PLUGIN, remote=True, ns=vars(simple))
+        simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
+
+    def tearDown(self):
+        simple.Disconnect()
+
+    def test_simulation_runs_on_the_server(self):
+        thorax = simple.ThoraxPhantom(VoxelSizemm=4)
+        ultrasound = simple.SimulateUltrasound(Input=thorax, NumberofLines=12, Depthmm=90, PathsperLine=20)
+        field = Fetch(thorax).GetFieldData()
+        self.assertEqual(tuple(ultrasound.Positionmm), field.GetArray("A4CPositionMm").GetTuple3(0))
+        self.assertIsNone(ultrasound.GetClientSideObject())  # it lives on the server
+        image = Fetch(ultrasound)
+        self.assertGreater(image.GetPointData().GetArray("BMode").GetRange()[1], 200)
+        self.assertGreater(Fetch(ultrasound, idx=4).GetNumberOfPoints(), 1000)
+        before = image.GetPointData().GetArray("BMode").GetRange(), image.GetNumberOfPoints()
+        ultrasound.GaindB = -200
+        self.assertEqual(Fetch(ultrasound).GetPointData().GetArray("BMode").GetRange(), (0, 1))  # all black
+        ultrasound.GaindB = 0
+        image = Fetch(ultrasound)
+        self.assertEqual((image.GetPointData().GetArray("BMode").GetRange(), image.GetNumberOfPoints()), before)
+        table = simple.LabelTable(Input=simple.OutputPort(ultrasound, 4))
+        table.UpdatePipeline()
+        table.UpdatePropertyInformation()
+        self.assertTrue(any(row.startswith("cortical_bone\t") for row in table.GetProperty("TissueRows")))
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
