@@ -61,7 +61,15 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
-/// Takes a colour bar away when ParaView shows it by itself for the first time, by either of its two switches.
+/// Whether a bar shows the labels' own colours or grey, which need none.
+bool isNeedless(vtkSMProxy* bar)
+{
+  vtkSMProxy* colors = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
+  const char* name = colors ? bar->GetSessionProxyManager()->GetProxyName("lookup_tables", colors) : nullptr;
+  return name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode.PVLookupTable"));
+}
+
+/// Takes a needless bar away when ParaView shows it by itself for the first time, by either of its two switches.
 class HideOnce : public vtkCommand
 {
 public:
@@ -84,18 +92,6 @@ private:
   std::set<std::string> Seen;
 };
 
-/// Bars explain neither the labels' own colours nor grey.
-void hideBar(vtkSMProxy* bar)
-{
-  vtkSMProxy* colors = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
-  const char* name = colors ? bar->GetSessionProxyManager()->GetProxyName("lookup_tables", colors) : nullptr;
-  if (name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode.PVLookupTable")))
-  {
-    vtkNew<HideOnce> hide;
-    bar->AddObserver(vtkCommand::PropertyModifiedEvent, hide);
-  }
-}
-
 /// Looks at each new representation, colour bar and Simulate Ultrasound.
 class DisplayDefaults : public vtkCommand
 {
@@ -114,9 +110,14 @@ public:
     {
       sonoSetFirstPose(source);
     }
-    if (equal(registered->GroupName, "scalar_bars"))
+    if (equal(registered->GroupName, "scalar_bars") && isNeedless(registered->Proxy))
     {
-      hideBar(registered->Proxy);
+      for (const char* shown : { "Visibility", "Enabled" })
+      {
+        vtkSMPropertyHelper(registered->Proxy, shown).Set(0); // so that switching it on is a change
+      }
+      vtkNew<HideOnce> hide;
+      registered->Proxy->AddObserver(vtkCommand::PropertyModifiedEvent, hide);
     }
     if (!equal(registered->GroupName, "representations"))
     {
