@@ -20,7 +20,8 @@ LabelVolume readLabelMap(const std::string& path, int phase = 0);
 /// The phases of a label map's file, without its voxels. Throws Error as above.
 LabelPhases readLabelPhases(const std::string& path);
 
-/// Sets names, and colours and tissues where the table has them, of the labels that occur. Throws Error as readLabels does.
+/// Sets names, and colours and tissues where the table has them, of the labels that occur. Throws Error as readLabels
+/// does.
 void readLabelTable(const std::string& tablePath, LabelVolume& volume);
 
 /// Writes NIfTI-1 (.nii or .nii.gz, uint16, sform and qform) with label names and colours beside it in `<stem>.csv`.

@@ -1,4 +1,4 @@
-"""Deleting the filter, dropping the session or leaving ParaView while a simulation runs ends quietly."""
+"""Deleting the filter, disconnecting or leaving ParaView while a simulation runs ends quietly."""
 import subprocess
 import unittest
 

@@ -184,9 +184,7 @@ TEST_F(LabelFiles, NiftiHasPhasesAlongItsFourthAxis)
 {
   for (const std::string name : { "beat.nii", "beat.nii.gz" })
   {
-    NiftiBytes({ 4, 2, 1, 1, 3, 1, 1, 1 }, uint8Type, 1)
-      .voxels<std::uint8_t>({ 1, 2, 3, 4, 5, 6 })
-      .write(file(name));
+    NiftiBytes({ 4, 2, 1, 1, 3, 1, 1, 1 }, uint8Type, 1).voxels<std::uint8_t>({ 1, 2, 3, 4, 5, 6 }).write(file(name));
     const LabelPhases phases = readLabelPhases(file(name));
     EXPECT_EQ(phases.count, 3);
     EXPECT_EQ(phases.stepS, 1.0);
@@ -194,7 +192,8 @@ TEST_F(LabelFiles, NiftiHasPhasesAlongItsFourthAxis)
     {
       const LabelVolume volume = readLabelMap(file(name), phase);
       EXPECT_EQ(volume.placement.size, Vec3i(2, 1, 1));
-      EXPECT_EQ(volume.voxels, (std::vector<std::uint16_t>{ std::uint16_t(2 * phase + 1), std::uint16_t(2 * phase + 2) }));
+      EXPECT_EQ(volume.voxels,
+                (std::vector<std::uint16_t>{ std::uint16_t(2 * phase + 1), std::uint16_t(2 * phase + 2) }));
     }
     expectContains(errorOf([&] { readLabelMap(file(name), 3); }), "has 3 phases");
   }
