@@ -1,19 +1,13 @@
 #pragma once
 
+#include "Kernel/GreyLevel.h"
+
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace sono {
-
-/// Grey level g in [0, 1] of a compressed level x in [0, 1]; each keeps black and white.
-enum class GreyMap
-{
-  Linear,     ///< g = x
-  SquareRoot, ///< g = sqrt(x): weak echoes brighter
-  Sigmoid     ///< g = x^2 (3 - 2 x): more contrast in the middle, less at both ends
-};
 
 /// Depth-dependent gain and log compression (PHYSICS section 6).
 struct BModeSettings

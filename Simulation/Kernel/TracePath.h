@@ -132,41 +132,70 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
   return true;
 }
 
+/// How a piece of a path ended.
+enum class PieceEnd
+{
+  Path,    ///< with the path: nothing more is met
+  Medium,  ///< at media of equal impedance and speed, which are no boundary: only the attenuation changes there
+  Boundary ///< at a boundary, where the path branches
+};
+
+/// Follows the path through its medium; `piece` is what it covers. At a boundary the path stays in front of it.
+template<class Space>
+SONO_HD inline PieceEnd advancePiece(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
+                                     PathBoundary& boundary, PathSegment& piece)
+{
+  float travelled = 0.0f;
+  const bool met =
+    findBoundary(space, view.firstTargetMedium, path, remainingLength(view, line, path), boundary, travelled);
+  const TraceMedium& medium = view.media[path.tissue];
+  piece = { path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm };
+  path.intensity *= expf(-medium.decayPerMm * travelled);
+  path.length += travelled;
+  if (!met)
+  {
+    return PieceEnd::Path;
+  }
+  const TraceMedium& next = view.media[boundary.after.medium];
+  if (!sameAcoustics(medium, next))
+  {
+    boundary.cosine = smaller(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
+    boundary.reflection =
+      reflectionAt(view.model, medium.impedance, next.impedance, medium.speed, next.speed, boundary.cosine);
+    return PieceEnd::Boundary;
+  }
+  path.ray.position += path.ray.direction * boundary.restart;
+  path.ray.cell = boundary.after.cell;
+  path.ignoreUntil -= boundary.restart;
+  path.tissue = boundary.after.medium;
+  path.target = boundary.after.target;
+  return PieceEnd::Medium;
+}
+
+/// Each piece ends at a new medium, at least one cell on: this bounds the pieces between two boundaries.
+template<class Space>
+SONO_HD inline int mostPieces(const Space& space)
+{
+  const Vec3i size = space.size();
+  return size.x + size.y + size.z;
+}
+
 /// Follows the path to its next boundary and hands every segment to the sink. Returns false when the path ends before
-/// one. Media with equal impedance and speed are no boundary: only the attenuation changes there.
+/// one.
 template<class Space, class Sink>
 SONO_HD inline bool advanceToBoundary(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
                                       PathBoundary& boundary, Sink& sink)
 {
-  // Each piece ends at a new medium, at least one cell on: the count bounds any path.
-  const Vec3i size = space.size();
-  const int maxPieces = size.x + size.y + size.z;
-  for (int piece = 0; piece < maxPieces; ++piece)
+  const int most = mostPieces(space);
+  for (int count = 0; count < most; ++count)
   {
-    float travelled = 0.0f;
-    const bool met =
-      findBoundary(space, view.firstTargetMedium, path, remainingLength(view, line, path), boundary, travelled);
-    const TraceMedium& medium = view.media[path.tissue];
-    sink.segment(PathSegment{ path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm });
-    path.intensity *= expf(-medium.decayPerMm * travelled);
-    path.length += travelled;
-    if (!met)
+    PathSegment piece;
+    const PieceEnd end = advancePiece(view, space, line, path, boundary, piece);
+    sink.segment(piece);
+    if (end != PieceEnd::Medium)
     {
-      return false;
+      return end == PieceEnd::Boundary;
     }
-    const TraceMedium& next = view.media[boundary.after.medium];
-    if (!sameAcoustics(medium, next))
-    {
-      boundary.cosine = smaller(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
-      boundary.reflection =
-        reflectionAt(view.model, medium.impedance, next.impedance, medium.speed, next.speed, boundary.cosine);
-      return true;
-    }
-    path.ray.position += path.ray.direction * boundary.restart;
-    path.ray.cell = boundary.after.cell;
-    path.ignoreUntil -= boundary.restart;
-    path.tissue = boundary.after.medium;
-    path.target = boundary.after.target;
   }
   return false;
 }
