@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Device.h"
 #include "Progress.h"
 
 #include <functional>
@@ -23,6 +24,9 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
 
 /// The same for RequestInformation, which every piece needs.
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work);
+
+/// Says, once in a process, when Auto has no GPU and why. Throws Error when the GPU is asked for and cannot be used.
+void announceDevice(Device device);
 
 /// RequestUpdateExtent for a stage that needs the whole image of a port, whatever part of its output is asked for.
 int requestWholeImage(vtkInformationVector** inputVector, int port = 0);

@@ -73,6 +73,7 @@ vtkSonoImageFormation::~vtkSonoImageFormation() = default;
 void vtkSonoImageFormation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Device: " << this->Device << endl;
   os << indent << "LateralSigmaMm: " << this->LateralSigmaMm << endl;
   os << indent << "ElevationalSigmaMm: " << this->ElevationalSigmaMm << endl;
   os << indent << "ScattererCellMm: " << this->ScattererCellMm << endl;
@@ -95,6 +96,7 @@ sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) co
 {
   const sono::ProbeField probe = sono::readProbe(acquisition);
   sono::EchoSettings settings;
+  settings.device = static_cast<sono::Device>(this->Device);
   settings.centreFrequencyMHz = probe.centreFrequencyMHz;
   settings.fractionalBandwidth = probe.fractionalBandwidth;
   settings.samplingMHz = sono::readNumber("SamplingMHz", acquisition);
@@ -133,6 +135,7 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
     vtkImageData* input0 = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(input0->GetFieldData());
     sono::EchoSettings settings = this->Settings(input0->GetFieldData());
+    sono::announceDevice(settings.device);
     if (vtkImageData* field = vtkImageData::GetData(input[2]))
     {
       settings.field = std::make_shared<const sono::PulseEchoField>(sono::fieldFromImage(field));

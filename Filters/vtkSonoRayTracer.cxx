@@ -57,6 +57,7 @@ void vtkSonoRayTracer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CoherenceMm: " << this->CoherenceMm << endl;
   os << indent << "Deterministic: " << this->Deterministic << endl;
   os << indent << "LobeMeanDeg: " << this->LobeMeanDeg << endl;
+  os << indent << "Device: " << this->Device << endl;
   os << indent << "LobeSigmaDeg: " << this->LobeSigmaDeg << endl;
   os << indent << "LobeMinDeg: " << this->LobeMinDeg << endl;
   os << indent << "LobeMaxDeg: " << this->LobeMaxDeg << endl;
@@ -87,6 +88,7 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
 {
   sono::TraceSettings settings;
+  settings.device = static_cast<sono::Device>(this->Device);
   settings.model = static_cast<sono::InterfaceModel>(this->InterfaceModel);
   settings.sampling = static_cast<sono::Sampling>(this->Sampling);
   settings.pathsPerLine = this->PathsPerLine;
@@ -138,6 +140,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const std::vector<sono::TargetSurface> targets =
       sono::targetSurfaces(vtkPolyData::GetData(input[2]), this->TargetTissue, *tissues);
     const sono::TraceSettings settings = this->Settings(probe);
+    sono::announceDevice(settings.device);
     const std::vector<sono::ScanLine> scanLines = sono::makeScanLines(probe.geometry, probe.pose);
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
     if (this->NumberOfShownPaths != 0)

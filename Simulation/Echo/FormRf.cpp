@@ -1,5 +1,6 @@
 #include "Echo/FormRf.h"
 
+#include "Cuda/RunOnDevice.h"
 #include "Echo/EchoSetup.h"
 #include "ParallelFor.h"
 
@@ -74,6 +75,10 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
                const Progress& progress)
 {
   const EchoSetup setup(sources, lines, settings);
+  if (chooseDevice(settings.device).cuda)
+  {
+    return formRfOnDevice(setup, progress);
+  }
   RfLines out = setup.emptyRf();
   const auto formGroup = [&](int group) {
     const int first = group * groupLines;

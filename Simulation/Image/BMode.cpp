@@ -54,17 +54,6 @@ double curveGainDb(const std::vector<std::pair<double, double>>& curve, double d
   return gainA + (gainB - gainA) * (depthMm - depthA) / (depthB - depthA);
 }
 
-std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm)
-{
-  std::vector<double> gain(sampleCount);
-  for (int s = 0; s < sampleCount; ++s)
-  {
-    const double depthMm = s * sampleMm;
-    gain[s] = settings.tgcDbPerCm * depthMm / 10.0 + curveGainDb(settings.tgcCurve, depthMm);
-  }
-  return gain;
-}
-
 /// Exact order statistic in two passes: the upper bits of the floats are counted, then the values that share the
 /// wanted upper bits are sorted out. Counts and order statistics do not depend on who counted.
 class RankSearch
@@ -152,9 +141,7 @@ private:
 double automaticReference(const std::vector<float>& envelope, int lineCount, const std::vector<double>& gainDb)
 {
   std::vector<float> factor(gainDb.size());
-  std::transform(gainDb.begin(), gainDb.end(), factor.begin(), [](double decibels) {
-    return static_cast<float>(std::min(std::pow(10.0, decibels / 20.0), double(largestFiniteFloat)));
-  });
+  std::transform(gainDb.begin(), gainDb.end(), factor.begin(), gainFactor);
   const RankSearch search(envelope, factor, lineCount);
   const std::uint64_t count = envelope.size();
   const float percentile = search.find(count - count / 1000); // ceil(0.999 n) without rounding
@@ -200,6 +187,22 @@ void BModeSettings::validate() const
     require(within(gain, -300.0, 300.0), "A gain of tgcCurve", gain, "in [-300, 300] dB");
     previousMm = depthMm;
   }
+}
+
+std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm)
+{
+  std::vector<double> gain(sampleCount);
+  for (int s = 0; s < sampleCount; ++s)
+  {
+    const double depthMm = s * sampleMm;
+    gain[s] = settings.tgcDbPerCm * depthMm / 10.0 + curveGainDb(settings.tgcCurve, depthMm);
+  }
+  return gain;
+}
+
+float gainFactor(double decibels)
+{
+  return static_cast<float>(std::min(std::pow(10.0, decibels / 20.0), double(largestFiniteFloat)));
 }
 
 BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int sampleCount, double sampleMm,

@@ -43,6 +43,11 @@ struct BModeLines
   std::vector<float> grey;         ///< lineCount x sampleCount, 0 (black) to 1 (white)
 };
 
+/// The gain of each sample, dB: slope and curve.
+std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm);
+/// The same as a factor, at most the largest finite float.
+float gainFactor(double decibels);
+
 /// Time-gain compensation, log compression, reject:
 /// x = 1 + (20 log10(envelope + noise) + tgc(depth) + gain - 20 log10(reference)) / range, clamped to [0, 1], within
 /// 1e-4 dB, then grey = greyMap(x). `envelope` is lineCount x sampleCount. NaN, negative and subnormal envelopes are

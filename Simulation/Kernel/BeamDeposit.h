@@ -54,15 +54,16 @@ SONO_HD inline DepthSpan depthSpan(const BeamSegment& g, float length, float end
 
 SONO_HD inline float beamWeightAt(const BeamSegment& g, float s)
 {
-  const float distance = sqrtf(larger(0.0f, g.a + s * (2.0f * g.b + s * g.c)));
-  const float weight = g.coherence / (g.coherence + larger(distance, 1e-3f));
+  const float distance = quickSqrt(larger(0.0f, g.a + s * (2.0f * g.b + s * g.c)));
+  const float weight = quickDivide(g.coherence, g.coherence + larger(distance, 1e-3f));
   return distance < 1e-3f ? 1.0f : weight;
 }
 
 /// Mean of exp(-x t) over t in [0, 1], x >= 0.
 SONO_HD inline float meanDecay(float x)
 {
-  return x > 1e-3f ? (1.0f - expNegative(-x)) / x : 1.0f - 0.5f * x;
+  return x > 0.04f ? quickDivide(1.0f - expNegative(-x), x)
+                   : 1.0f - x * (0.5f - x * (1.0f / 6.0f - x * (1.0f / 24.0f)));
 }
 
 /// Sum of the coherence weights at the two Gauss points of the piece [near, near + step] of the segment: they are
@@ -106,9 +107,15 @@ SONO_HD inline EchoSplit splitEcho(const TraceLine& line, const Vec3f& point, fl
   const float near = radPerMm * fraction * sampleMm;
   const float far = radPerMm * sampleMm - near;
   const float a = amplitude * coherenceWeight(coherenceMm, distance);
+  float sinNear;
+  float cosNear;
+  float sinFar;
+  float cosFar;
+  quickSinCos(near, sinNear, cosNear);
+  quickSinCos(far, sinFar, cosFar);
   return { sample,
-           { a * (1.0f - fraction) * cosf(near), -a * (1.0f - fraction) * sinf(near), a * fraction * cosf(far),
-             a * fraction * sinf(far) } };
+           { a * (1.0f - fraction) * cosNear, -a * (1.0f - fraction) * sinNear, a * fraction * cosFar,
+             a * fraction * sinFar } };
 }
 
 } // namespace sono

@@ -17,7 +17,7 @@ struct Beam
   Vec3f elevation;
   float lateralSigmaMm; ///< of a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2)
   float elevationalSigmaMm;
-  const BeamFieldView* field = nullptr; ///< the profile instead of the Gaussian; null: the Gaussian
+  const BeamFieldView* field; ///< the profile instead of the Gaussian; null: the Gaussian
 };
 
 /// Beyond this many sigma a Gaussian beam does not see a scatterer: it would add less than exp(-16/2) of its amplitude.

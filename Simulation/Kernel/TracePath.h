@@ -80,24 +80,46 @@ SONO_HD inline bool sameAcoustics(const TraceMedium& a, const TraceMedium& b)
   return a.impedance == b.impedance && a.speed == b.speed;
 }
 
-/// Finds where the path leaves its medium, within tMax. Returns false when it does not; `travelled` is then how far it
-/// got.
-template<class Space>
-SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, const PathState& path, float tMax,
-                                 PathBoundary& boundary, float& travelled)
+/// How a piece of a path ended.
+enum class PieceEnd
 {
-  const CellRay& ray = path.ray;
-  boundary.before = { ray.cell, path.tissue, path.target };
+  Path,    ///< with the path: nothing more is met
+  Medium,  ///< at media of equal impedance and speed, which are no boundary: only the attenuation changes there
+  Boundary ///< at a boundary, where the path branches
+};
+
+/// How far a piece of a path can go: to the next target at most.
+struct PieceLimit
+{
+  TargetHit target;
+  float t; ///< mm along the ray
+};
+
+template<class Space>
+SONO_HD inline PieceLimit limitPiece(const TraceView& view, const Space& space, const TraceLine& line,
+                                     const PathState& path)
+{
+  const float tMax = remainingLength(view, line, path);
   TargetHit target{ tMax, Vec3f(0.0f), -1 };
   if (space.targets.any())
   {
-    target = space.targets.nearest(ray.position, ray.direction, tMax, path.target >= 0);
+    target = space.targets.nearest(path.ray.position, path.ray.direction, tMax, path.target >= 0);
   }
+  return { target, target.target >= 0 ? target.t : tMax };
+}
+
+/// Where the path leaves its medium, if it does: at the cells' `hit`, which counts outside of targets only, or at a
+/// target's surface. `travelled` is how far it got.
+template<class Space>
+SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, const PathState& path,
+                                 const PieceLimit& limit, const CellHit& hit, PathBoundary& boundary, float& travelled)
+{
+  const CellRay& ray = path.ray;
+  const TargetHit& target = limit.target;
   const bool meetsTarget = target.target >= 0;
+  boundary.before = { ray.cell, path.tissue, path.target };
   if (path.target < 0)
   {
-    const CellHit hit =
-      space.toBoundary(ray, path.tissue, path.ignored, path.ignoreUntil, meetsTarget ? target.t : tMax);
     travelled = hit.t;
     if (hit.tissue >= 0)
     {
@@ -113,7 +135,7 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
       return false;
     }
   }
-  travelled = meetsTarget ? target.t : tMax;
+  travelled = limit.t;
   if (!meetsTarget)
   {
     return false;
@@ -132,22 +154,13 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
   return true;
 }
 
-/// How a piece of a path ended.
-enum class PieceEnd
-{
-  Path,    ///< with the path: nothing more is met
-  Medium,  ///< at media of equal impedance and speed, which are no boundary: only the attenuation changes there
-  Boundary ///< at a boundary, where the path branches
-};
-
-/// Follows the path through its medium; `piece` is what it covers. At a boundary the path stays in front of it.
+/// Takes the path to the end of its piece, which is written to `piece`. At a boundary the path stays in front of it.
 template<class Space>
-SONO_HD inline PieceEnd advancePiece(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
-                                     PathBoundary& boundary, PathSegment& piece)
+SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, const PieceLimit& limit, const CellHit& hit,
+                                 PathState& path, PathBoundary& boundary, PathSegment& piece)
 {
   float travelled = 0.0f;
-  const bool met =
-    findBoundary(space, view.firstTargetMedium, path, remainingLength(view, line, path), boundary, travelled);
+  const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, boundary, travelled);
   const TraceMedium& medium = view.media[path.tissue];
   piece = { path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm };
   path.intensity *= expf(-medium.decayPerMm * travelled);
@@ -189,8 +202,14 @@ SONO_HD inline bool advanceToBoundary(const TraceView& view, const Space& space,
   const int most = mostPieces(space);
   for (int count = 0; count < most; ++count)
   {
+    const PieceLimit limit = limitPiece(view, space, line, path);
+    CellHit hit{};
+    if (path.target < 0)
+    {
+      hit = space.toBoundary(path.ray, path.tissue, path.ignored, path.ignoreUntil, limit.t);
+    }
     PathSegment piece;
-    const PieceEnd end = advancePiece(view, space, line, path, boundary, piece);
+    const PieceEnd end = endPiece(view, space, limit, hit, path, boundary, piece);
     sink.segment(piece);
     if (end != PieceEnd::Medium)
     {
@@ -273,8 +292,7 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
 /// The way from the transducer to the first boundary, which every path of a line shares.
 struct LineStart
 {
-  bool enters; ///< whether the line meets the space at all
-  bool meets;  ///< whether there is a first boundary
+  bool meets; ///< whether there is a first boundary
   PathState path;
   PathBoundary boundary;
 };
@@ -337,8 +355,7 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
   LineStart start;
   start.meets = false;
   PathState& path = start.path;
-  start.enters = enterSpace(space, line, view.depthMm, path);
-  if (!start.enters)
+  if (!enterSpace(space, line, view.depthMm, path))
   {
     return start;
   }

@@ -3,12 +3,24 @@
 #include "ParallelFor.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 
 namespace sono {
 
+namespace {
+
+std::uint64_t nextId()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
+} // namespace
+
 Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue)
-  : volume_(std::move(volume))
+  : id_(nextId())
+  , volume_(std::move(volume))
 {
   volume_.placement.validate("the label map");
   if (volume_.voxels.size() != volume_.placement.voxelCount())

@@ -32,6 +32,8 @@ public:
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
+  /// Of this scene alone, in this process.
+  std::uint64_t id() const { return id_; }
   const LabelVolume& volume() const { return volume_; }
   const GridPlacement& placement() const { return volume_.placement; }
   /// The tissues in use, in the order of the 8-bit tissue indices.
@@ -61,6 +63,7 @@ public:
 private:
   void buildSurfaceAt(std::size_t label, const Progress& progress) const;
 
+  std::uint64_t id_;
   LabelVolume volume_;
   std::vector<Tissue> tissues_;
   std::vector<std::uint8_t> tissueOfLabel_;

@@ -1,6 +1,7 @@
 #include "Trace/TraceSetup.h"
 
 #include "Kernel/NanoSpace.h"
+#include "Kernel/TracePath.h"
 #include "Require.h"
 #include "Scene/NanoGridStorage.h"
 
@@ -86,6 +87,16 @@ void TraceSettings::validate() const
   requireInRange(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
 }
 
+int TraceSettings::binCount() const
+{
+  return int(std::ceil(depthMm / radialBinMm - 1e-9));
+}
+
+int TraceSettings::echoCount() const
+{
+  return int(std::floor(depthMm / echoSampleMm)) + 1;
+}
+
 TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,
                        const std::vector<TargetSurface>& targetSurfaces, const Progress& progress)
 {
@@ -119,6 +130,13 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   for (const ScanLine& line : worldLines)
   {
     lines.push_back({ Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) });
+  }
+  const CellSpace<NoTargets> cells{ region->view(), {} };
+  PathState path;
+  if (std::none_of(lines.begin(), lines.end(),
+                   [&](const TraceLine& line) { return enterSpace(cells, line, view.depthMm, path); }))
+  {
+    throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
   }
   paths = settings.deterministic ? 1 : settings.pathsPerLine;
 }

@@ -31,10 +31,11 @@ constexpr double degrees = 57.29577951308232;
 
 TEST(FilterDefaults, RayTracerEqualsTraceSettings)
 {
-  const auto [march, model, sampling, pathsPerLine, maxCollisions, coherenceMm, deterministic, lobeMeanRad,
+  const auto [device, march, model, sampling, pathsPerLine, maxCollisions, coherenceMm, deterministic, lobeMeanRad,
               lobeSigmaRad, lobeMinRad, lobeMaxRad, frequencyMHz, depthMm, radialBinMm, echoSampleMm, rouletteDb,
               seed] = sono::TraceSettings();
   vtkNew<vtkSonoRayTracer> tracer;
+  EXPECT_EQ(tracer->GetDevice(), static_cast<int>(device));
   EXPECT_EQ(tracer->GetInterfaceModel(), static_cast<int>(model));
   EXPECT_EQ(tracer->GetSampling(), static_cast<int>(sampling));
   EXPECT_EQ(tracer->GetPathsPerLine(), pathsPerLine);
@@ -59,9 +60,10 @@ TEST(FilterDefaults, RayTracerEqualsTraceSettings)
 
 TEST(FilterDefaults, ImageFormationEqualsEchoSettings)
 {
-  const auto [centreFrequencyMHz, fractionalBandwidth, samplingMHz, depthMm, lateralSigmaMm, elevationalSigmaMm, field,
-              pulse, scattererCellMm, scattererLevelDb, seed] = sono::EchoSettings();
+  const auto [device, centreFrequencyMHz, fractionalBandwidth, samplingMHz, depthMm, lateralSigmaMm, elevationalSigmaMm,
+              field, pulse, scattererCellMm, scattererLevelDb, seed] = sono::EchoSettings();
   vtkNew<vtkSonoImageFormation> formation;
+  EXPECT_EQ(formation->GetDevice(), static_cast<int>(device));
   EXPECT_EQ(formation->GetLateralSigmaMm(), lateralSigmaMm);
   EXPECT_EQ(formation->GetElevationalSigmaMm(), elevationalSigmaMm);
   EXPECT_EQ(formation->GetScattererCellMm(), scattererCellMm);
