@@ -7,6 +7,8 @@
 #include "Labels/BodyFill.h"
 #include "Probe/ArrayAperture.h"
 #include "Probe/ScanGeometry.h"
+#include "Scene/CalibrationPhantom.h"
+#include "Scene/TestObjects.h"
 #include "Trace/Trace.h"
 
 #include "vtkDataArray.h"
@@ -15,6 +17,7 @@
 #include "vtkNew.h"
 #include "vtkSonoBMode.h"
 #include "vtkSonoImageFormation.h"
+#include "vtkSonoPhantomSource.h"
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoPulseEchoField.h"
 #include "vtkSonoRayTracer.h"
@@ -145,6 +148,20 @@ TEST(FilterDefaults, SceneBuilderEqualsBodyFillSettings)
   EXPECT_EQ(builder->GetWallMm(), wallMm);
   EXPECT_EQ(builder->GetSkinMm(), skinMm);
   EXPECT_FALSE(builder->GetFillBody());
+}
+
+TEST(FilterDefaults, PhantomSourceEqualsItsSettings)
+{
+  vtkNew<vtkSonoPhantomSource> source;
+  const auto [spacingMm, thicknessMm, viewPitchMm, wiresAsVoxels] = sono::CalibrationPhantomSettings();
+  EXPECT_EQ(source->GetSpacingMm(), spacingMm);
+  EXPECT_EQ(source->GetThicknessMm(), thicknessMm);
+  EXPECT_EQ(source->GetViewPitchMm(), viewPitchMm);
+  EXPECT_EQ(source->GetWiresAsVoxels(), wiresAsVoxels);
+  const auto [objectSpacingMm, diameterMm, depthMm] = sono::TestObjectSettings();
+  EXPECT_EQ(source->GetSpacingMm(), objectSpacingMm);
+  EXPECT_EQ(source->GetSphereDiameterMm(), diameterMm);
+  EXPECT_EQ(source->GetSphereDepthMm(), depthMm);
 }
 
 /// The probe's own numbers are rounded; half a millimetre further out would be outside the skin.

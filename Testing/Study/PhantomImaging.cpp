@@ -42,14 +42,15 @@ PhantomImaging phantomImaging(int lines)
 
   imaging.bmode.tgcDbPerCm = 1.5;      // the seed's
   imaging.bmode.dynamicRangeDb = 75.0; // the seed's
-  imaging.bmode.rejectDb = 40.0;       // the seed's
-  // The seed does not name its reference. Gel at the focus gets the middle of what is shown, 17.5 dB below white.
+  // The seed's reject of 40 dB is taken as the place of its window, whose scale it does not tell: 40 dB above the
+  // bottom of 75 would leave 35, and blacken all gel beyond 9 cm. Gel at the focus gets the middle of the window
+  // instead.
   const Tissue gel = *bundledTissues().find("phantom_gel");
   const double lossDbPerCm = 2.0 * gel.attenuationDbPerCmMHz * preset.centreFrequencyMHz; // there and back
   const double gelDb = imaging.echo.scattererLevelDb + 20.0 * std::log10(gel.scattererSigma) +
                        0.1 * preset.transmitFocusMm * (imaging.bmode.tgcDbPerCm - lossDbPerCm);
   imaging.bmode.automaticReference = false;
-  imaging.bmode.referenceAmplitude = std::pow(10.0, (gelDb + 17.5) / 20.0);
+  imaging.bmode.referenceAmplitude = std::pow(10.0, (gelDb + 0.5 * imaging.bmode.dynamicRangeDb) / 20.0);
   return imaging;
 }
 
