@@ -88,8 +88,8 @@ const PhantomTarget& targetNamed(const std::vector<PhantomTarget>& targets, cons
 
 void run(Output& output)
 {
-  const PhantomBench bench(WireModel::Scatterers, 0.5);
-  const PhantomImaging imaging = phantomImaging();
+  const PhantomBench bench(WireModel::Scatterers, output.quick() ? 1.0 : 0.5);
+  const PhantomImaging imaging = phantomImaging(output.quick() ? 48 : 256);
   const unsigned seeds = output.quick() ? 2 : 10;
   std::vector<std::vector<Detectability>> runs(seedLesions.size());
   for (int view = 1; view <= phantomViewCount; ++view)
@@ -145,8 +145,9 @@ void run(Output& output)
 /// Shows where the seed's three, whose size and depth it does not tell, can lie.
 void runAnechoic(Output& output)
 {
-  const PhantomImaging imaging = phantomImaging(128);
-  const std::vector<double> diametersMm{ 2.0, 3.0, 4.5, 6.7, 10.0 };
+  const PhantomImaging imaging = phantomImaging(output.quick() ? 48 : 128);
+  const std::vector<double> diametersMm =
+    output.quick() ? std::vector<double>{ 10.0 } : std::vector<double>{ 2.0, 3.0, 4.5, 6.7, 10.0 };
   const std::vector<double> depthsMm{ 30.0, 50.0, 70.0, 90.0, 115.0 };
   std::vector<std::vector<std::string>> rows;
   for (const double diameter : diametersMm)

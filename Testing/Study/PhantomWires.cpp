@@ -184,9 +184,9 @@ void run(Output& output)
   std::vector<std::vector<std::string>> places;
   for (const Case& c : cases)
   {
-    const PhantomBench bench(c.model, 0.5);
-    const PhantomImaging imaging = phantomImaging(c.lines);
-    const WireErrors errors = measureWires(bench, imaging, 1, c.background);
+    const PhantomBench bench(c.model, output.quick() ? 2.0 : 0.5);
+    const PhantomImaging imaging = phantomImaging(output.quick() ? 48 : c.lines);
+    const WireErrors errors = measureWires(bench, imaging, 1, c.background && !output.quick());
     const Spread all = errors.spread(0, "", true);
     models.push_back({ c.name, std::to_string(c.lines),
                        std::to_string(all.count) + " of " + std::to_string(errors.wires.size()), plusMinus(all),
