@@ -1,5 +1,6 @@
 #include "PhantomImaging.h"
 
+#include "Echo/FieldLevel.h"
 #include "Labels/AssignTissues.h"
 #include "Probe/ArrayBeam.h"
 #include "Progress.h"
@@ -11,7 +12,7 @@
 
 namespace sono::study {
 
-PhantomImaging phantomImaging(int lines)
+PhantomImaging phantomImaging(int lines, Apodization apodization)
 {
   PhantomImaging imaging;
   // The probe: a P4-2 as in the seed, by its data sheets.
@@ -28,7 +29,8 @@ PhantomImaging phantomImaging(int lines)
   imaging.echo.samplingMHz = 50.0; // the seed's
   imaging.echo.depthMm = imaging.geometry.depthMm;
   imaging.echo.scattererCellMm = 0.4; // some 20 scatterers in the smallest resolution cell: fully developed speckle
-  const ArrayAperture aperture = apertureOf(preset);
+  ArrayAperture aperture = apertureOf(preset);
+  aperture.apodization = apodization;
   imaging.echo.field =
     std::make_shared<PulseEchoField>(pulseEchoField(aperture, suggestedFieldGrid(aperture, imaging.echo.depthMm)));
   imaging.echo.scattererLevelDb = gelLevelDb(imaging.echo);
@@ -45,13 +47,19 @@ PhantomImaging phantomImaging(int lines)
   // The seed's reject of 40 dB is taken as the place of its window, whose scale it does not tell: 40 dB above the
   // bottom of 75 would leave 35, and blacken all gel beyond 9 cm. Gel at the focus gets the middle of the window
   // instead.
-  const Tissue gel = *bundledTissues().find("phantom_gel");
-  const double lossDbPerCm = 2.0 * gel.attenuationDbPerCmMHz * preset.centreFrequencyMHz; // there and back
-  const double gelDb = imaging.echo.scattererLevelDb + 20.0 * std::log10(gel.scattererSigma) +
-                       0.1 * preset.transmitFocusMm * (imaging.bmode.tgcDbPerCm - lossDbPerCm);
+  const double gelDb =
+    gelDbAt(imaging, preset.transmitFocusMm) + 0.1 * preset.transmitFocusMm * imaging.bmode.tgcDbPerCm;
   imaging.bmode.automaticReference = false;
   imaging.bmode.referenceAmplitude = std::pow(10.0, (gelDb + 0.5 * imaging.bmode.dynamicRangeDb) / 20.0);
   return imaging;
+}
+
+double gelDbAt(const PhantomImaging& imaging, double depthMm)
+{
+  const Tissue gel = *bundledTissues().find("phantom_gel");
+  const double thereAndBackDb = 0.1 * depthMm * 2.0 * gel.attenuationDbPerCmMHz * imaging.echo.centreFrequencyMHz;
+  return imaging.echo.scattererLevelDb + 20.0 * std::log10(gel.scattererSigma) +
+         20.0 * std::log10(FieldLevel(*imaging.echo.field).at(depthMm)) - thereAndBackDb;
 }
 
 TissueTable bundledTissues()

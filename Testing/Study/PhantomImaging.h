@@ -3,6 +3,7 @@
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"
+#include "Probe/ArrayAperture.h"
 #include "Scene/CalibrationPhantom.h"
 #include "Scene/Scene.h"
 #include "Trace/Trace.h"
@@ -31,8 +32,12 @@ struct PhantomImaging
   double pixelMm = 0.23; ///< the seed's
 };
 
-/// `lines` scan lines. The pulse-echo field is computed here, which takes a second.
-PhantomImaging phantomImaging(int lines = 256);
+/// `lines` scan lines; the seed does not tell how it weights the elements. The pulse-echo field is computed here, which
+/// takes a second.
+PhantomImaging phantomImaging(int lines = 256, Apodization apodization = Apodization::Boxcar);
+
+/// Rms echo of the phantom's gel at a depth, before any gain, dB to a perfect reflector at the focus.
+double gelDbAt(const PhantomImaging& imaging, double depthMm);
 
 /// The phantom, ready to be imaged.
 class PhantomBench

@@ -204,6 +204,8 @@ private:
       plotLesions(*csv);
     }
     showTable("phantom_anechoic.csv");
+    paragraph("Other settings, each the same for all lesions.");
+    showTable("phantom_settings.csv");
   }
 
   /// gCNR over the size of the contrast: theory, the seed's real and simulated lesions, and ours.

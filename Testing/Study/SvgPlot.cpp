@@ -9,10 +9,10 @@
 namespace sono::study {
 namespace {
 
-constexpr double width = 560.0;
+constexpr double width = 640.0;
 constexpr double height = 340.0;
 constexpr double left = 70.0;
-constexpr double right = 150.0; // the legend's
+constexpr double right = 230.0; // the legend's
 constexpr double top = 30.0;
 constexpr double bottom = 50.0;
 constexpr std::array<const char*, 8> colours{ "#1f5fa8", "#c8501e", "#3a8a3a", "#8a3a9a",

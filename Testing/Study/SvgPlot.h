@@ -20,7 +20,7 @@ struct PlotAxis
   bool logarithmic = false;
 };
 
-/// A plot as an SVG element of 560 x 340 pixels with ticks, grid and a legend. Points that are not finite, or not
+/// A plot as an SVG element of 640 x 340 pixels with ticks, grid and a legend. Points that are not finite, or not
 /// positive on a logarithmic axis, are left out.
 std::string svgPlot(const std::string& title, const PlotAxis& x, const PlotAxis& y, const std::vector<Curve>& curves);
 
