@@ -172,23 +172,27 @@ void run(Output& output)
     WireModel model;
     int lines;
     bool background;
+    double pixelMm;
   };
   // A mirror 0.1 mm wide is met only by lines that are no further apart: 2048 at 120 mm of depth. They go without
   // speckle, which would take a minute.
-  const std::vector<Case> cases{ { "scatterers", WireModel::Scatterers, 256, true },
-                                 { "scatterers", WireModel::Scatterers, 128, true },
-                                 { "Embree surface, without speckle", WireModel::Surface, 128, false },
-                                 { "Embree surface, without speckle", WireModel::Surface, 2048, false },
-                                 { "voxels of 0.5 mm", WireModel::Voxels, 256, true } };
+  const double pixelMm = PhantomImaging().pixelMm;
+  const std::vector<Case> cases{ { "scatterers", WireModel::Scatterers, 256, true, pixelMm },
+                                 { "scatterers", WireModel::Scatterers, 128, true, pixelMm },
+                                 { "Embree surface, without speckle", WireModel::Surface, 128, false, pixelMm },
+                                 { "Embree surface, without speckle", WireModel::Surface, 2048, false, pixelMm },
+                                 { "Embree surface, without speckle", WireModel::Surface, 2048, false, 0.05 },
+                                 { "voxels of 0.5 mm", WireModel::Voxels, 256, true, pixelMm } };
   std::vector<std::vector<std::string>> models;
   std::vector<std::vector<std::string>> places;
   for (const Case& c : cases)
   {
     const PhantomBench bench(c.model, output.quick() ? 2.0 : 0.5);
-    const PhantomImaging imaging = phantomImaging(output.quick() ? 48 : c.lines);
+    PhantomImaging imaging = phantomImaging(output.quick() ? 48 : c.lines);
+    imaging.pixelMm = c.pixelMm;
     const WireErrors errors = measureWires(bench, imaging, 1, c.background && !output.quick());
     const Spread all = errors.spread(0, "", true);
-    models.push_back({ c.name, std::to_string(c.lines),
+    models.push_back({ c.name, std::to_string(c.lines), number(c.pixelMm),
                        std::to_string(all.count) + " of " + std::to_string(errors.wires.size()), plusMinus(all),
                        plusMinus(errors.spread(0, "", false)) });
     if (&c != &cases.front())
@@ -219,7 +223,7 @@ void run(Output& output)
     output.figure("tre_pixel_mean_mm", errors.spread(0, "", false).mean, "mm");
   }
   output.table("phantom_wire_models.csv",
-               { "wires as", "scan lines", "found", "TRE mm", "TRE of the brightest pixel mm" }, models);
+               { "wires as", "scan lines", "pixel mm", "found", "TRE mm", "TRE of the brightest pixel mm" }, models);
   output.table("phantom_wires.csv", { "group", "view", "lateral mm", "depth mm", "error mm", "above the median dB" },
                places);
 }
