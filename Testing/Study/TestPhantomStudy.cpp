@@ -107,7 +107,7 @@ TEST(WireEcho, StandsSomeThirtyDecibelsAboveTheGel)
   const double gelDb = imaging.echo.scattererLevelDb + 20.0 * std::log10(0.15);
   EXPECT_GT(wireDb - gelDb, 20.0);
   EXPECT_LT(wireDb - gelDb, 40.0);
-  EXPECT_LT(gelDb, -50.0); // soft tissue against a mirror
+  EXPECT_LT(gelDb, -50.0);                               // soft tissue against a mirror
   EXPECT_NEAR(wireEchoPerMm(imaging.echo), 0.013, 5e-4); // the default of ParaView's source
 }
 
