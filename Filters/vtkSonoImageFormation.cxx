@@ -16,11 +16,15 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
+#include <algorithm>
 #include <optional>
 
 vtkStandardNewMacro(vtkSonoImageFormation);
 
 namespace {
+
+constexpr double previewCell = 1.5; // of the cell's edge that is set
+constexpr double widestCellMm = 10.0;
 
 sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe, double echoSampleMm)
 {
@@ -103,7 +107,9 @@ sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) co
   settings.depthMm = probe.geometry.depthMm;
   settings.lateralSigmaMm = this->LateralSigmaMm;
   settings.elevationalSigmaMm = this->ElevationalSigmaMm;
-  settings.scattererCellMm = this->ScattererCellMm;
+  settings.scattererCellMm =
+    probe.preview ? std::min(previewCell * this->ScattererCellMm, std::max(this->ScattererCellMm, widestCellMm))
+                  : this->ScattererCellMm;
   settings.scattererLevelDb = this->ScattererLevelDb;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   settings.validate();

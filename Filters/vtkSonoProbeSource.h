@@ -148,6 +148,17 @@ public:
   vtkGetMacro(FractionalBandwidth, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether the probe is being moved. The stages then make a coarse image quickly: at most 60 paths a line, RF sampled
+   * at six times the centre frequency at most, scatterer cells half as wide again and pixels twice as wide as they are
+   * set to. Default off.
+   */
+  vtkSetMacro(Preview, bool);
+  vtkGetMacro(Preview, bool);
+  vtkBooleanMacro(Preview, bool);
+  ///@}
+
 protected:
   vtkSonoProbeSource();
   ~vtkSonoProbeSource() override;
@@ -175,6 +186,7 @@ private:
   double Lateral[3] = { 0.843, 0.333, 0.423 };
   double CentreFrequencyMHz = 2.5;
   double FractionalBandwidth = 0.6;
+  bool Preview = false;
 };
 
 #endif

@@ -48,6 +48,8 @@ struct TraceSettings
   double echoSampleMm = 0.0154;   ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   double rouletteDb = -100.0;     ///< paths fainter than this (20 log10 of the intensity) play Russian roulette, <= 0
   std::uint64_t seed = 1;
+  double travelMm = 0.0; ///< 0 to 1000; for a probe on its way: what is prepared of the scene reaches so much further
+                         ///< that the next poses need nothing new. The last digits then depend on the way there
 
   /// Throws Error naming the parameter and its range.
   void validate() const;

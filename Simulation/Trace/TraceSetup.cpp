@@ -84,6 +84,7 @@ void TraceSettings::validate() const
   requireInRange(depthMm / radialBinMm <= 1e5, "radial bin (mm)", radialBinMm, "at least 1/100,000 of the depth");
   requireInRange(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
                  "more than 0 and at least a millionth of the depth");
+  requireInRange(travelMm >= 0.0 && travelMm <= 1000.0, "travel (mm)", travelMm, "0 to 1000");
   requireInRange(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
 }
 
@@ -105,7 +106,9 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   {
     throw Error("the probe has no scan lines: set the number of lines to 1 or more");
   }
-  region = scene.traceRegion(reach(scene, worldLines, settings.depthMm), progress);
+  const VoxelBox box = reach(scene, worldLines, settings.depthMm);
+  region = settings.travelMm > 0.0 ? scene.traceRegionAround(box, settings.travelMm, progress)
+                                   : scene.traceRegion(box, progress);
   const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
   cornerWorldMm = scene.worldFromLocal(corner);
   const Mat3d toLocal = scene.rotationToLocal();
