@@ -2,6 +2,7 @@
 
 #include "vtkBoundingBox.h"
 #include "vtkBox.h"
+#include "vtkCellArray.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkGenericCell.h"
@@ -16,7 +17,7 @@
 #include "vtkVectorOperators.h"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 vtkStandardNewMacro(vtkSonoSkin);
 
@@ -35,6 +36,30 @@ public:
   }
 
   bool IsMadeOf(vtkPolyData* source) const { return this->Source == source && this->SourceTime == source->GetMTime(); }
+
+  /// Whether a polygon may touch a box. A coarse answer of one look at each polygon, where the locator sorts them all.
+  bool MayTouch(const vtkBoundingBox& box)
+  {
+    if (this->Marked.empty())
+    {
+      this->Mark();
+    }
+    int low[3];
+    int high[3];
+    this->Range(box, low, high);
+    for (int z = low[2]; z <= high[2]; ++z)
+    {
+      for (int y = low[1]; y <= high[1]; ++y)
+      {
+        const auto row = this->Marked.begin() + this->Dimensions[0] * (y + this->Dimensions[1] * z);
+        if (std::find(row + low[0], row + high[0] + 1, true) != row + high[0] + 1)
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
 
   vtkStaticCellLocator* Locator()
   {
@@ -119,6 +144,62 @@ public:
   double Bounds[6];
 
 private:
+  static constexpr double markMm = 8.0;
+  static constexpr int mostMarks = 128; // along an axis
+
+  /// The marks that a box covers, within those that there are.
+  void Range(const vtkBoundingBox& box, int low[3], int high[3]) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto mark = [&](double at) {
+        const double share = (at - this->Bounds[2 * axis]) / this->MarkMm[axis];
+        return static_cast<int>(std::clamp(std::floor(share), 0.0, this->Dimensions[axis] - 1.0));
+      };
+      low[axis] = mark(box.GetMinPoint()[axis]);
+      high[axis] = mark(box.GetMaxPoint()[axis]);
+    }
+  }
+
+  void Mark()
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double length = this->Bounds[2 * axis + 1] - this->Bounds[2 * axis];
+      this->MarkMm[axis] = std::max(markMm, length / mostMarks);
+      this->Dimensions[axis] = static_cast<int>(length / this->MarkMm[axis]) + 1;
+    }
+    this->Marked.assign(std::size_t(this->Dimensions[0]) * this->Dimensions[1] * this->Dimensions[2], false);
+    vtkCellArray* polygons = this->Mesh->GetPolys();
+    for (vtkIdType cell = 0; cell < polygons->GetNumberOfCells(); ++cell)
+    {
+      vtkIdType count = 0;
+      const vtkIdType* ids = nullptr;
+      polygons->GetCellAtId(cell, count, ids, this->Cells);
+      vtkBoundingBox box;
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        double point[3];
+        this->Mesh->GetPoint(ids[i], point);
+        box.AddPoint(point);
+      }
+      int low[3];
+      int high[3];
+      this->Range(box, low, high);
+      for (int z = low[2]; z <= high[2]; ++z)
+      {
+        for (int y = low[1]; y <= high[1]; ++y)
+        {
+          const auto row = this->Marked.begin() + this->Dimensions[0] * (y + this->Dimensions[1] * z);
+          std::fill(row + low[0], row + high[0] + 1, true);
+        }
+      }
+    }
+  }
+
+  double MarkMm[3];
+  int Dimensions[3];
+  std::vector<bool> Marked;
   vtkSmartPointer<vtkPolyData> Source;
   vtkMTimeType SourceTime;
   vtkNew<vtkPolyData> Mesh;
@@ -191,28 +272,46 @@ void vtkSonoSkin::GetBounds(double bounds[6]) const
 bool vtkSonoSkin::Meet(const double from[3], const double to[3], double position[3], double normal[3])
 {
   const vtkVector3d way = vtkVector3d(to) - vtkVector3d(from);
-  // By where the way enters their boxes, so that the skin is asked first and what it hides is not asked at all.
-  std::vector<std::pair<double, Surface*>> order;
+  // By where the way enters their boxes, the largest first, so that the skin is asked first and what it hides is not
+  // asked at all: search structures cost more than searching.
+  struct Candidate
+  {
+    double entry;
+    double sizeMm;
+    Surface* surface;
+  };
+  std::vector<Candidate> order;
   for (const auto& surface : this->Surfaces)
   {
     double entry[3];
     double t = 0.0;
     if (vtkBox::IntersectBox(surface->Bounds, from, way.GetData(), entry, t) && t <= 1.0)
     {
-      order.emplace_back(t, surface.get());
+      order.push_back({ t, vtkBoundingBox(surface->Bounds).GetDiagonalLength(), surface.get() });
     }
   }
-  std::sort(order.begin(), order.end());
+  std::sort(order.begin(), order.end(), [](const Candidate& a, const Candidate& b) {
+    return a.entry != b.entry ? a.entry < b.entry : a.sizeMm > b.sizeMm;
+  });
 
   double nearest = 2.0;
   Surface* hit = nullptr;
   vtkIdType hitCell = -1;
   vtkNew<vtkGenericCell> scratch;
-  for (const auto& [entry, surface] : order)
+  for (const auto& [entry, size, surface] : order)
   {
     if (entry > nearest)
     {
       break;
+    }
+    vtkVector3d start(from);
+    vtkVector3d end = start + way * std::min(nearest, 1.0);
+    vtkBoundingBox reach;
+    reach.AddPoint(start.GetData());
+    reach.AddPoint(end.GetData());
+    if (!surface->MayTouch(reach))
+    {
+      continue;
     }
     double t = 0.0;
     double place[3];
