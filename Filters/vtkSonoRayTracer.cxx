@@ -6,6 +6,7 @@
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
+#include "Trace/FacePlace.h"
 #include "Trace/Trace.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -155,6 +156,11 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const sono::TraceSettings settings = this->Settings(probe);
     sono::announceDevice(settings.device);
     const std::vector<sono::ScanLine> scanLines = sono::makeScanLines(probe.geometry, probe.pose);
+    const std::string warning = probe.preview ? std::string() : sono::facePlaceWarning(*scene, scanLines);
+    if (!warning.empty())
+    {
+      vtkWarningMacro(<< warning);
+    }
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
     if (this->NumberOfShownPaths != 0)
     {

@@ -85,14 +85,8 @@ private:
   std::array<double, 9> direction{}; // row-major
 };
 
-double pixelOf(const sono::ProbeField& probe, double settingMm)
+Placement placementOf(const sono::ProbeField& probe, double pixelMm)
 {
-  return probe.preview ? 2.0 * settingMm : settingMm;
-}
-
-Placement placementOf(const sono::ProbeField& probe, double settingMm)
-{
-  const double pixelMm = pixelOf(probe, settingMm);
   if (probe.geometry.kind == sono::ScanKind::Matrix)
   {
     return { sono::volumeImageLayout(probe.geometry, pixelMm), probe.pose };
@@ -214,18 +208,17 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     {
       labels = sceneLabels(lines->GetFieldData());
     }
-    const double pixelMm = pixelOf(probe, this->PixelMm);
     const auto fill = [&](const auto& converted) {
       fillImage(converted, probe.pose, labels.get(), vtkImageData::GetData(output));
     };
     if (probe.geometry.kind == sono::ScanKind::Matrix)
     {
-      fill(sono::scanConvertVolume(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm,
+      fill(sono::scanConvertVolume(probe.geometry, grey, layout.sampleCount, layout.sampleMm, this->PixelMm,
                                    sono::progressOf(this)));
     }
     else
     {
-      fill(sono::scanConvert(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm));
+      fill(sono::scanConvert(probe.geometry, grey, layout.sampleCount, layout.sampleMm, this->PixelMm));
     }
   });
 }

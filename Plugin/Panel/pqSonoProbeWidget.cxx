@@ -4,10 +4,12 @@
 #include "vtkSonoSkin.h"
 
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
 #include "pqDoubleLineEdit.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
@@ -23,7 +25,6 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
-#include "vtkSMViewProxy.h"
 
 #include <QCheckBox>
 #include <QCoreApplication>
@@ -322,8 +323,7 @@ void pqSonoProbeWidget::showMoving()
   {
     if (shown->widget()->isVisible())
     {
-      shown->getViewProxy()->Update();
-      shown->getViewProxy()->InteractiveRender();
+      shown->forceRender(); // an interactive one would not run the pipeline
     }
   }
 }
@@ -351,17 +351,25 @@ void pqSonoProbeWidget::rest()
     SCOPED_UNDO_EXCLUDE();
     this->push(this->PoseBefore, false);
   }
+  auto* panel = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
+  if (panel && this->WasApplied)
   {
+    // As if the new pose had been typed and applied.
+    for (const auto& [function, numbers] : after)
+    {
+      vtkSMPropertyHelper(this->widgetProxy(), function.toUtf8().data())
+        .Set(numbers.data(), static_cast<unsigned int>(numbers.size()));
+    }
+    this->widgetProxy()->UpdateVTKObjects();
+    Q_EMIT this->changeAvailable();
+    panel->apply();
+    return;
+  }
+  {
+    // Something else waits for Apply and goes on waiting.
     SCOPED_UNDO_SET(tr("Move Probe"));
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this->proxy());
     this->push(after, false);
-  }
-  if (this->WasApplied)
-  {
-    pqApplicationCore::instance()
-      ->getServerManagerModel()
-      ->findItem<pqProxy*>(this->proxy())
-      ->setModifiedState(pqProxy::UNMODIFIED);
   }
   pqApplicationCore::instance()->render();
 }

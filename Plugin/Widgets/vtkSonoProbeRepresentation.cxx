@@ -766,6 +766,10 @@ int vtkSonoProbeRepresentation::RenderOpaqueGeometry(vtkViewport* viewport)
       drawn += actor->RenderOpaqueGeometry(viewport);
     }
   });
+  if (!this->Message.empty())
+  {
+    this->Parts->Text->RenderOpaqueGeometry(viewport); // prepares what the overlay draws
+  }
   return drawn;
 }
 
