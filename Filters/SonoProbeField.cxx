@@ -81,6 +81,7 @@ void writeProbe(const ProbeField& probe, vtkFieldData* field)
   writeVector("ProbeLateral", probe.pose.lateral, field);
   writeNumber("CentreFrequencyMHz", probe.centreFrequencyMHz, field);
   writeNumber("FractionalBandwidth", probe.fractionalBandwidth, field);
+  writeNumber("Preview", probe.preview ? 1.0 : 0.0, field);
 }
 
 ProbeField readProbe(vtkFieldData* field)
@@ -101,6 +102,7 @@ ProbeField readProbe(vtkFieldData* field)
   probe.pose.lateral = readVector("ProbeLateral", field);
   probe.centreFrequencyMHz = readNumber("CentreFrequencyMHz", field);
   probe.fractionalBandwidth = readNumber("FractionalBandwidth", field);
+  probe.preview = readNumber("Preview", field) != 0.0;
   return probe;
 }
 

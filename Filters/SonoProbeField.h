@@ -14,6 +14,7 @@ struct ProbeField
   ProbePose pose;
   double centreFrequencyMHz = 2.5;
   double fractionalBandwidth = 0.6; ///< at -6 dB
+  bool preview = false;             ///< the probe is being moved: coarse and quick is better than fine and late
 };
 
 /// One array a number or vector, units in the names (DepthMm, ProbePositionMm, CentreFrequencyMHz, ...).

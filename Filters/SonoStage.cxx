@@ -14,6 +14,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cstring>
+#include <mutex>
 #include <new>
 #include <thread>
 
@@ -147,6 +148,16 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
     }
   }
   return announceStage(algorithm, work);
+}
+
+void announceDevice(Device device)
+{
+  const DeviceChoice choice = chooseDevice(device);
+  static std::once_flag once;
+  if (!choice.note.empty())
+  {
+    std::call_once(once, [&] { vtkOutputWindowDisplayText((choice.note + "\n").c_str()); });
+  }
 }
 
 int requestWholeImage(vtkInformationVector** inputVector, int port)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Device.h"
 #include "Progress.h"
 
 #include <functional>
@@ -30,6 +31,9 @@ void keepQuiet(vtkAlgorithm* algorithm);
 
 /// What a quiet stage said in its last pass; empty where that went well.
 std::string saidBy(vtkAlgorithm* algorithm);
+
+/// Says, once in a process, when Auto has no GPU and why. Throws Error when the GPU is asked for and cannot be used.
+void announceDevice(Device device);
 
 /// RequestUpdateExtent for a stage that needs the whole image of a port, whatever part of its output is asked for.
 int requestWholeImage(vtkInformationVector** inputVector, int port = 0);

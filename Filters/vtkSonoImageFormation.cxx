@@ -16,11 +16,15 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
+#include <algorithm>
 #include <optional>
 
 vtkStandardNewMacro(vtkSonoImageFormation);
 
 namespace {
+
+constexpr double previewCell = 1.5; // of the cell's edge that is set
+constexpr double widestCellMm = 10.0;
 
 sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe, double echoSampleMm)
 {
@@ -73,6 +77,7 @@ vtkSonoImageFormation::~vtkSonoImageFormation() = default;
 void vtkSonoImageFormation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Device: " << this->Device << endl;
   os << indent << "LateralSigmaMm: " << this->LateralSigmaMm << endl;
   os << indent << "ElevationalSigmaMm: " << this->ElevationalSigmaMm << endl;
   os << indent << "ScattererCellMm: " << this->ScattererCellMm << endl;
@@ -95,13 +100,16 @@ sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) co
 {
   const sono::ProbeField probe = sono::readProbe(acquisition);
   sono::EchoSettings settings;
+  settings.device = static_cast<sono::Device>(this->Device);
   settings.centreFrequencyMHz = probe.centreFrequencyMHz;
   settings.fractionalBandwidth = probe.fractionalBandwidth;
   settings.samplingMHz = sono::readNumber("SamplingMHz", acquisition);
   settings.depthMm = probe.geometry.depthMm;
   settings.lateralSigmaMm = this->LateralSigmaMm;
   settings.elevationalSigmaMm = this->ElevationalSigmaMm;
-  settings.scattererCellMm = this->ScattererCellMm;
+  settings.scattererCellMm =
+    probe.preview ? std::min(previewCell * this->ScattererCellMm, std::max(this->ScattererCellMm, widestCellMm))
+                  : this->ScattererCellMm;
   settings.scattererLevelDb = this->ScattererLevelDb;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   settings.validate();
@@ -133,6 +141,7 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
     vtkImageData* input0 = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(input0->GetFieldData());
     sono::EchoSettings settings = this->Settings(input0->GetFieldData());
+    sono::announceDevice(settings.device);
     if (vtkImageData* field = vtkImageData::GetData(input[2]))
     {
       settings.field = std::make_shared<const sono::PulseEchoField>(sono::fieldFromImage(field));

@@ -29,6 +29,22 @@ public:
   vtkTypeMacro(vtkSonoImageFormation, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum Devices
+  {
+    AUTO = 0,
+    CPU = 1,
+    CUDA = 2
+  };
+
+  ///@{
+  /**
+   * Where to compute: on the GPU where there is one, else on the CPU, which is said once; or on either alone. The
+   * results differ by rounding. Default AUTO.
+   */
+  vtkSetMacro(Device, int);
+  vtkGetMacro(Device, int);
+  ///@}
+
   ///@{
   /**
    * Standard deviation of the Gaussian beam along the array in mm, above 0. Default 1.
@@ -97,6 +113,7 @@ private:
   double ElevationalSigmaMm = 1.0;
   double ScattererCellMm = 0.5;
   double ScattererLevelDb = -30.0;
+  int Device = AUTO;
   int Seed = 1;
   std::string PulseFileName;
 };

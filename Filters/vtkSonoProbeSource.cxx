@@ -42,6 +42,7 @@ void vtkSonoProbeSource::PrintSelf(ostream& os, vtkIndent indent)
   printVector("Lateral", this->Lateral);
   os << indent << "CentreFrequencyMHz: " << this->CentreFrequencyMHz << endl;
   os << indent << "FractionalBandwidth: " << this->FractionalBandwidth << endl;
+  os << indent << "Preview: " << this->Preview << endl;
 }
 
 sono::ProbeField vtkSonoProbeSource::Probe() const
@@ -73,6 +74,7 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
     probe.fractionalBandwidth = preset.fractionalBandwidth;
   }
   probe.geometry.validate();
+  probe.preview = this->Preview;
 
   const auto vector = [](const double* v) { return sono::Vec3d(v[0], v[1], v[2]); };
   const sono::ProbePose pose{ vector(this->PositionMm), vector(this->Axial), vector(this->Lateral) };

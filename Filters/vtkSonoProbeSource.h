@@ -148,6 +148,16 @@ public:
   vtkGetMacro(FractionalBandwidth, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether the probe is being moved. The stages then make a coarse image quickly: at most 60 paths a line, RF sampled
+   * at six times the centre frequency at most, and scatterer cells half as wide again as they are set to. Default off.
+   */
+  vtkSetMacro(Preview, bool);
+  vtkGetMacro(Preview, bool);
+  vtkBooleanMacro(Preview, bool);
+  ///@}
+
 protected:
   vtkSonoProbeSource();
   ~vtkSonoProbeSource() override;
@@ -175,6 +185,7 @@ private:
   double Lateral[3] = { 0.843, 0.333, 0.423 };
   double CentreFrequencyMHz = 2.5;
   double FractionalBandwidth = 0.6;
+  bool Preview = false;
 };
 
 #endif

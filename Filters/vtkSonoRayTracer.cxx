@@ -6,6 +6,7 @@
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
+#include "Trace/FacePlace.h"
 #include "Trace/Trace.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -22,6 +23,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <cmath>
 
 vtkStandardNewMacro(vtkSonoRayTracer);
@@ -35,6 +37,16 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
   grid.samplingMHz = samplingMHz;
   grid.depthMm = depthMm;
   return grid;
+}
+
+constexpr int previewPaths = 60;
+constexpr double previewSamplesPerPeriod = 6.0;
+constexpr double previewTravelMm = 40.0;
+
+/// Of the RF of this probe.
+double rfSamplingMHz(double settingMHz, const sono::ProbeField& probe)
+{
+  return probe.preview ? std::min(settingMHz, previewSamplesPerPeriod * probe.centreFrequencyMHz) : settingMHz;
 }
 
 } // namespace
@@ -57,6 +69,7 @@ void vtkSonoRayTracer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CoherenceMm: " << this->CoherenceMm << endl;
   os << indent << "Deterministic: " << this->Deterministic << endl;
   os << indent << "LobeMeanDeg: " << this->LobeMeanDeg << endl;
+  os << indent << "Device: " << this->Device << endl;
   os << indent << "LobeSigmaDeg: " << this->LobeSigmaDeg << endl;
   os << indent << "LobeMinDeg: " << this->LobeMinDeg << endl;
   os << indent << "LobeMaxDeg: " << this->LobeMaxDeg << endl;
@@ -87,9 +100,11 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
 {
   sono::TraceSettings settings;
+  settings.device = static_cast<sono::Device>(this->Device);
   settings.model = static_cast<sono::InterfaceModel>(this->InterfaceModel);
   settings.sampling = static_cast<sono::Sampling>(this->Sampling);
-  settings.pathsPerLine = this->PathsPerLine;
+  settings.pathsPerLine = probe.preview ? std::min(this->PathsPerLine, previewPaths) : this->PathsPerLine;
+  settings.travelMm = probe.preview ? previewTravelMm : 0.0;
   settings.maxCollisions = this->MaxCollisions;
   settings.coherenceMm = this->CoherenceMm;
   settings.deterministic = this->Deterministic;
@@ -100,7 +115,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.frequencyMHz = probe.centreFrequencyMHz;
   settings.depthMm = probe.geometry.depthMm;
   settings.radialBinMm = this->RadialBinMm;
-  settings.echoSampleMm = rfGrid(this->SamplingMHz, settings.depthMm).sampleMm();
+  settings.echoSampleMm = rfGrid(rfSamplingMHz(this->SamplingMHz, probe), settings.depthMm).sampleMm();
   settings.rouletteDb = this->RouletteDb;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   settings.validate();
@@ -112,12 +127,13 @@ int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector**
   return sono::announceStage(this, [&] {
     vtkNew<vtkFieldData> acquisition;
     acquisition->ShallowCopy(sono::announcedFields(input[1]->GetInformationObject(0)));
-    sono::writeNumber("SamplingMHz", this->SamplingMHz, acquisition);
     const sono::ProbeField probe = sono::readProbe(acquisition);
+    const double samplingMHz = rfSamplingMHz(this->SamplingMHz, probe);
+    sono::writeNumber("SamplingMHz", samplingMHz, acquisition);
     const sono::TraceSettings settings = this->Settings(probe);
     const int lineCount = probe.geometry.totalLineCount();
     const int binCount = static_cast<int>(std::ceil(settings.depthMm / settings.radialBinMm));
-    const int echoCount = rfGrid(this->SamplingMHz, settings.depthMm).sampleCount();
+    const int echoCount = rfGrid(samplingMHz, settings.depthMm).sampleCount();
 
     vtkInformation* lines = output->GetInformationObject(0);
     vtkInformation* echoes = output->GetInformationObject(1);
@@ -138,7 +154,13 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const std::vector<sono::TargetSurface> targets =
       sono::targetSurfaces(vtkPolyData::GetData(input[2]), this->TargetTissue, *tissues);
     const sono::TraceSettings settings = this->Settings(probe);
+    sono::announceDevice(settings.device);
     const std::vector<sono::ScanLine> scanLines = sono::makeScanLines(probe.geometry, probe.pose);
+    const std::string warning = probe.preview ? std::string() : sono::facePlaceWarning(*scene, scanLines);
+    if (!warning.empty())
+    {
+      vtkWarningMacro(<< warning);
+    }
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
     if (this->NumberOfShownPaths != 0)
     {
@@ -158,7 +180,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     for (vtkImageData* image : { lines, echoes })
     {
       sono::writeProbe(probe, image->GetFieldData());
-      sono::writeNumber("SamplingMHz", this->SamplingMHz, image->GetFieldData());
+      sono::writeNumber("SamplingMHz", rfSamplingMHz(this->SamplingMHz, probe), image->GetFieldData());
     }
     lines->GetFieldData()->AddArray(boundaryEcho);
   });

@@ -33,6 +33,22 @@ public:
   vtkTypeMacro(vtkSonoRayTracer, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum Devices
+  {
+    AUTO = 0,
+    CPU = 1,
+    CUDA = 2
+  };
+
+  ///@{
+  /**
+   * Where to compute: on the GPU where there is one, else on the CPU, which is said once; or on either alone. The
+   * results differ by rounding. Default AUTO.
+   */
+  vtkSetMacro(Device, int);
+  vtkGetMacro(Device, int);
+  ///@}
+
   enum InterfaceModels
   {
     ACOUSTIC = 0,
@@ -208,6 +224,7 @@ private:
   double RouletteDb = -100.0;
   std::string TargetTissue = "cortical_bone";
   int NumberOfShownPaths = 0;
+  int Device = AUTO;
   int Seed = 1;
 };
 

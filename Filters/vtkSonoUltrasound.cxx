@@ -260,6 +260,7 @@ sonoForwardVector(probe, Axial)
 sonoForwardVector(probe, Lateral)
 sonoForward(probe, double, CentreFrequencyMHz)
 sonoForward(probe, double, FractionalBandwidth)
+sonoForward(probe, bool, Preview)
 
 sonoForward(tracer, int, InterfaceModel)
 sonoForward(tracer, int, Sampling)
@@ -300,6 +301,17 @@ sonoForward(converter, double, PixelMm)
 {
   this->ChangeStage(this->Chain->tracer.Get(), [=](auto* tracer) { tracer->SetSeed(value); });
   this->ChangeStage(this->Chain->formation.Get(), [=](auto* formation) { formation->SetSeed(value); });
+}
+
+void vtkSonoUltrasound::SetDevice(int value)
+{
+  this->ChangeStage(this->Chain->tracer.Get(), [=](auto* tracer) { tracer->SetDevice(value); });
+  this->ChangeStage(this->Chain->formation.Get(), [=](auto* formation) { formation->SetDevice(value); });
+}
+
+int vtkSonoUltrasound::GetDevice()
+{
+  return this->Chain->tracer->GetDevice();
 }
 
 int vtkSonoUltrasound::GetSeed()

@@ -101,6 +101,8 @@ public:
   double GetCentreFrequencyMHz();
   void SetFractionalBandwidth(double value);
   double GetFractionalBandwidth();
+  void SetPreview(bool value);
+  bool GetPreview();
   ///@}
 
   ///@{
@@ -109,6 +111,8 @@ public:
    */
   void SetInterfaceModel(int value);
   int GetInterfaceModel();
+  void SetDevice(int value);
+  int GetDevice();
   void SetSampling(int value);
   int GetSampling();
   void SetPathsPerLine(int value);

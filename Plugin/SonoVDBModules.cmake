@@ -1,4 +1,4 @@
-# The VTK module, its Python wrapping and the ParaView plugin. Included, not added, by the top CMakeLists.txt, so that
+# The VTK modules, their Python wrapping and the ParaView plugin. Included, not added, by the top CMakeLists.txt, so that
 # the modules' folders are relative to it.
 enable_language(C) # which FindMPI asks for, inside ParaView's package
 find_package(ParaView 5.11 REQUIRED)
@@ -7,8 +7,8 @@ find_package(ParaView 5.11 REQUIRED)
 list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../../.." "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
 
 vtk_module_scan(
-  MODULE_FILES "${CMAKE_SOURCE_DIR}/Filters/vtk.module"
-  REQUEST_MODULES SonoVDB::Filters
+  MODULE_FILES "${CMAKE_SOURCE_DIR}/Filters/vtk.module" "${CMAKE_SOURCE_DIR}/Plugin/Widgets/vtk.module"
+  REQUEST_MODULES SonoVDB::Filters SonoVDB::Widgets
   PROVIDES_MODULES sono_modules
   REQUIRES_MODULES sono_required_modules
   HIDE_MODULES_FROM_CACHE ON)

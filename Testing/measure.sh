@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# measure.sh STAGE: builds the simulator (Release, without VTK) and prints the stage's figures, one `name value unit`
-# a line. Everything else goes to the standard error.
+# measure.sh STAGE: builds what the stage needs (Release; the simulator alone where it is C++) and prints its figures, one
+# `name value unit` a line. Everything else goes to the standard error. The stage `study` is all of Testing/study.sh, the
+# stage `gpu` that of Testing/run-gpu.sh, for a machine that has a GPU.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -10,12 +11,28 @@ list_stages()
 {
   echo "usage: measure.sh STAGE, with one of the stages"
   local file
-  for file in "$stages"/*.cpp; do
-    printf '  %-8s %s\n' "$(basename "$file" .cpp)" "$(sed -n '1s|^// *||p' "$file")"
+  for file in "$stages"/*; do
+    local name="${file##*/}"
+    printf '  %-8s %s\n' "${name%.*}" "$(sed -n '1s,^\(//\|#\) *,,p' "$file")"
   done
+  printf '  %-8s %s\n' gpu "What the stages cost on a GPU; see run-gpu.sh for a machine that only has a driver."
+  printf '  %-8s %s\n' study "The phantom study and run time against error, with a report (a quarter of an hour)."
 }
 
 stage="${1:-}"
+if [[ $stage == study ]]; then
+  exec "$root/Testing/study.sh"
+fi
+if [[ $stage == gpu ]]; then
+  "$root/Testing/run-gpu.sh" pack >&2
+  exec "$root/Testing/run-gpu.sh" benchmark
+fi
+if [[ $stage =~ ^[a-z]+$ && -f "$stages/$stage.py" ]]; then
+  "$root/Testing/build-preset.sh" release SonoVDB vtkSonoFiltersPython vtkSonoWidgetsPython >&2
+  export SONOVDB_PLUGIN="$root/build/lib/paraview-5.11/plugins/SonoVDB/SonoVDB.so"
+  export PYTHONPATH="$root/build/lib/python3/dist-packages"
+  exec pvpython "$stages/$stage.py"
+fi
 if [[ ! $stage =~ ^[a-z]+$ || ! -f "$stages/$stage.cpp" ]]; then
   list_stages >&2
   exit 2

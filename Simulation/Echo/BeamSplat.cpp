@@ -1,6 +1,5 @@
 #include "Echo/BeamSplat.h"
 
-#include "Kernel/FastMath.h"
 #include "Simd.h"
 
 #include <algorithm>
@@ -20,49 +19,19 @@ struct Splats
   float added[chunk][4];
 };
 
-/// The sampling of a line as the inner loop wants it.
-struct LineGrid
+inline BeamPlace placeOf(const ScattererView& v, int i, const Beam& b, const LineGrid& g)
 {
-  float samplesPerMm;
-  float radPerSample;
-  float halfTurnRe; ///< exp(i radPerSample / 2)
-  float halfTurnIm;
-  float lastSample;
-};
-
-/// A scatterer in the beam's frame: depth in samples, distances from the axis in mm.
-struct Place
-{
-  float position;
-  float lateral;
-  float elevational;
-};
-
-inline Place placeOf(const ScattererView& v, int i, const Beam& b, const LineGrid& g)
-{
-  const float px = v.x[i] - b.origin.x;
-  const float py = v.y[i] - b.origin.y;
-  const float pz = v.z[i] - b.origin.z;
-  return { (px * b.axis.x + py * b.axis.y + pz * b.axis.z) * g.samplesPerMm,
-           px * b.lateral.x + py * b.lateral.y + pz * b.lateral.z,
-           px * b.elevation.x + py * b.elevation.y + pz * b.elevation.z };
+  return placeInBeam(v.x[i], v.y[i], v.z[i], b, g);
 }
 
-/// Splits amplitude a, seen at a position on the line, between its two samples.
 inline void split(float a, float position, bool seen, const LineGrid& g, int i, Splats& out)
 {
-  const float whole = std::floor(position);
-  const float fraction = position - whole;
-  // Phase as seen from halfway between the two samples, which keeps it below pi / 2; each is half a turn away.
-  const float phase = g.radPerSample * (fraction - 0.5f);
-  const float re = a * cosSmall(phase);
-  const float im = -a * sinSmall(phase);
-  const float near = 1.0f - fraction;
-  out.added[i][0] = (re * g.halfTurnRe + im * g.halfTurnIm) * near;
-  out.added[i][1] = (im * g.halfTurnRe - re * g.halfTurnIm) * near;
-  out.added[i][2] = (re * g.halfTurnRe - im * g.halfTurnIm) * fraction;
-  out.added[i][3] = (im * g.halfTurnRe + re * g.halfTurnIm) * fraction;
-  out.sample[i] = seen ? std::int32_t(whole) : 0;
+  const ScattererSplit s = splitScatterer(a, position, g);
+  for (int c = 0; c < 4; ++c)
+  {
+    out.added[i][c] = s.added[c];
+  }
+  out.sample[i] = seen ? std::int32_t(s.sample) : 0;
 }
 
 /// Where each scatterer falls and what it adds there; nothing, to sample 0, where the beam does not see it.
@@ -72,10 +41,8 @@ SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const B
   const float ie = 1.0f / b.elevationalSigmaMm;
   for (int i = 0; i < count; ++i)
   {
-    const Place p = placeOf(v, first + i, b, g);
-    const float dl = p.lateral * il;
-    const float de = p.elevational * ie;
-    const float squared = dl * dl + de * de;
+    const BeamPlace p = placeOf(v, first + i, b, g);
+    const float squared = squaredSigmas(p, il, ie);
     const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
     split(seen ? v.amplitude[first + i] * expNegative(-0.5f * squared) : 0.0f, p.position, seen, g, i, out);
   }
@@ -108,7 +75,7 @@ SONO_SIMD_CLONES void weighByField(const ScattererView v, int first, int count, 
   const int de = f.depth.stride;
   for (int i = 0; i < count; ++i)
   {
-    const Place p = placeOf(v, first + i, b, g);
+    const BeamPlace p = placeOf(v, first + i, b, g);
     const BeamFieldCell l = cellOf(f.lateral, foldLateral, p.lateral);
     const BeamFieldCell e = cellOf(f.elevational, foldElevational, p.elevational);
     const BeamFieldCell d = cellOf(f.depth, 1.0f, std::min(p.position * mmPerSample, f.depth.highMm));
@@ -141,9 +108,7 @@ SONO_SIMD_CLONES void weighByField(const ScattererView v, int first, int count, 
 
 void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum)
 {
-  const double turn = sum.radPerMm * double(sum.sampleMm);
-  const LineGrid grid{ 1.0f / sum.sampleMm, float(turn), float(std::cos(0.5 * turn)), float(std::sin(0.5 * turn)),
-                       float(sum.sampleCount() - 1) };
+  const LineGrid grid = makeLineGrid(sum.sampleMm, sum.radPerMm, sum.sampleCount());
   Splats splats;
   for (int first = 0; first < scatterers.count; first += chunk)
   {

@@ -1,27 +1,11 @@
 #pragma once
 
 #include "Echo/ScattererView.h"
-#include "Kernel/BeamField.h"
-#include "Kernel/Vec.h"
+#include "Kernel/EchoSplat.h"
 
 #include <vector>
 
 namespace sono {
-
-/// A main beam in its scatterers' coordinates.
-struct Beam
-{
-  Vec3f origin;
-  Vec3f axis;
-  Vec3f lateral;
-  Vec3f elevation;
-  float lateralSigmaMm; ///< of a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2)
-  float elevationalSigmaMm;
-  const BeamFieldView* field = nullptr; ///< the profile instead of the Gaussian; null: the Gaussian
-};
-
-/// Beyond this many sigma a Gaussian beam does not see a scatterer: it would add less than exp(-16/2) of its amplitude.
-constexpr float beamCutSigma = 4.0f;
 
 /// A line's scatterer sum before the pulse: sample s holds the sum of w a exp(-i 2 k (r - r_s)), each scatterer split
 /// linearly between the two samples around its depth r, with its exact phase in both.

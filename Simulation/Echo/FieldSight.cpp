@@ -116,10 +116,10 @@ void FieldSight::measure()
   }
 }
 
-FieldSight::Blocks FieldSight::makeBlocks(const FieldAxis& axis, bool isDepth) const
+SightBlocks FieldSight::makeBlocks(const FieldAxis& axis, bool isDepth) const
 {
   const float slack = axis.count == 1 ? float(0.5 * axis.stepMm) : 0.0f;
-  Blocks blocks{};
+  SightBlocks blocks{};
   blocks.mirrored = !isDepth && axis.minMm == 0.0;
   blocks.endless = isDepth;
   blocks.lowMm = blocks.mirrored ? 0.0f : float(axis.minMm) - slack - marginMm_;
@@ -131,7 +131,7 @@ FieldSight::Blocks FieldSight::makeBlocks(const FieldAxis& axis, bool isDepth) c
 }
 
 /// A block's bricks reach beyond it by the margin, and their scatterers take values one step further.
-std::vector<FieldSight::Window> FieldSight::windows(const FieldAxis& axis, const Blocks& blocks) const
+std::vector<FieldSight::Window> FieldSight::windows(const FieldAxis& axis, const SightBlocks& blocks) const
 {
   std::vector<Window> result;
   for (int b = 0; b < blocks.count; ++b)

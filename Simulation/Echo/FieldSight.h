@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Kernel/BeamSight.h"
 #include "Probe/PulseEchoField.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,43 +20,15 @@ public:
   /// Whether a brick with this centre may hold scatterers that count.
   bool sees(float lateralMm, float elevationalMm, float depthMm) const
   {
-    const int l = lateral_.blockAt(lateralMm);
-    const int e = elevational_.blockAt(elevationalMm);
-    const int d = depth_.blockAt(depthMm);
-    return l >= 0 && e >= 0 && d >= 0 && seen_[std::size_t(l + lateral_.count * (e + elevational_.count * d))];
+    return view().sees(lateralMm, elevationalMm, depthMm);
   }
+  /// For lookups while this lives.
+  BeamSightView view() const { return { lateral_, elevational_, depth_, seen_.data() }; }
   /// Furthest distance from the axis of the centre of a brick that is seen.
   float lateralMm() const { return lateralMm_; }
   float elevationalMm() const { return elevationalMm_; }
 
 private:
-  /// The map's blocks along an axis.
-  struct Blocks
-  {
-    float lowMm;
-    float highMm; ///< of the last block; depths beyond it belong to it
-    float perMm;
-    int count;
-    bool mirrored;
-    bool endless;
-
-    /// Furthest position in a block.
-    float furthest(int block) const
-    {
-      const float low = lowMm + float(block) / perMm;
-      return std::max(-low, low + 1.0f / perMm);
-    }
-    int blockAt(float mm) const
-    {
-      const float p = mirrored && mm < 0.0f ? -mm : mm;
-      if (!(p >= lowMm) || (p >= highMm && !endless))
-      {
-        return -1;
-      }
-      const int block = int((p < highMm ? p - lowMm : highMm - lowMm) * perMm);
-      return block < count ? block : count - 1;
-    }
-  };
   /// What a block sees of the table: values [first, last].
   struct Window
   {
@@ -64,17 +36,17 @@ private:
     int last;
   };
 
-  Blocks makeBlocks(const FieldAxis& axis, bool isDepth) const;
-  std::vector<Window> windows(const FieldAxis& axis, const Blocks& blocks) const;
+  SightBlocks makeBlocks(const FieldAxis& axis, bool isDepth) const;
+  std::vector<Window> windows(const FieldAxis& axis, const SightBlocks& blocks) const;
   void measure();
 
   float brickMm_;
   float marginMm_; // from a brick's centre to its corners
   float lateralMm_ = 0.0f;
   float elevationalMm_ = 0.0f;
-  Blocks lateral_{};
-  Blocks elevational_{};
-  Blocks depth_{};
+  SightBlocks lateral_{};
+  SightBlocks elevational_{};
+  SightBlocks depth_{};
   std::vector<std::uint8_t> seen_; // lateral fastest, then elevational, then depth
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Device.h"
 #include "Echo/PointScatterers.h"
 #include "Probe/PulseEchoField.h"
 #include "Probe/PulseFile.h"
@@ -17,6 +18,7 @@ namespace sono {
 
 struct EchoSettings
 {
+  Device device = Device::Auto;
   double centreFrequencyMHz = 2.5;  ///< > 0, below half the sampling frequency
   double fractionalBandwidth = 0.6; ///< at -6 dB, (0, 2)
   double samplingMHz = 50.0;        ///< RF sampling frequency
@@ -69,8 +71,8 @@ struct EchoSources
 /// traced intensity, plus the traced boundary echoes, convolved with the pulse. What lies behind the transducer does
 /// not echo. At 50 MHz the result is within 0.1 % (NRMSE) of the sum over all scatterers at their exact places: each is
 /// split linearly between two samples, which costs a band b MHz wide about (b / samplingMHz)^2 of its amplitude; that
-/// loss is undone on average over the places between two samples. The result depends on the arguments alone, to the
-/// bit, not on the threads. Throws Error naming the parameter that is out of range, Aborted when asked to stop.
+/// loss is undone on average over the places between two samples. The result depends on the arguments and the
+/// device alone, to the bit, not on the threads. Throws Error naming the parameter that is out of range, Aborted when asked to stop.
 RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
                const Progress& progress = {});
 

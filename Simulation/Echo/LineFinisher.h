@@ -20,15 +20,19 @@ public:
   /// null for a Gaussian beam. Throws Error when the sampling cannot carry the pulse.
   LineFinisher(const EchoSettings& settings, const TracedLines* traced, const FieldLevel* level);
 
+  int sumCount() const { return int(carrierRe_.size()); }
+  double radPerMm() const { return radPerMm_; }
+  const PulseKernel& pulse() const { return pulse_; }
   LineSum emptySum() const;
   /// Depth, mm, below which scatterers cannot be seen in this line.
   float reachMm(int line) const;
+  /// Adds the traced boundary echoes of a line, times the field's level, phases kept.
+  void addBoundaryEchoes(int line, LineSum& sum) const;
   /// Writes the settings' sampleCount() samples; the sum is used up.
   void finish(int line, LineSum& sum, std::complex<float>* iq) const;
 
 private:
   void applyIntensity(int line, LineSum& sum) const;
-  void addBoundaryEchoes(int line, LineSum& sum) const;
 
   const TracedLines* traced_;
   int samples_;

@@ -47,14 +47,22 @@ double brickEdge(const Vec3d& extent, std::size_t count)
   return edge;
 }
 
+int indexOf(const PointTable& table, const Vec3i& brick)
+{
+  const Vec3i at = brick - table.firstBrick;
+  return at.x + table.bricks.x * (at.y + table.bricks.y * at.z);
+}
+
 } // namespace
 
 PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
 {
   requireValid(points);
+  auto table = std::make_shared<PointTable>();
+  table_ = table;
   if (points.empty())
   {
-    begin_.assign(1, 0);
+    table->begin.assign(1, 0);
     return;
   }
   for (const PointScatterer& p : points)
@@ -68,57 +76,55 @@ PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
     low = glm::min(low, p.positionMm - originMm_);
     high = glm::max(high, p.positionMm - originMm_);
   }
-  grid_.edgeMm = float(brickEdge(high - low, points.size()));
+  grid_.edgeMm = table->edgeMm = float(brickEdge(high - low, points.size()));
   const double edge = grid_.edgeMm;
-  first_ = Vec3i(glm::floor(low / edge));
-  size_ = Vec3i(glm::floor(high / edge)) - first_ + 1;
-  grid_.lowMm = Vec3f(first_) * grid_.edgeMm;
-  grid_.highMm = Vec3f(first_ + size_) * grid_.edgeMm;
+  table->firstBrick = Vec3i(glm::floor(low / edge));
+  table->bricks = Vec3i(glm::floor(high / edge)) - table->firstBrick + 1;
+  grid_.lowMm = Vec3f(table->firstBrick) * grid_.edgeMm;
+  grid_.highMm = Vec3f(table->firstBrick + table->bricks) * grid_.edgeMm;
 
   // Counting sort by brick; inside a brick the points keep their order.
-  begin_.assign(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z) + 1, 0);
+  const Vec3i size = table->bricks;
+  std::vector<int>& begin = table->begin;
+  begin.assign(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z) + 1, 0);
   std::vector<int> brickOf(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    brickOf[i] = indexOf(Vec3i(glm::floor((points[i].positionMm - originMm_) / edge)));
-    ++begin_[std::size_t(brickOf[i]) + 1];
+    brickOf[i] = indexOf(*table, Vec3i(glm::floor((points[i].positionMm - originMm_) / edge)));
+    ++begin[std::size_t(brickOf[i]) + 1];
   }
-  for (std::size_t b = 1; b < begin_.size(); ++b)
+  for (std::size_t b = 1; b < begin.size(); ++b)
   {
-    begin_[b] += begin_[b - 1];
+    begin[b] += begin[b - 1];
   }
-  for (std::vector<float>* column : { &x_, &y_, &z_, &amplitude_ })
+  for (std::vector<float>* column : { &table->x, &table->y, &table->z, &table->amplitude })
   {
     column->resize(points.size());
   }
-  std::vector<int> next(begin_.begin(), begin_.end() - 1);
+  std::vector<int> next(begin.begin(), begin.end() - 1);
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const std::size_t to = std::size_t(next[std::size_t(brickOf[i])]++);
     const Vec3d p = points[i].positionMm - originMm_;
-    x_[to] = float(p.x);
-    y_[to] = float(p.y);
-    z_[to] = float(p.z);
-    amplitude_[to] = points[i].amplitude;
+    table->x[to] = float(p.x);
+    table->y[to] = float(p.y);
+    table->z[to] = float(p.z);
+    table->amplitude[to] = points[i].amplitude;
   }
-}
-
-int PointScatterers::indexOf(const Vec3i& brick) const
-{
-  const Vec3i at = brick - first_;
-  return at.x + size_.x * (at.y + size_.y * at.z);
 }
 
 ScattererView PointScatterers::brick(const Vec3i& brick) const
 {
-  const Vec3i at = brick - first_;
-  if (glm::any(glm::lessThan(at, Vec3i(0))) || glm::any(glm::greaterThanEqual(at, size_)))
+  const PointTable& t = *table_;
+  const Vec3i at = brick - t.firstBrick;
+  if (glm::any(glm::lessThan(at, Vec3i(0))) || glm::any(glm::greaterThanEqual(at, t.bricks)))
   {
     return {};
   }
-  const std::size_t b = std::size_t(indexOf(brick));
-  const std::size_t from = std::size_t(begin_[b]);
-  return { x_.data() + from, y_.data() + from, z_.data() + from, amplitude_.data() + from, begin_[b + 1] - begin_[b] };
+  const std::size_t b = std::size_t(indexOf(t, brick));
+  const std::size_t from = std::size_t(t.begin[b]);
+  return { t.x.data() + from, t.y.data() + from, t.z.data() + from, t.amplitude.data() + from,
+           t.begin[b + 1] - t.begin[b] };
 }
 
 } // namespace sono

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "Echo/BrickWalk.h"
+#include "Echo/PointTable.h"
 #include "Echo/ScattererView.h"
 #include "Kernel/Vec.h"
 
+#include <memory>
 #include <vector>
 
 namespace sono {
@@ -22,23 +24,19 @@ public:
   /// Throws Error naming the scatterer whose position is beyond 10^6 mm or not finite, or whose amplitude is not.
   explicit PointScatterers(const std::vector<PointScatterer>& points);
 
-  int count() const { return int(x_.size()); }
+  int count() const { return int(table_->x.size()); }
   /// The centroid, where the scatterers' own coordinates are 0; their axes are the world's. Single precision carries
   /// them far from the world's origin.
   const Vec3d& originMm() const { return originMm_; }
   const BrickGrid& grid() const { return grid_; }
+  std::shared_ptr<const PointTable> table() const { return table_; }
   /// The scatterers of a brick; none outside of the grid.
   ScattererView brick(const Vec3i& brick) const;
 
 private:
-  int indexOf(const Vec3i& brick) const;
-
   Vec3d originMm_{ 0.0 };
   BrickGrid grid_;
-  Vec3i first_{ 0 };       // the grid's lowest brick
-  Vec3i size_{ 0 };        // bricks along x, y, z
-  std::vector<int> begin_; // of each brick, x fastest, and the end
-  std::vector<float> x_, y_, z_, amplitude_;
+  std::shared_ptr<const PointTable> table_;
 };
 
 } // namespace sono

@@ -25,6 +25,9 @@ public:
 
   /// Samples that it reaches to either side.
   int half() const { return int(re_.size() / 2); }
+  /// From its end to its start; the imaginary part is empty where it would be zero.
+  const std::vector<float>& re() const { return re_; }
+  const std::vector<float>& im() const { return im_; }
   /// out[s] = sum over n in [-half, half] of envelope(n) in[s - n] for s in [0, count); in[s - n] is given as re and
   /// im at [s - n + half], count + 2 half values each.
   void convolve(const float* re, const float* im, int count, std::complex<float>* out) const;

@@ -29,6 +29,8 @@ public:
 
   /// Bricks that may hold scatterers: none when no tissue has any.
   const BrickGrid& grid() const { return grid_; }
+  /// By tissue index, amplitudes scaled.
+  const std::array<ScatteringMedium, 256>& media() const { return media_; }
   /// The scatterers of a brick, which lie in the buffer. Those of amplitude 0 are left out.
   ScattererView generate(const Vec3i& brick, Buffer& buffer) const;
 

@@ -1,6 +1,5 @@
 #include "Image/BMode.h"
 
-#include "Image/PixelMath.h"
 #include "Image/ReceiverNoise.h"
 #include "Progress.h"
 
@@ -18,9 +17,6 @@
 
 namespace sono {
 namespace {
-
-constexpr float smallestNormal = std::numeric_limits<float>::min();
-constexpr float largestFinite = std::numeric_limits<float>::max();
 
 void require(bool good, const char* parameter, double value, const char* range)
 {
@@ -56,27 +52,6 @@ double curveGainDb(const std::vector<std::pair<double, double>>& curve, double d
   const auto& [depthA, gainA] = *(above - 1);
   const auto& [depthB, gainB] = *above;
   return gainA + (gainB - gainA) * (depthMm - depthA) / (depthB - depthA);
-}
-
-std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm)
-{
-  std::vector<double> gain(sampleCount);
-  for (int s = 0; s < sampleCount; ++s)
-  {
-    const double depthMm = s * sampleMm;
-    gain[s] = settings.tgcDbPerCm * depthMm / 10.0 + curveGainDb(settings.tgcCurve, depthMm);
-  }
-  return gain;
-}
-
-/// The bits of the gained envelope, which order as the non-negative floats do; 0 for what is no amplitude.
-std::uint32_t gainedBits(float envelope, float factor)
-{
-  const bool usable = envelope > 0.0f && envelope <= largestFinite;
-  const float gained = std::min(usable ? envelope * factor : 0.0f, largestFinite);
-  std::uint32_t bits;
-  std::memcpy(&bits, &gained, sizeof bits);
-  return bits;
 }
 
 /// Exact order statistic in two passes: the upper bits of the floats are counted, then the values that share the
@@ -166,50 +141,16 @@ private:
 double automaticReference(const std::vector<float>& envelope, int lineCount, const std::vector<double>& gainDb)
 {
   std::vector<float> factor(gainDb.size());
-  std::transform(gainDb.begin(), gainDb.end(), factor.begin(), [](double decibels) {
-    return static_cast<float>(std::min(std::pow(10.0, decibels / 20.0), double(largestFinite)));
-  });
+  std::transform(gainDb.begin(), gainDb.end(), factor.begin(), gainFactor);
   const RankSearch search(envelope, factor, lineCount);
   const std::uint64_t count = envelope.size();
   const float percentile = search.find(count - count / 1000); // ceil(0.999 n) without rounding
-  if (percentile >= smallestNormal)
+  if (percentile >= smallestNormalFloat)
   {
     return percentile;
   }
   const float largest = search.find(count);
-  return largest >= smallestNormal ? largest : 1.0;
-}
-
-/// One line, in a form that vectorises: a comparison with NaN is false, so that NaN ends up black.
-void compressLine(const float* envelope, const std::vector<float>& offsetDb, float rangeDb, float rejectDb, float* grey)
-{
-  const float perRange = 1.0f / rangeDb;
-  const std::size_t count = offsetDb.size();
-  for (std::size_t s = 0; s < count; ++s)
-  {
-    const float e = envelope[s];
-    const float floored = e > smallestNormal ? e : smallestNormal;
-    const float usable = floored < largestFinite ? floored : largestFinite;
-    const float aboveBottomDb = fastDecibels(usable) + offsetDb[s];
-    const float capped = aboveBottomDb < rangeDb ? aboveBottomDb : rangeDb;
-    const bool shown = (e >= smallestNormal) & (capped > 0.0f) & (capped >= rejectDb);
-    grey[s] = shown ? capped * perRange : 0.0f;
-  }
-}
-
-void mapLine(GreyMap map, std::size_t count, float* grey)
-{
-  switch (map)
-  {
-    case GreyMap::Linear:
-      return;
-    case GreyMap::SquareRoot:
-      std::transform(grey, grey + count, grey, [](float x) { return std::sqrt(x); });
-      return;
-    case GreyMap::Sigmoid:
-      std::transform(grey, grey + count, grey, [](float x) { return x * x * (3.0f - 2.0f * x); });
-      return;
-  }
+  return largest >= smallestNormalFloat ? largest : 1.0;
 }
 
 void validateSizes(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm)
@@ -231,7 +172,7 @@ void BModeSettings::validate() const
 {
   require(within(tgcDbPerCm, -100.0, 100.0), "tgcDbPerCm", tgcDbPerCm, "in [-100, 100] dB/cm");
   require(within(gainDb, -300.0, 300.0), "gainDb", gainDb, "in [-300, 300] dB");
-  require(automaticReference || (referenceAmplitude >= smallestNormal && referenceAmplitude <= largestFinite),
+  require(automaticReference || (referenceAmplitude >= smallestNormalFloat && referenceAmplitude <= largestFiniteFloat),
           "referenceAmplitude", referenceAmplitude, "in [1.2e-38, 3.4e38]");
   require(dynamicRangeDb > 0.0 && dynamicRangeDb <= 300.0, "dynamicRangeDb", dynamicRangeDb, "in (0, 300] dB");
   require(rejectDb >= 0.0 && rejectDb < dynamicRangeDb, "rejectDb", rejectDb, "in [0, dynamicRangeDb) dB");
@@ -246,6 +187,22 @@ void BModeSettings::validate() const
     require(within(gain, -300.0, 300.0), "A gain of tgcCurve", gain, "in [-300, 300] dB");
     previousMm = depthMm;
   }
+}
+
+std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm)
+{
+  std::vector<double> gain(sampleCount);
+  for (int s = 0; s < sampleCount; ++s)
+  {
+    const double depthMm = s * sampleMm;
+    gain[s] = settings.tgcDbPerCm * depthMm / 10.0 + curveGainDb(settings.tgcCurve, depthMm);
+  }
+  return gain;
+}
+
+float gainFactor(double decibels)
+{
+  return static_cast<float>(std::min(std::pow(10.0, decibels / 20.0), double(largestFiniteFloat)));
 }
 
 BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int sampleCount, double sampleMm,
@@ -275,13 +232,22 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
                  [&](double decibels) { return static_cast<float>(decibels + constantDb); });
 
   result.grey.resize(envelope.size());
+  float* grey = result.grey.data();
+  const auto rangeDb = static_cast<float>(settings.dynamicRangeDb);
+  const auto rejectDb = static_cast<float>(settings.rejectDb);
   tbb::parallel_for(tbb::blocked_range<int>(0, lineCount), [&](const tbb::blocked_range<int>& lines) {
     for (int l = lines.begin(); l < lines.end(); ++l)
     {
       const std::size_t first = std::size_t(l) * sampleCount;
-      compressLine(envelope.data() + first, offsetDb, static_cast<float>(settings.dynamicRangeDb),
-                   static_cast<float>(settings.rejectDb), result.grey.data() + first);
-      mapLine(settings.greyMap, std::size_t(sampleCount), result.grey.data() + first);
+      for (std::size_t s = 0; s < offsetDb.size(); ++s)
+      {
+        grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s], rangeDb, rejectDb);
+      }
+      if (settings.greyMap != GreyMap::Linear)
+      {
+        std::transform(grey + first, grey + first + offsetDb.size(), grey + first,
+                       [&](float x) { return mapGrey(settings.greyMap, x); });
+      }
     }
   });
   return result;

@@ -1,19 +1,13 @@
 #pragma once
 
+#include "Kernel/GreyLevel.h"
+
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace sono {
-
-/// Grey level g in [0, 1] of a compressed level x in [0, 1]; each keeps black and white.
-enum class GreyMap
-{
-  Linear,     ///< g = x
-  SquareRoot, ///< g = sqrt(x): weak echoes brighter
-  Sigmoid     ///< g = x^2 (3 - 2 x): more contrast in the middle, less at both ends
-};
 
 /// Depth-dependent gain and log compression (PHYSICS section 6).
 struct BModeSettings
@@ -48,6 +42,11 @@ struct BModeLines
   double referenceAmplitude = 0.0; ///< that was used
   std::vector<float> grey;         ///< lineCount x sampleCount, 0 (black) to 1 (white)
 };
+
+/// The gain of each sample, dB: slope and curve.
+std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm);
+/// The same as a factor, at most the largest finite float.
+float gainFactor(double decibels);
 
 /// Time-gain compensation, log compression, reject:
 /// x = 1 + (20 log10(envelope + noise) + tgc(depth) + gain - 20 log10(reference)) / range, clamped to [0, 1], within

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Image/BMode.h"
+#include "Kernel/PlaneScan.h"
 #include "Probe/ScanGeometry.h"
 
 #include <cstdint>
@@ -23,6 +24,9 @@ struct PlaneImage
 
 /// Size and place of the image that scanConvert makes, without values. Throws as it does.
 PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm);
+
+/// The same with the way from a pixel to the lines' samples, for any device.
+PlaneScan planeScan(const ScanGeometry& geometry, int sampleCount, double sampleMm, double pixelMm);
 
 /// Bilinear scan conversion of lines x samples (`sampleMm` apart, the first at depth 0) onto square pixels that cover
 /// the sector's bounding box, centred laterally. The last sample holds for up to one sample more; depths that no

@@ -1,6 +1,6 @@
 #include "Image/ScanConvertVolume.h"
 
-#include "Image/PixelMath.h"
+#include "Kernel/PixelMath.h"
 #include "ParallelFor.h"
 
 #include <algorithm>

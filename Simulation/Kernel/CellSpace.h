@@ -23,10 +23,10 @@ struct NoTargets
 /// TracePath.h asks of a space (the other is NanoSpace); both must give the same boundaries.
 /// `Targets` offers any() and nearest(position, direction, tMax, inside): outside a target only surfaces entered count,
 /// inside only surfaces left, so that a ray never meets again the surface it starts from.
-template<class Targets>
+template<class Targets, class Cells = TissueCells>
 struct CellSpace
 {
-  TissueCells cells;
+  Cells cells;
   Targets targets;
 
   SONO_HD Vec3i size() const { return cells.size; }

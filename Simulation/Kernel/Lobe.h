@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/FastMath.h"
 #include "Kernel/HostDevice.h"
 #include "Kernel/Vec.h"
 
@@ -187,9 +188,13 @@ SONO_HD inline Vec3f directionAround(const Vec3f& axis, float phi, float u)
   const float q = axis.x * axis.y * p;
   const Vec3f s(1.0f + sign * axis.x * axis.x * p, sign * q, -sign * axis.x);
   const Vec3f t(q, sign + axis.y * axis.y * p, -axis.y);
-  const float azimuth = 6.28318531f * u;
-  const float sinPhi = sinf(phi);
-  return glm::normalize(axis * cosf(phi) + s * (sinPhi * cosf(azimuth)) + t * (sinPhi * sinf(azimuth)));
+  float sinPhi;
+  float cosPhi;
+  float sinAzimuth;
+  float cosAzimuth;
+  quickSinCos(phi, sinPhi, cosPhi);
+  quickSinCos(6.28318531f * (u - 0.5f), sinAzimuth, cosAzimuth); // half a turn back: both change their sign
+  return glm::normalize(axis * cosPhi - s * (sinPhi * cosAzimuth) - t * (sinPhi * sinAzimuth));
 }
 
 } // namespace sono

@@ -45,9 +45,9 @@ struct NanoSpace
   SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
   {
     const Accessor accessor = labels->getAccessor();
-    const AxisMarch axes[3] = { { ray.position.x / cells.spacing.x, ray.direction.x / cells.spacing.x },
-                                { ray.position.y / cells.spacing.y, ray.direction.y / cells.spacing.y },
-                                { ray.position.z / cells.spacing.z, ray.direction.z / cells.spacing.z } };
+    const AxisMarch axes[3] = { { ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x },
+                                { ray.position.y * cells.perMm.y, ray.direction.y * cells.perMm.y },
+                                { ray.position.z * cells.perMm.z, ray.direction.z * cells.perMm.z } };
     Vec3i c = ray.cell;
     float t = 0.0f;
     const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
@@ -60,7 +60,7 @@ struct NanoSpace
       {
         // Nodes are aligned in the volume's index space.
         low[a] = ((c[a] + first[a]) & ~(edge - 1)) - first[a];
-        first3[a] = (float(axes[a].step ? low[a] + edge : low[a]) - axes[a].p) * axes[a].inverse + axes[a].never;
+        first3[a] = (float(axes[a].step > 0.0f ? low[a] + edge : low[a]) - axes[a].p) * axes[a].inverse + axes[a].never;
       }
       const float leave = smaller(first3[0], smaller(first3[1], first3[2]));
       t = larger(leave, t);
@@ -77,10 +77,10 @@ struct NanoSpace
           const int moved = int(floorf(axes[a].p + t * axes[a].d));
           before[a] = moved < low[a] ? low[a] : (moved > low[a] + edge - 1 ? low[a] + edge - 1 : moved);
         }
-        before[axis] = axes[axis].step ? low[axis] + edge - 1 : low[axis];
+        before[axis] = axes[axis].step > 0.0f ? low[axis] + edge - 1 : low[axis];
       }
       c = before;
-      c[axis] += axes[axis].sign;
+      c[axis] += axes[axis].sign();
       if (!cells.contains(c))
       {
         return { t, before, before, -1, axis };

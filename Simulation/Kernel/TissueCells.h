@@ -22,7 +22,8 @@ struct TissueCells
   Vec3i size{ 0, 0, 0 };
   Vec3i blocks{ 0, 0, 0 };
   Vec3f spacing{ 1.0f, 1.0f, 1.0f };
-  float meanSpacing = 1.0f; ///< cube root of the voxel's volume
+  Vec3f perMm{ 1.0f, 1.0f, 1.0f }; ///< 1 / spacing
+  float meanSpacing = 1.0f;        ///< cube root of the voxel's volume
 
   /// With a border of one voxel all around, which holds `outsideWord`: a march needs no other test for the region's
   /// end.
@@ -38,26 +39,88 @@ struct TissueCells
     const unsigned block = (ux >> 2) + unsigned(blocks.x) * ((uy >> 2) + unsigned(blocks.y) * (uz >> 1));
     return (std::size_t(block) << 5) | ((ux & 3u) | ((uy & 3u) << 2) | ((uz & 1u) << 4));
   }
-  /// The record of the voxel with that offset and word; 0 where it has none.
-  SONO_HD std::uint32_t recordOf(std::size_t offset, std::uint32_t word) const
+  SONO_HD std::uint32_t wordAt(int x, int y, int z) const { return cell[offset(x, y, z)]; }
+  /// The record of the voxel, whose word is given; 0 where it has none.
+  SONO_HD std::uint32_t recordOf(int x, int y, int z, std::uint32_t word) const
   {
-    return (word & 0x8000u) ? record[firstRecord[offset >> 5] + ((word >> 8) & 31u)] : 0u;
-  }
-  SONO_HD std::uint32_t recordAt(const Vec3i& c) const
-  {
-    const std::size_t at = offset(c);
-    return recordOf(at, cell[at]);
+    return (word & 0x8000u) ? record[firstRecord[offset(x, y, z) >> 5] + ((word >> 8) & 31u)] : 0u;
   }
   SONO_HD bool contains(const Vec3i& c) const
   {
     return unsigned(c.x) < unsigned(size.x) && unsigned(c.y) < unsigned(size.y) && unsigned(c.z) < unsigned(size.z);
   }
-  SONO_HD int tissueAt(const Vec3i& c) const { return cell[offset(c)] & 255; }
+  SONO_HD int tissueAt(const Vec3i& c) const { return int(wordAt(c.x, c.y, c.z) & 255u); }
   SONO_HD Vec3i cellAt(const Vec3f& position) const
   {
     const Vec3f p = position / spacing;
     return Vec3i(int(floorf(p.x)), int(floorf(p.y)), int(floorf(p.z)));
   }
+
+  /// A place among the words that a march moves from cell to cell.
+  class Cursor
+  {
+  public:
+    SONO_HD Cursor(const TissueCells& cells, const Vec3i& cell, const Vec3i& sign)
+      : cells_(cells)
+      , cell_(cell)
+      , sign_(sign)
+    {
+    }
+    /// To the neighbour along one axis, in the sense of its sign.
+    SONO_HD void move(bool alongX, bool alongY, bool alongZ)
+    {
+      cell_.x += alongX ? sign_.x : 0;
+      cell_.y += alongY ? sign_.y : 0;
+      cell_.z += alongZ ? sign_.z : 0;
+    }
+    SONO_HD void jump(const Vec3i& cell) { cell_ = cell; }
+    SONO_HD std::uint32_t word() const { return cells_.wordAt(cell_.x, cell_.y, cell_.z); }
+
+  private:
+    const TissueCells& cells_;
+    Vec3i cell_;
+    Vec3i sign_;
+  };
+};
+
+/// The same with the words row after row, border included: a step is one addition. A GPU, which computes addresses and
+/// waits for memory with the same threads, is faster with them; a CPU with the blocks.
+struct RowCells : TissueCells
+{
+  const std::uint16_t* words = nullptr;
+  Vec3i pitch{ 0, 0, 0 }; ///< words from a voxel to the next along each axis
+
+  /// (size.x + 2) x (size.y + 2) x (size.z + 2) words.
+  static Vec3i pitchFor(const Vec3i& size) { return { 1, size.x + 2, (size.x + 2) * (size.y + 2) }; }
+  SONO_HD std::size_t rowOffset(int x, int y, int z) const
+  {
+    return std::size_t(x + 1) + std::size_t(y + 1) * std::size_t(pitch.y) + std::size_t(z + 1) * std::size_t(pitch.z);
+  }
+  SONO_HD std::uint32_t wordAt(int x, int y, int z) const { return words[rowOffset(x, y, z)]; }
+  SONO_HD int tissueAt(const Vec3i& c) const { return int(wordAt(c.x, c.y, c.z) & 255u); }
+
+  class Cursor
+  {
+  public:
+    SONO_HD Cursor(const RowCells& cells, const Vec3i& cell, const Vec3i& sign)
+      : cells_(cells)
+      , at_(cells.words + cells.rowOffset(cell.x, cell.y, cell.z))
+      , stepX_(sign.x)
+      , stepY_(sign.y * cells.pitch.y)
+      , stepZ_(sign.z * cells.pitch.z)
+    {
+    }
+    SONO_HD void move(bool alongX, bool alongY, bool) { at_ += alongX ? stepX_ : (alongY ? stepY_ : stepZ_); }
+    SONO_HD void jump(const Vec3i& cell) { at_ = cells_.words + cells_.rowOffset(cell.x, cell.y, cell.z); }
+    SONO_HD std::uint32_t word() const { return *at_; }
+
+  private:
+    const RowCells& cells_;
+    const std::uint16_t* at_;
+    int stepX_;
+    int stepY_;
+    int stepZ_;
+  };
 };
 
 /// A ray that is being marched. Position and cell are carried together: a ray restarts from the face it met in the
@@ -84,36 +147,48 @@ SONO_HD inline float safeInverse(float d)
   return fabsf(d) < 1e-9f ? 0.0f : 1.0f / d;
 }
 
+/// fmin and fmax are one instruction of the GPU, but calls on a CPU, where these are one.
 SONO_HD inline float smaller(float a, float b)
 {
+#if defined(__CUDA_ARCH__)
+  return fminf(a, b);
+#else
   return a < b ? a : b;
+#endif
 }
 SONO_HD inline float larger(float a, float b)
 {
+#if defined(__CUDA_ARCH__)
+  return fmaxf(a, b);
+#else
   return a > b ? a : b;
+#endif
 }
 
-/// One axis of a march in voxel units. The face at which the ray leaves the cube [c - skip, c + skip] is
-/// c + sign * skip + step, and is met at t = (face - p) * inverse + never.
+/// One axis of a march in voxel units. The face at which the ray leaves cell c is c + step, met at
+/// t = (face - p) * inverse + never.
 struct AxisMarch
 {
   float p;
   float d;
   float inverse;
   float never; ///< huge where the ray runs along the face
-  int sign;
-  int step; ///< 1 when ascending, else 0
+  float along; ///< sign of the direction
+  float step;  ///< 1 when ascending, else 0
 
   SONO_HD AxisMarch(float position, float direction)
     : p(position)
     , d(direction)
     , inverse(safeInverse(direction))
     , never(inverse == 0.0f ? 3e38f : 0.0f)
-    , sign(direction > 0.0f ? 1 : -1)
-    , step(direction > 0.0f ? 1 : 0)
+    , along(direction > 0.0f ? 1.0f : -1.0f)
+    , step(direction > 0.0f ? 1.0f : 0.0f)
   {
   }
-  SONO_HD float leave(int c, int skip) const { return (float(c + sign * skip + step) - p) * inverse + never; }
+  SONO_HD int sign() const { return along > 0.0f ? 1 : -1; }
+  SONO_HD float faceOf(int c) const { return float(c) + step; }
+  SONO_HD int cellOf(float face) const { return int(face - step); }
+  SONO_HD float meet(float face) const { return (face - p) * inverse + never; }
   /// The cell at t, known to lie in the cube around c.
   SONO_HD int cellAt(float t, int c, int skip) const
   {
@@ -129,23 +204,26 @@ constexpr int worthJumping = 5;
 /// t < ignoreUntil (hysteresis after a boundary; -1: none), and are passed one by one: what is left of them then is met
 /// at the next face. Walks cell by cell, so that the next address does not wait
 /// for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
-SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& ray, int current, int ignored,
+template<class Cells>
+SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, int ignored,
                                        float ignoreUntil, float tMax)
 {
-  const AxisMarch ax(ray.position.x / cells.spacing.x, ray.direction.x / cells.spacing.x);
-  const AxisMarch ay(ray.position.y / cells.spacing.y, ray.direction.y / cells.spacing.y);
-  const AxisMarch az(ray.position.z / cells.spacing.z, ray.direction.z / cells.spacing.z);
-  int x = ray.cell.x;
-  int y = ray.cell.y;
-  int z = ray.cell.z;
-  float tx = ax.leave(x, 0);
-  float ty = ay.leave(y, 0);
-  float tz = az.leave(z, 0);
+  const AxisMarch ax(ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x);
+  const AxisMarch ay(ray.position.y * cells.perMm.y, ray.direction.y * cells.perMm.y);
+  const AxisMarch az(ray.position.z * cells.perMm.z, ray.direction.z * cells.perMm.z);
+  typename Cells::Cursor cursor(cells, ray.cell, Vec3i(ax.sign(), ay.sign(), az.sign()));
+  // Whole numbers, exact in single precision.
+  float faceX = ax.faceOf(ray.cell.x);
+  float faceY = ay.faceOf(ray.cell.y);
+  float faceZ = az.faceOf(ray.cell.z);
   float t = 0.0f;
   // Each step leaves at least one plane of cells behind, so this bounds any ray.
-  const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
-  for (int count = 0; count < maxSteps; ++count)
+  const int most = cells.size.x + cells.size.y + cells.size.z + 3;
+  for (int count = 0; count < most; ++count)
   {
+    const float tx = ax.meet(faceX);
+    const float ty = ay.meet(faceY);
+    const float tz = az.meet(faceZ);
     const float first = smaller(tx, smaller(ty, tz));
     t = larger(first, t);
     if (t >= tMax)
@@ -155,46 +233,44 @@ SONO_HD inline CellHit marchToBoundary(const TissueCells& cells, const CellRay& 
     const bool alongX = tx == first;
     const bool alongY = !alongX && ty == first;
     const bool alongZ = !alongX && !alongY;
-    x += alongX ? ax.sign : 0;
-    y += alongY ? ay.sign : 0;
-    z += alongZ ? az.sign : 0;
-    const std::uint32_t word = cells.cell[cells.offset(x, y, z)];
+    faceX += alongX ? ax.along : 0.0f;
+    faceY += alongY ? ay.along : 0.0f;
+    faceZ += alongZ ? az.along : 0.0f;
+    cursor.move(alongX, alongY, alongZ);
+    const std::uint32_t word = cursor.word();
     const int tissue = int(word & 255u);
     if (tissue != current && (tissue != ignored || t >= ignoreUntil))
     {
-      const int axis = alongX ? 0 : (alongY ? 1 : 2);
-      const Vec3i after(x, y, z);
-      const Vec3i before(x - (alongX ? ax.sign : 0), y - (alongY ? ay.sign : 0), z - (alongZ ? az.sign : 0));
-      if (tissue == int(TissueCells::outsideWord))
-      {
-        return { t, before, before, -1, axis };
-      }
-      return { t, before, after, tissue, axis };
+      const Vec3i after(ax.cellOf(faceX), ay.cellOf(faceY), az.cellOf(faceZ));
+      const Vec3i before(after.x - (alongX ? ax.sign() : 0), after.y - (alongY ? ay.sign() : 0),
+                         after.z - (alongZ ? az.sign() : 0));
+      const bool outside = tissue == int(TissueCells::outsideWord);
+      return { t, before, outside ? before : after, outside ? -1 : tissue, alongX ? 0 : (alongY ? 1 : 2) };
     }
     // 128 and above are ranks of records.
     const int skip = int(word >> 8);
     if (skip >= worthJumping && skip < 128 && tissue == current)
     {
       // Go on to the cell behind the face through which the ray leaves the cube, less one step.
-      const float leaveX = ax.leave(x, skip - 1);
-      const float leaveY = ay.leave(y, skip - 1);
-      const float leaveZ = az.leave(z, skip - 1);
+      const float reach = float(skip - 1);
+      const float leaveX = ax.meet(faceX + ax.along * reach);
+      const float leaveY = ay.meet(faceY + ay.along * reach);
+      const float leaveZ = az.meet(faceZ + az.along * reach);
       const float leave = smaller(leaveX, smaller(leaveY, leaveZ));
       t = larger(leave, t);
       if (t >= tMax)
       {
         break;
       }
-      const int nextX = leaveX == leave ? x + ax.sign * skip : ax.cellAt(t, x, skip - 1);
-      const int nextY = leaveY == leave ? y + ay.sign * skip : ay.cellAt(t, y, skip - 1);
-      const int nextZ = leaveZ == leave ? z + az.sign * skip : az.cellAt(t, z, skip - 1);
-      x = nextX;
-      y = nextY;
-      z = nextZ;
+      const Vec3i at(ax.cellOf(faceX), ay.cellOf(faceY), az.cellOf(faceZ));
+      const Vec3i next(leaveX == leave ? at.x + ax.sign() * skip : ax.cellAt(t, at.x, skip - 1),
+                       leaveY == leave ? at.y + ay.sign() * skip : ay.cellAt(t, at.y, skip - 1),
+                       leaveZ == leave ? at.z + az.sign() * skip : az.cellAt(t, at.z, skip - 1));
+      cursor.jump(next);
+      faceX = ax.faceOf(next.x);
+      faceY = ay.faceOf(next.y);
+      faceZ = az.faceOf(next.z);
     }
-    tx = ax.leave(x, 0);
-    ty = ay.leave(y, 0);
-    tz = az.leave(z, 0);
   }
   return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
 }
@@ -217,7 +293,8 @@ struct SideWeights
 /// The normal from tissue `from` to `to` at a point of their boundary, interpolated between the records of the eight
 /// voxels around the point. A voxel's own record holds at its centre; a curved surface turns away from it.
 /// Returns `fallback` where the records disagree.
-SONO_HD inline Vec3f interpolateNormal(const TissueCells& cells, const Vec3f& point, int from, int to,
+template<class Cells>
+SONO_HD inline Vec3f interpolateNormal(const Cells& cells, const Vec3f& point, int from, int to,
                                        const SideWeights& weights, const Vec3f& fallback)
 {
   const Vec3f g = point / cells.spacing - 0.5f;
@@ -234,15 +311,14 @@ SONO_HD inline Vec3f interpolateNormal(const TissueCells& cells, const Vec3f& po
     const int ox = corner & 1;
     const int oy = (corner >> 1) & 1;
     const int oz = corner >> 2;
-    const std::size_t at = cells.offset(low.x + ox, low.y + oy, low.z + oz);
-    const std::uint32_t word = cells.cell[at];
+    const std::uint32_t word = cells.wordAt(low.x + ox, low.y + oy, low.z + oz);
     const int tissue = int(word & 255u);
     const float side = tissue == from ? weights.before : (tissue == to ? -weights.after : 0.0f);
     if ((word & 0x8000u) == 0u || side == 0.0f)
     {
       continue;
     }
-    const std::uint32_t bits = cells.recordOf(at, word);
+    const std::uint32_t bits = cells.recordOf(low.x + ox, low.y + oy, low.z + oz, word);
     const float w =
       decodeConfidence(bits) * (ox ? f.x : 1.0f - f.x) * (oy ? f.y : 1.0f - f.y) * (oz ? f.z : 1.0f - f.z);
     // Neighbours point almost the same way, so the octahedron scales them almost alike.
@@ -253,18 +329,25 @@ SONO_HD inline Vec3f interpolateNormal(const TissueCells& cells, const Vec3f& po
   return length > 0.3f * total ? sum / length : fallback;
 }
 
+template<class Cells>
+SONO_HD inline std::uint32_t recordAt(const Cells& cells, const Vec3i& c)
+{
+  return cells.recordOf(c.x, c.y, c.z, cells.wordAt(c.x, c.y, c.z));
+}
+
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
 /// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.6 of it (a thin
 /// wall has lost its own surface, its thick neighbour has not); else the normals are averaged. The point moves
 /// along the ray to the plane of the records, by one voxel at most; there the normal is interpolated. Where no record
 /// is trustworthy, or the smooth normal says that the ray leaves rather than enters, the voxel face stands.
-SONO_HD inline RefinedHit refineBoundary(const TissueCells& cells, const CellRay& ray, const CellHit& hit)
+template<class Cells>
+SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit)
 {
   const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
                    hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
                    hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
-  const std::uint32_t bitsA = cells.recordAt(hit.before);
-  const std::uint32_t bitsB = cells.recordAt(hit.after);
+  const std::uint32_t bitsA = recordAt(cells, hit.before);
+  const std::uint32_t bitsB = recordAt(cells, hit.after);
   if ((bitsA | bitsB) == 0u)
   {
     return { face, hit.t };

@@ -80,24 +80,46 @@ SONO_HD inline bool sameAcoustics(const TraceMedium& a, const TraceMedium& b)
   return a.impedance == b.impedance && a.speed == b.speed;
 }
 
-/// Finds where the path leaves its medium, within tMax. Returns false when it does not; `travelled` is then how far it
-/// got.
-template<class Space>
-SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, const PathState& path, float tMax,
-                                 PathBoundary& boundary, float& travelled)
+/// How a piece of a path ended.
+enum class PieceEnd
 {
-  const CellRay& ray = path.ray;
-  boundary.before = { ray.cell, path.tissue, path.target };
+  Path,    ///< with the path: nothing more is met
+  Medium,  ///< at media of equal impedance and speed, which are no boundary: only the attenuation changes there
+  Boundary ///< at a boundary, where the path branches
+};
+
+/// How far a piece of a path can go: to the next target at most.
+struct PieceLimit
+{
+  TargetHit target;
+  float t; ///< mm along the ray
+};
+
+template<class Space>
+SONO_HD inline PieceLimit limitPiece(const TraceView& view, const Space& space, const TraceLine& line,
+                                     const PathState& path)
+{
+  const float tMax = remainingLength(view, line, path);
   TargetHit target{ tMax, Vec3f(0.0f), -1 };
   if (space.targets.any())
   {
-    target = space.targets.nearest(ray.position, ray.direction, tMax, path.target >= 0);
+    target = space.targets.nearest(path.ray.position, path.ray.direction, tMax, path.target >= 0);
   }
+  return { target, target.target >= 0 ? target.t : tMax };
+}
+
+/// Where the path leaves its medium, if it does: at the cells' `hit`, which counts outside of targets only, or at a
+/// target's surface. `travelled` is how far it got.
+template<class Space>
+SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, const PathState& path,
+                                 const PieceLimit& limit, const CellHit& hit, PathBoundary& boundary, float& travelled)
+{
+  const CellRay& ray = path.ray;
+  const TargetHit& target = limit.target;
   const bool meetsTarget = target.target >= 0;
+  boundary.before = { ray.cell, path.tissue, path.target };
   if (path.target < 0)
   {
-    const CellHit hit =
-      space.toBoundary(ray, path.tissue, path.ignored, path.ignoreUntil, meetsTarget ? target.t : tMax);
     travelled = hit.t;
     if (hit.tissue >= 0)
     {
@@ -113,7 +135,7 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
       return false;
     }
   }
-  travelled = meetsTarget ? target.t : tMax;
+  travelled = limit.t;
   if (!meetsTarget)
   {
     return false;
@@ -132,41 +154,67 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
   return true;
 }
 
+/// Takes the path to the end of its piece, which is written to `piece`. At a boundary the path stays in front of it.
+template<class Space>
+SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, const PieceLimit& limit, const CellHit& hit,
+                                 PathState& path, PathBoundary& boundary, PathSegment& piece)
+{
+  float travelled = 0.0f;
+  const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, boundary, travelled);
+  const TraceMedium& medium = view.media[path.tissue];
+  piece = { path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm };
+  path.intensity *= expf(-medium.decayPerMm * travelled);
+  path.length += travelled;
+  if (!met)
+  {
+    return PieceEnd::Path;
+  }
+  const TraceMedium& next = view.media[boundary.after.medium];
+  if (!sameAcoustics(medium, next))
+  {
+    boundary.cosine = smaller(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
+    boundary.reflection =
+      reflectionAt(view.model, medium.impedance, next.impedance, medium.speed, next.speed, boundary.cosine);
+    return PieceEnd::Boundary;
+  }
+  path.ray.position += path.ray.direction * boundary.restart;
+  path.ray.cell = boundary.after.cell;
+  path.ignoreUntil -= boundary.restart;
+  path.tissue = boundary.after.medium;
+  path.target = boundary.after.target;
+  return PieceEnd::Medium;
+}
+
+/// Each piece ends at a new medium, at least one cell on: this bounds the pieces between two boundaries.
+template<class Space>
+SONO_HD inline int mostPieces(const Space& space)
+{
+  const Vec3i size = space.size();
+  return size.x + size.y + size.z;
+}
+
 /// Follows the path to its next boundary and hands every segment to the sink. Returns false when the path ends before
-/// one. Media with equal impedance and speed are no boundary: only the attenuation changes there.
+/// one.
 template<class Space, class Sink>
 SONO_HD inline bool advanceToBoundary(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
                                       PathBoundary& boundary, Sink& sink)
 {
-  // Each piece ends at a new medium, at least one cell on: the count bounds any path.
-  const Vec3i size = space.size();
-  const int maxPieces = size.x + size.y + size.z;
-  for (int piece = 0; piece < maxPieces; ++piece)
+  const int most = mostPieces(space);
+  for (int count = 0; count < most; ++count)
   {
-    float travelled = 0.0f;
-    const bool met =
-      findBoundary(space, view.firstTargetMedium, path, remainingLength(view, line, path), boundary, travelled);
-    const TraceMedium& medium = view.media[path.tissue];
-    sink.segment(PathSegment{ path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm });
-    path.intensity *= expf(-medium.decayPerMm * travelled);
-    path.length += travelled;
-    if (!met)
+    const PieceLimit limit = limitPiece(view, space, line, path);
+    CellHit hit{};
+    if (path.target < 0)
     {
-      return false;
+      hit = space.toBoundary(path.ray, path.tissue, path.ignored, path.ignoreUntil, limit.t);
     }
-    const TraceMedium& next = view.media[boundary.after.medium];
-    if (!sameAcoustics(medium, next))
+    PathSegment piece;
+    const PieceEnd end = endPiece(view, space, limit, hit, path, boundary, piece);
+    sink.segment(piece);
+    if (end != PieceEnd::Medium)
     {
-      boundary.cosine = smaller(1.0f, glm::dot(path.ray.direction, boundary.surface.normal));
-      boundary.reflection =
-        reflectionAt(view.model, medium.impedance, next.impedance, medium.speed, next.speed, boundary.cosine);
-      return true;
+      return end == PieceEnd::Boundary;
     }
-    path.ray.position += path.ray.direction * boundary.restart;
-    path.ray.cell = boundary.after.cell;
-    path.ignoreUntil -= boundary.restart;
-    path.tissue = boundary.after.medium;
-    path.target = boundary.after.target;
   }
   return false;
 }
@@ -244,8 +292,7 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
 /// The way from the transducer to the first boundary, which every path of a line shares.
 struct LineStart
 {
-  bool enters; ///< whether the line meets the space at all
-  bool meets;  ///< whether there is a first boundary
+  bool meets; ///< whether there is a first boundary
   PathState path;
   PathBoundary boundary;
 };
@@ -308,8 +355,7 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
   LineStart start;
   start.meets = false;
   PathState& path = start.path;
-  start.enters = enterSpace(space, line, view.depthMm, path);
-  if (!start.enters)
+  if (!enterSpace(space, line, view.depthMm, path))
   {
     return start;
   }

@@ -3,12 +3,24 @@
 #include "ParallelFor.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 
 namespace sono {
 
+namespace {
+
+std::uint64_t nextId()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
+} // namespace
+
 Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue)
-  : volume_(std::move(volume))
+  : id_(nextId())
+  , volume_(std::move(volume))
 {
   volume_.placement.validate("the label map");
   if (volume_.voxels.size() != volume_.placement.voxelCount())
@@ -129,20 +141,41 @@ void Scene::adopt(LabelGrid labels, std::vector<SurfaceField> surfaces)
   }
 }
 
-std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
+VoxelBox Scene::clipped(const VoxelBox& box) const
 {
-  VoxelBox clipped{ glm::max(box.first, Vec3i(0)), glm::min(box.last, placement().size) };
-  if (clipped.empty())
+  const VoxelBox inside{ glm::max(box.first, Vec3i(0)), glm::min(box.last, placement().size) };
+  if (inside.empty())
   {
     throw Error("the probe's fan does not reach the label map: move the probe onto the skin or increase the depth");
   }
+  return inside;
+}
+
+std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
+{
+  const VoxelBox wanted = clipped(box);
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!region_ || !(region_->box == clipped))
+  if (!region_ || !(region_->box == wanted))
   {
     region_ = std::make_shared<TraceRegion>(
-      buildTraceRegion(tissueVoxels_.data(), placement().size, placement().spacingMm, clipped, progress));
+      buildTraceRegion(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted, progress));
   }
   return region_;
+}
+
+std::shared_ptr<const TraceRegion> Scene::traceRegionAround(const VoxelBox& box, double marginMm,
+                                                            const Progress& progress) const
+{
+  const VoxelBox wanted = clipped(box);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!wideRegion_ || !wideRegion_->box.contains(wanted))
+  {
+    const Vec3i margin(glm::ceil(marginMm / placement().spacingMm));
+    wideRegion_ = std::make_shared<TraceRegion>(
+      buildTraceRegion(tissueVoxels_.data(), placement().size, placement().spacingMm,
+                       clipped({ wanted.first - margin, wanted.last + margin }), progress));
+  }
+  return wideRegion_;
 }
 
 } // namespace sono

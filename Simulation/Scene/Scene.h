@@ -32,6 +32,8 @@ public:
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
+  /// Of this scene alone, in this process.
+  std::uint64_t id() const { return id_; }
   const LabelVolume& volume() const { return volume_; }
   const GridPlacement& placement() const { return volume_.placement; }
   /// The tissues in use, in the order of the 8-bit tissue indices.
@@ -58,9 +60,16 @@ public:
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const TraceRegion> traceRegion(const VoxelBox& box, const Progress& progress = {}) const;
 
+  /// The same for a probe on its way: any box that holds this one, if it was made here before; else one that reaches
+  /// `marginMm` further on all sides. Kept beside the other.
+  std::shared_ptr<const TraceRegion> traceRegionAround(const VoxelBox& box, double marginMm,
+                                                       const Progress& progress = {}) const;
+
 private:
+  VoxelBox clipped(const VoxelBox& box) const;
   void buildSurfaceAt(std::size_t label, const Progress& progress) const;
 
+  std::uint64_t id_;
   LabelVolume volume_;
   std::vector<Tissue> tissues_;
   std::vector<std::uint8_t> tissueOfLabel_;
@@ -72,6 +81,7 @@ private:
   mutable std::vector<VoxelBox> boxes_;                         // parallel to volume_.labels, empty until needed
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable std::shared_ptr<const TraceRegion> region_;
+  mutable std::shared_ptr<const TraceRegion> wideRegion_;
 };
 
 } // namespace sono

@@ -259,19 +259,6 @@ private:
 
 } // namespace
 
-TissueCells TraceRegion::view() const
-{
-  TissueCells cells;
-  cells.cell = cell.data();
-  cells.firstRecord = firstRecord.data();
-  cells.record = record.data();
-  cells.size = box.size();
-  cells.blocks = TissueCells::blocksFor(cells.size);
-  cells.spacing = spacing;
-  cells.meanSpacing = std::cbrt(spacing.x * spacing.y * spacing.z);
-  return cells;
-}
-
 TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
                              const VoxelBox& box, const Progress& progress)
 {

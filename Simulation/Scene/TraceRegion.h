@@ -4,6 +4,7 @@
 #include "Progress.h"
 #include "Scene/VoxelBox.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -21,7 +22,19 @@ struct TraceRegion
   std::vector<std::uint32_t> firstRecord;
   std::vector<std::uint32_t> record; ///< one a voxel that touches another tissue
 
-  TissueCells view() const;
+  TissueCells view() const
+  {
+    TissueCells cells;
+    cells.cell = cell.data();
+    cells.firstRecord = firstRecord.data();
+    cells.record = record.data();
+    cells.size = box.size();
+    cells.blocks = TissueCells::blocksFor(cells.size);
+    cells.spacing = spacing;
+    cells.perMm = 1.0f / spacing;
+    cells.meanSpacing = std::cbrt(spacing.x * spacing.y * spacing.z);
+    return cells;
+  }
   std::size_t bytes() const
   {
     return cell.size() * sizeof(cell[0]) + (firstRecord.size() + record.size()) * sizeof(record[0]);

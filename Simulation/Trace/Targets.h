@@ -39,6 +39,7 @@ public:
   TargetScene& operator=(const TargetScene&) = delete;
 
   bool empty() const { return triangles_.empty(); }
+  const std::vector<BvhTriangle>& triangles() const { return triangles_; }
   /// See CellSpace.
   TargetHit nearest(const Vec3f& position, const Vec3f& direction, float tMax, bool inside) const;
 

@@ -1,5 +1,6 @@
 #include "Trace/Trace.h"
 
+#include "Cuda/RunOnDevice.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
 #include "ParallelFor.h"
@@ -10,7 +11,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace sono {
@@ -19,7 +19,7 @@ namespace {
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
-inline bool traceLineIn(const Space& space, const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
+inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
 {
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   const TraceView& view = setup.view;
@@ -32,7 +32,7 @@ inline bool traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
   if (!start.meets)
   {
-    return start.enters;
+    return;
   }
 
   tally.setEchoWeight(1.0f / float(setup.paths));
@@ -77,18 +77,30 @@ inline bool traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     out.standardError[row + std::size_t(b)] =
       batches > 1 ? float(std::sqrt(spread / (double(batches) * (batches - 1)))) : 0.0f;
   }
-  return true;
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) bool traceLine(const TraceSetup& setup, int index, LineTally& tally,
+SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, LineTally& tally,
                                                          TracedLines& out)
 {
-  return traceLineIn(setup.space(), setup, index, tally, out);
+  traceLineIn(setup.space(), setup, index, tally, out);
 }
 
-bool traceLineByNanoVDB(const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
+void traceLineByNanoVDB(const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
 {
-  return traceLineIn(setup.nanoSpace(), setup, index, tally, out);
+  traceLineIn(setup.nanoSpace(), setup, index, tally, out);
+}
+
+bool runsOnDevice(const TraceSettings& settings)
+{
+  if (settings.march == March::NanoVDB)
+  {
+    if (settings.device == Device::Cuda)
+    {
+      throw Error("the march through the NanoVDB grid runs on the CPU only: choose the region cache, or the CPU");
+    }
+    return false;
+  }
+  return chooseDevice(settings.device).cuda;
 }
 
 } // namespace
@@ -98,16 +110,21 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
 {
   const Progress preparing = progress ? Progress([&](double f) { return progress(0.3 * f); }) : Progress{};
   const TraceSetup setup(scene, lines, settings, targets, preparing);
+  const Progress tracing = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
   TracedLines out;
   out.lineCount = int(lines.size());
   out.binMm = settings.radialBinMm;
-  out.binCount = int(std::ceil(settings.depthMm / settings.radialBinMm - 1e-9));
+  out.binCount = settings.binCount();
   out.echoSampleMm = settings.echoSampleMm;
-  out.echoCount = int(std::floor(settings.depthMm / settings.echoSampleMm)) + 1;
+  out.echoCount = settings.echoCount();
   if (double(out.lineCount) * out.echoCount > 5e8)
   {
     throw Error("the number of scan lines is " + std::to_string(out.lineCount) +
                 ": at this depth and sampling their samples do not fit; use fewer lines or a lower sampling frequency");
+  }
+  if (runsOnDevice(settings))
+  {
+    return traceOnDevice(setup, settings, tracing);
   }
   out.intensity.assign(std::size_t(out.lineCount) * out.binCount, 0.0f);
   out.standardError.assign(out.intensity.size(), 0.0f);
@@ -117,20 +134,16 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     return LineTally(out.binCount, out.binMm, out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);
   });
-  std::atomic<bool> anyEnters{ false };
-  const Progress tracing = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
   parallelFor(out.lineCount, tracing, [&](int i) {
-    const bool enters = settings.march == March::NanoVDB ? traceLineByNanoVDB(setup, i, tallies.local(), out)
-                                                         : traceLine(setup, i, tallies.local(), out);
-    if (enters)
+    if (settings.march == March::NanoVDB)
     {
-      anyEnters = true;
+      traceLineByNanoVDB(setup, i, tallies.local(), out);
+    }
+    else
+    {
+      traceLine(setup, i, tallies.local(), out);
     }
   });
-  if (!anyEnters)
-  {
-    throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
-  }
   for (const LineTally& tally : tallies)
   {
     out.segments += tally.segments();

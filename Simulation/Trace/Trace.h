@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Device.h"
 #include "Kernel/Interface.h"
 #include "Probe/ScanGeometry.h"
 #include "Progress.h"
@@ -23,11 +24,12 @@ enum class Sampling
 enum class March
 {
   RegionCache, ///< dense cells of what the fan reaches, with a skip map: fast
-  NanoVDB      ///< the scene's label grid itself: the reference, several times slower
+  NanoVDB      ///< the scene's label grid itself: the reference, several times slower, on the CPU only
 };
 
 struct TraceSettings
 {
+  Device device = Device::Auto;
   March march = March::RegionCache;
   InterfaceModel model = InterfaceModel::Acoustic;
   Sampling sampling = Sampling::LowDiscrepancy;
@@ -46,9 +48,14 @@ struct TraceSettings
   double echoSampleMm = 0.0154;   ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   double rouletteDb = -100.0;     ///< paths fainter than this (20 log10 of the intensity) play Russian roulette, <= 0
   std::uint64_t seed = 1;
+  double travelMm = 0.0; ///< 0 to 1000; for a probe on its way: what is prepared of the scene reaches so much further
+                         ///< that the next poses need nothing new. The last digits then depend on the way there
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
+  /// Samples of the intensity and of the boundary echoes along a line.
+  int binCount() const;
+  int echoCount() const;
 };
 
 /// What the tracer gives: for each line and radial bin the mean one-way intensity (1 at the transducer) and its
@@ -70,7 +77,8 @@ struct TracedLines
 /// Speed of sound that turns depth into time, as a scanner assumes it, mm per microsecond.
 constexpr double assumedSoundSpeedMmPerUs = 1.54;
 
-/// Traces every line on the CPU. The result depends on the arguments alone, to the bit, not on the threads.
+/// Traces every line. The result depends on the arguments and the device alone, to the bit, not on the threads; CPU and
+/// GPU differ by rounding.
 /// Throws Error when no line meets the volume or a target is not closed, Aborted when asked to stop.
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});

@@ -1,6 +1,7 @@
 #include "Trace/TraceSetup.h"
 
 #include "Kernel/NanoSpace.h"
+#include "Kernel/TracePath.h"
 #include "Require.h"
 #include "Scene/NanoGridStorage.h"
 
@@ -83,7 +84,18 @@ void TraceSettings::validate() const
   requireInRange(depthMm / radialBinMm <= 1e5, "radial bin (mm)", radialBinMm, "at least 1/100,000 of the depth");
   requireInRange(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
                  "more than 0 and at least a millionth of the depth");
+  requireInRange(travelMm >= 0.0 && travelMm <= 1000.0, "travel (mm)", travelMm, "0 to 1000");
   requireInRange(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
+}
+
+int TraceSettings::binCount() const
+{
+  return int(std::ceil(depthMm / radialBinMm - 1e-9));
+}
+
+int TraceSettings::echoCount() const
+{
+  return int(std::floor(depthMm / echoSampleMm)) + 1;
 }
 
 TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,
@@ -94,7 +106,9 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   {
     throw Error("the probe has no scan lines: set the number of lines to 1 or more");
   }
-  region = scene.traceRegion(reach(scene, worldLines, settings.depthMm), progress);
+  const VoxelBox box = reach(scene, worldLines, settings.depthMm);
+  region = settings.travelMm > 0.0 ? scene.traceRegionAround(box, settings.travelMm, progress)
+                                   : scene.traceRegion(box, progress);
   const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
   cornerWorldMm = scene.worldFromLocal(corner);
   const Mat3d toLocal = scene.rotationToLocal();
@@ -119,6 +133,13 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   for (const ScanLine& line : worldLines)
   {
     lines.push_back({ Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) });
+  }
+  const CellSpace<NoTargets> cells{ region->view(), {} };
+  PathState path;
+  if (std::none_of(lines.begin(), lines.end(),
+                   [&](const TraceLine& line) { return enterSpace(cells, line, view.depthMm, path); }))
+  {
+    throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
   }
   paths = settings.deterministic ? 1 : settings.pathsPerLine;
 }

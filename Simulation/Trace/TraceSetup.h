@@ -2,6 +2,7 @@
 
 #include "Kernel/CellSpace.h"
 #include "Kernel/TraceView.h"
+#include "Trace/PathBatches.h"
 #include "Trace/Trace.h"
 
 #include <memory>
@@ -33,18 +34,5 @@ struct TraceSetup
   Vec3d cornerWorldMm;
   int paths;
 };
-
-/// Paths of a line are traced in this many batches at most; the spread of their means gives the standard error.
-constexpr int batchCount = 8;
-
-struct PathRange
-{
-  int first;
-  int last;
-};
-inline PathRange batchRange(int paths, int batches, int batch)
-{
-  return { int(std::int64_t(paths) * batch / batches), int(std::int64_t(paths) * (batch + 1) / batches) };
-}
 
 } // namespace sono

@@ -3,15 +3,17 @@
 #include "Labels/AssignTissues.h"
 #include "Progress.h"
 
+#include <cstdlib>
 #include <string>
 #include <utility>
 
-namespace sono
-{
+namespace sono {
 
 std::unique_ptr<Scene> makePhantomScene(LabelVolume volume)
 {
-  const std::string data = SONOVDB_DATA_DIR;
+  // The variable is for programs that are carried to another machine.
+  const char* carried = std::getenv("SONOVDB_DATA_DIR");
+  const std::string data = carried ? carried : SONOVDB_DATA_DIR;
   const TissueTable table = TissueTable::read(data + "/tissues.csv");
   const LabelTissueMap map = LabelTissueMap::read(data + "/label_tissues.csv");
   const auto unmatched = assignTissues(volume, map, table, "air");

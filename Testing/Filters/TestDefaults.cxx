@@ -7,6 +7,8 @@
 #include "Labels/BodyFill.h"
 #include "Probe/ArrayAperture.h"
 #include "Probe/ScanGeometry.h"
+#include "Scene/CalibrationPhantom.h"
+#include "Scene/TestObjects.h"
 #include "Trace/Trace.h"
 
 #include "vtkDataArray.h"
@@ -15,6 +17,7 @@
 #include "vtkNew.h"
 #include "vtkSonoBMode.h"
 #include "vtkSonoImageFormation.h"
+#include "vtkSonoPhantomSource.h"
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoPulseEchoField.h"
 #include "vtkSonoRayTracer.h"
@@ -31,10 +34,11 @@ constexpr double degrees = 57.29577951308232;
 
 TEST(FilterDefaults, RayTracerEqualsTraceSettings)
 {
-  const auto [march, model, sampling, pathsPerLine, maxCollisions, coherenceMm, deterministic, lobeMeanRad,
+  const auto [device, march, model, sampling, pathsPerLine, maxCollisions, coherenceMm, deterministic, lobeMeanRad,
               lobeSigmaRad, lobeMinRad, lobeMaxRad, frequencyMHz, depthMm, radialBinMm, echoSampleMm, rouletteDb,
-              seed] = sono::TraceSettings();
+              seed, travelMm] = sono::TraceSettings();
   vtkNew<vtkSonoRayTracer> tracer;
+  EXPECT_EQ(tracer->GetDevice(), static_cast<int>(device));
   EXPECT_EQ(tracer->GetInterfaceModel(), static_cast<int>(model));
   EXPECT_EQ(tracer->GetSampling(), static_cast<int>(sampling));
   EXPECT_EQ(tracer->GetPathsPerLine(), pathsPerLine);
@@ -53,15 +57,17 @@ TEST(FilterDefaults, RayTracerEqualsTraceSettings)
   // The probe sets these two.
   EXPECT_EQ(vtkNew<vtkSonoProbeSource>()->GetCentreFrequencyMHz(), frequencyMHz);
   EXPECT_EQ(vtkNew<vtkSonoProbeSource>()->GetDepthMm(), depthMm);
+  EXPECT_EQ(travelMm, 0.0); // the probe says when it is on its way
   // The filter offers no choice of the march: both give the same image, and this is the fast one.
   EXPECT_EQ(march, sono::March::RegionCache);
 }
 
 TEST(FilterDefaults, ImageFormationEqualsEchoSettings)
 {
-  const auto [centreFrequencyMHz, fractionalBandwidth, samplingMHz, depthMm, lateralSigmaMm, elevationalSigmaMm, field,
-              pulse, scattererCellMm, scattererLevelDb, seed] = sono::EchoSettings();
+  const auto [device, centreFrequencyMHz, fractionalBandwidth, samplingMHz, depthMm, lateralSigmaMm, elevationalSigmaMm,
+              field, pulse, scattererCellMm, scattererLevelDb, seed] = sono::EchoSettings();
   vtkNew<vtkSonoImageFormation> formation;
+  EXPECT_EQ(formation->GetDevice(), static_cast<int>(device));
   EXPECT_EQ(formation->GetLateralSigmaMm(), lateralSigmaMm);
   EXPECT_EQ(formation->GetElevationalSigmaMm(), elevationalSigmaMm);
   EXPECT_EQ(formation->GetScattererCellMm(), scattererCellMm);
@@ -143,6 +149,20 @@ TEST(FilterDefaults, SceneBuilderEqualsBodyFillSettings)
   EXPECT_EQ(builder->GetWallMm(), wallMm);
   EXPECT_EQ(builder->GetSkinMm(), skinMm);
   EXPECT_FALSE(builder->GetFillBody());
+}
+
+TEST(FilterDefaults, PhantomSourceEqualsItsSettings)
+{
+  vtkNew<vtkSonoPhantomSource> source;
+  const auto [spacingMm, thicknessMm, viewPitchMm, wiresAsVoxels] = sono::CalibrationPhantomSettings();
+  EXPECT_EQ(source->GetSpacingMm(), spacingMm);
+  EXPECT_EQ(source->GetThicknessMm(), thicknessMm);
+  EXPECT_EQ(source->GetViewPitchMm(), viewPitchMm);
+  EXPECT_EQ(source->GetWiresAsVoxels(), wiresAsVoxels);
+  const auto [objectSpacingMm, diameterMm, depthMm] = sono::TestObjectSettings();
+  EXPECT_EQ(source->GetSpacingMm(), objectSpacingMm);
+  EXPECT_EQ(source->GetSphereDiameterMm(), diameterMm);
+  EXPECT_EQ(source->GetSphereDepthMm(), depthMm);
 }
 
 /// The probe's own numbers are rounded; half a millimetre further out would be outside the skin.

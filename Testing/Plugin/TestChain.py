@@ -5,7 +5,8 @@ import sys
 import tempfile
 import unittest
 
-from paraview import simple
+import numpy
+from paraview import simple, smtrace
 from paraview.servermanager import Fetch
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -32,21 +33,35 @@ def grey(picture):
     return vtk_to_numpy(Fetch(picture).GetPointData().GetArray("BMode")).copy()
 
 
-def errors_of(proxy, **settings):
-    """What a stage complains about while it gets these settings and runs."""
+def said_by(proxy, event, **settings):
+    """What a stage says while it gets these settings and runs."""
     heard = []
 
-    def on_error(_object, _event, text):
+    def on_event(_object, _event, text):
         heard.append(text)
 
-    on_error.CallDataType = "string0"
+    on_event.CallDataType = "string0"
     stage = proxy.GetClientSideObject()
-    tag = stage.AddObserver("ErrorEvent", on_error)
+    tag = stage.AddObserver(event, on_event)
     for name, value in settings.items():
         setattr(proxy, name, value)
     proxy.UpdatePipeline()
     stage.RemoveObserver(tag)
     return heard
+
+
+def errors_of(proxy, **settings):
+    return said_by(proxy, "ErrorEvent", **settings)
+
+
+def place_in(organ, labels):
+    """A voxel's centre in the world that is deep in a label of an image without rotation."""
+    field = labels.GetFieldData()
+    names, ids = field.GetAbstractArray("LabelNames"), field.GetArray("LabelIds")
+    (label,) = (ids.GetTuple1(i) for i in range(ids.GetNumberOfTuples()) if names.GetValue(i) == organ)
+    inside = numpy.flatnonzero(vtk_to_numpy(labels.GetPointData().GetScalars()) == label)
+    places = numpy.array([labels.GetPoint(int(i)) for i in inside])
+    return list(places[numpy.argmin(numpy.linalg.norm(places - places.mean(axis=0), axis=1))])
 
 
 class TestChain(unittest.TestCase):
@@ -156,6 +171,64 @@ class TestChain(unittest.TestCase):
         probe.Positionmm, probe.AxialDirection, probe.LateralDirection = (1e4, 0, 0), (1, 0, 0), (0, 1, 0)
         (sentence,) = errors_of(simple.FindSource("traced"))
         self.assertIn("probe", sentence)
+
+    def test_pose_is_kept_in_state_files_and_traces(self):
+        make_chain()
+        pose = {"Positionmm": [120.5, -30.25, 17], "AxialDirection": [-1, 0, 0], "LateralDirection": [0, 0.6, 0.8],
+                "Depthmm": 75}
+
+        def check():
+            for name, value in pose.items():
+                found = getattr(simple.FindSource("probe"), name)
+                self.assertEqual(found if name == "Depthmm" else list(found), value)
+
+        smtrace.start_trace()
+        modified = smtrace.PropertiesModified(simple.FindSource("probe"))  # as Apply and the probe's panel do
+        for name, value in pose.items():
+            setattr(simple.FindSource("probe"), name, value)
+        modified.finalize()
+        trace = smtrace.stop_trace()
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "chain.pvsm"))
+            simple.SaveState(path)
+            self.tearDown()
+            simple.LoadState(path)
+        check()
+        self.tearDown()
+        make_chain()
+        exec(trace, {})
+        check()
+
+    def test_moving_probe_has_a_coarse_picture_of_the_same_size(self):
+        fine = grey(make_chain())
+        probe = simple.FindSource("probe")
+        probe.Preview = 1
+        coarse = grey(simple.FindSource("picture"))
+        self.assertEqual(coarse.shape, fine.shape)
+        self.assertFalse((coarse == fine).all())
+        self.assertGreater(coarse.max(), 200)
+        probe.Preview = 0
+        self.assertTrue((grey(simple.FindSource("picture")) == fine).all())  # nothing of the movement stays
+
+    def test_probe_in_a_place_where_it_hears_nothing(self):
+        make_chain()
+        traced, posed = simple.FindSource("traced"), simple.FindSource("probe")
+        on_skin, axial = list(posed.Positionmm), list(posed.AxialDirection)
+
+        def warnings_at(position):
+            posed.Positionmm = position
+            return said_by(traced, "WarningEvent")
+
+        self.assertEqual(warnings_at(on_skin), [])
+        (sentence,) = warnings_at([p - 60 * a for p, a in zip(on_skin, axial)])
+        self.assertIn("mm off the body", sentence)
+        for organ in ("sternum", "lung_left"):
+            (sentence,) = warnings_at(place_in(organ, Fetch(simple.FindSource("thorax"))))
+            self.assertIn(f"inside '{organ}'", sentence)
+            self.assertIn("move the probe onto the skin", sentence)
+            posed.Preview = 1
+            self.assertEqual(said_by(traced, "WarningEvent"), [])  # not at every step of the way
+            posed.Preview = 0
 
     def test_zero_sized_image(self):
         wavelet = simple.Wavelet()

@@ -1,5 +1,5 @@
 #include "Image/BMode.h"
-#include "Image/PixelMath.h"
+#include "Kernel/PixelMath.h"
 #include "ImageTestTools.h"
 
 #include <gtest/gtest.h>

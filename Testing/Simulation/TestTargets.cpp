@@ -1,3 +1,4 @@
+#include "TargetScenes.h"
 #include "TestScenes.h"
 
 #include "Trace/TargetBvh.h"
@@ -13,19 +14,6 @@ namespace {
 
 using namespace sono;
 using namespace sono::test;
-
-/// A closed box.
-TargetSurface makeBox(const std::string& name, const Tissue& tissue, const Vec3d& low, const Vec3d& high)
-{
-  TargetSurface box{ name, tissue, {}, {} };
-  for (int i = 0; i < 8; ++i)
-  {
-    box.pointsMm.push_back({ i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z });
-  }
-  box.triangles = { { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 }, { 4, 7, 6 }, { 0, 1, 5 }, { 0, 5, 4 },
-                    { 2, 6, 7 }, { 2, 7, 3 }, { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 } };
-  return box;
-}
 
 const std::vector<Tissue> tissues = { makeTissue("muscle", 1.7, 1580, 0.8), makeTissue("fat", 1.38, 1450, 0.6),
                                       makeTissue("blood", 1.61, 1570, 0.2) };

@@ -1,5 +1,5 @@
 #include "ErrorText.h"
-#include "Image/PixelMath.h"
+#include "Kernel/PixelMath.h"
 #include "Image/ScanConvert.h"
 #include "Image/ScanConvertVolume.h"
 #include "Probe/ScanGeometry.h"

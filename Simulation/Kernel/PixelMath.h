@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Kernel/HostDevice.h"
+
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -9,14 +11,14 @@
 namespace sono {
 
 /// 20 log10(x) of a finite normal x > 0: to 3e-5 dB within +-120 dB, to 1e-4 dB at the ends of the float range.
-inline float fastDecibels(float x)
+SONO_HD inline float fastDecibels(float x)
 {
   std::uint32_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
+  memcpy(&bits, &x, sizeof bits);
   const auto exponent = static_cast<float>(static_cast<std::int32_t>(bits >> 23) - 127);
   const std::uint32_t mantissaBits = (bits & 0x007fffffu) | 0x3f800000u;
   float mantissa;
-  std::memcpy(&mantissa, &mantissaBits, sizeof mantissa);
+  memcpy(&mantissa, &mantissaBits, sizeof mantissa);
 
   // log2(1 + t) on [0, 1), error 2.2e-6
   const float t = mantissa - 1.0f;
@@ -27,9 +29,9 @@ inline float fastDecibels(float x)
 }
 
 /// atan2(y, x) for x >= 0 and not both zero, to 2e-7 rad.
-inline float fastAtan2RightHalf(float y, float x)
+SONO_HD inline float fastAtan2RightHalf(float y, float x)
 {
-  const float a = std::abs(y);
+  const float a = fabsf(y);
   const float larger = a > x ? a : x;
   const float smaller = a > x ? x : a;
   const float t = smaller / larger;
@@ -49,10 +51,10 @@ inline float fastAtan2RightHalf(float y, float x)
 }
 
 /// atan2(y, x) in [-pi, pi] for x and y not both zero, to 4e-7 rad.
-inline float fastAtan2(float y, float x)
+SONO_HD inline float fastAtan2(float y, float x)
 {
   constexpr float pi = 3.14159265f;
-  const float right = fastAtan2RightHalf(y, std::abs(x));
+  const float right = fastAtan2RightHalf(y, fabsf(x));
   const float left = (y < 0.0f ? -pi : pi) - right;
   return x < 0.0f ? left : right;
 }

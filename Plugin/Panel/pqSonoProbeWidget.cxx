@@ -1,0 +1,426 @@
+#include "pqSonoProbeWidget.h"
+
+#include "vtkSonoProbeRepresentation.h"
+#include "vtkSonoSkin.h"
+
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqDataRepresentation.h"
+#include "pqDoubleLineEdit.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
+#include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
+#include "pqView.h"
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMPropertyGroup.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSession.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
+#include "vtkSMUncheckedPropertyHelper.h"
+
+#include <QCheckBox>
+#include <QCoreApplication>
+#include <QDoubleSpinBox>
+#include <QGridLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QToolButton>
+
+namespace {
+
+constexpr int restMs = 300;
+const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
+const char* const layoutProperties[] = { "PresetFile", "ScanKind", "LineCount",          "SectorDeg",
+                                         "RadiusMm",   "WidthMm",  "ElevationLineCount", "ElevationSectorDeg" };
+
+/// The group and, so that the widget follows them, the properties that lay out the scan lines.
+vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyGroup* group)
+{
+  auto all = vtkSmartPointer<vtkSMPropertyGroup>::New();
+  for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
+  {
+    vtkSMProperty* property = group->GetProperty(i);
+    all->AddProperty(group->GetFunction(property), property, group->GetPropertyName(i));
+  }
+  for (const char* name : layoutProperties)
+  {
+    if (vtkSMProperty* property = proxy->GetProperty(name))
+    {
+      all->AddProperty(name, property, name);
+    }
+  }
+  return all;
+}
+
+} // namespace
+
+pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
+  : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, withLayout(smproxy, group), parentObject)
+{
+  auto* grid = new QGridLayout(this);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setHorizontalSpacing(4);
+  grid->setVerticalSpacing(4);
+  for (const char* function : poseFunctions)
+  {
+    this->addRow(grid, function);
+  }
+
+  const int row = grid->rowCount();
+  this->Step = new QDoubleSpinBox(this);
+  this->Step->setObjectName("Step");
+  this->Step->setRange(0.1, 90.0);
+  this->Step->setDecimals(1);
+  this->Step->setValue(5.0);
+  this->Step->setSuffix(" degrees");
+  this->Step->setToolTip(tr("How far one click on a button below turns the probe, 0.1 to 90 degrees."));
+  grid->addWidget(new QLabel(tr("Turn by"), this), row, 0);
+  grid->addWidget(this->Step, row, 1, 1, 3);
+  this->addTurn(grid, row + 1, tr("Rotate"),
+                tr("About the probe's axis. In the view: drag the yellow ring, or Ctrl + left, right."),
+                &vtkSonoProbeRepresentation::Rotate);
+  this->addTurn(grid, row + 2, tr("Tilt"),
+                tr("Out of the image plane. In the view: drag the green ball, or Shift + up, down."),
+                &vtkSonoProbeRepresentation::Tilt);
+  this->addTurn(grid, row + 3, tr("Rock"),
+                tr("In the image plane. In the view: drag the blue ball, or Shift + left, right."),
+                &vtkSonoProbeRepresentation::Rock);
+
+  auto* snapButton = new QPushButton(tr("Snap to Skin"), this);
+  snapButton->setObjectName("SnapToSkin");
+  snapButton->setToolTip(tr("Puts the face on the outermost surface along the probe's axis and looks straight in."));
+  this->connect(snapButton, SIGNAL(clicked()), SLOT(snap()));
+  auto* resetButton = new QPushButton(tr("Reset"), this);
+  resetButton->setObjectName("ResetPose");
+  resetButton->setToolTip(tr("The default pose: the apical four-chamber view of the Thorax Phantom."));
+  this->connect(resetButton, SIGNAL(clicked()), SLOT(resetPose()));
+  grid->addWidget(snapButton, row + 4, 0, 1, 2);
+  grid->addWidget(resetButton, row + 4, 2, 1, 2);
+
+  auto* show = new QCheckBox(tr("Show Probe"), this);
+  show->setObjectName("ShowProbe");
+  show->setChecked(true);
+  show->setToolTip(tr(
+    "Shows the transducer in the view. Drag it along the skin; its balls and its ring turn it; the violet ball at the "
+    "far end of the fan sets the depth. While the pointer is over it, the arrow keys walk by 1 mm, with Shift they "
+    "rock and tilt, with Ctrl they rotate and change the depth."));
+  this->Live = new QCheckBox(tr("Live"), this);
+  this->Live->setObjectName("Live");
+  this->Live->setChecked(true);
+  this->Live->setToolTip(
+    tr("Scans while the probe moves: coarse at first, in full quality when it rests. Off: as it stands on Apply."));
+  grid->addWidget(show, row + 5, 0, 1, 2);
+  grid->addWidget(this->Live, row + 5, 2, 1, 2);
+  this->Message = new QLabel(this);
+  this->Message->setObjectName("Message");
+  this->Message->setWordWrap(true);
+  this->Message->hide();
+  grid->addWidget(this->Message, row + 6, 0, 1, 4);
+
+  this->connect(show, SIGNAL(toggled(bool)), SLOT(setWidgetVisible(bool)));
+  show->connect(this, SIGNAL(widgetVisibilityToggled(bool)), SLOT(setChecked(bool)));
+  this->setWidgetVisible(show->isChecked());
+
+  this->Frame.setSingleShot(true);
+  this->Frame.setInterval(0);
+  this->connect(&this->Frame, SIGNAL(timeout()), SLOT(showMoving()));
+  this->Rest.setSingleShot(true);
+  this->Rest.setInterval(restMs);
+  this->connect(&this->Rest, SIGNAL(timeout()), SLOT(rest()));
+  this->connect(this, SIGNAL(startInteraction()), SLOT(start()));
+  this->connect(this, SIGNAL(interaction()), SLOT(move()));
+  this->connect(this, &pqInteractivePropertyWidget::endInteraction, this, [this] { this->finish(); });
+  this->connect(pqApplicationCore::instance()->getServerManagerModel(), SIGNAL(preSourceRemoved(pqPipelineSource*)),
+                SLOT(forget(pqPipelineSource*)));
+}
+
+pqSonoProbeWidget::~pqSonoProbeWidget() = default;
+
+void pqSonoProbeWidget::addRow(QGridLayout* grid, const char* function)
+{
+  vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function);
+  if (!smproperty)
+  {
+    return;
+  }
+  const int row = grid->rowCount();
+  auto* label = new QLabel(QCoreApplication::translate("ServerManagerXML", smproperty->GetXMLLabel()), this);
+  grid->addWidget(label, row, 0);
+  const int count = static_cast<int>(vtkSMPropertyHelper(smproperty).GetNumberOfElements());
+  for (int i = 0; i < count; ++i)
+  {
+    auto* edit = new pqDoubleLineEdit(this);
+    edit->setObjectName(count > 1 ? QString("%1_%2").arg(function).arg(i) : function);
+    edit->setToolTip(pqPropertyWidget::getTooltip(smproperty));
+    label->setToolTip(edit->toolTip());
+    this->addPropertyLink(edit, "text2", SIGNAL(textChangedAndEditingFinished()), smproperty, i);
+    grid->addWidget(edit, row, i + 1, 1, count > 1 ? 1 : 3);
+  }
+}
+
+void pqSonoProbeWidget::addTurn(QGridLayout* grid, int row, const QString& name, const QString& toolTip,
+                                void (vtkSonoProbeRepresentation::*turn)(double))
+{
+  grid->addWidget(new QLabel(name, this), row, 0);
+  for (const int sign : { -1, 1 })
+  {
+    auto* button = new QToolButton(this);
+    button->setObjectName(name + (sign < 0 ? "Minus" : "Plus"));
+    button->setText(sign < 0 ? QString(QChar(0x2212)) : "+");
+    button->setToolTip(toolTip);
+    button->setAutoRepeat(true);
+    button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    grid->addWidget(button, row, sign < 0 ? 1 : 2);
+    this->connect(button, &QToolButton::clicked, this, [this, sign, turn] {
+      this->start();
+      (this->probe()->*turn)(sign * this->Step->value());
+      this->takePose();
+    });
+  }
+}
+
+vtkSonoProbeRepresentation* pqSonoProbeWidget::probe() const
+{
+  return vtkSonoProbeRepresentation::SafeDownCast(this->widgetProxy()->GetRepresentationProxy()->GetClientSideObject());
+}
+
+bool pqSonoProbeWidget::isLive() const
+{
+  auto* source = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(this->proxy());
+  // What was never applied has nothing to show yet.
+  return this->Live->isChecked() && source && source->modifiedState() != pqProxy::UNINITIALIZED;
+}
+
+void pqSonoProbeWidget::start()
+{
+  this->findSkin();
+  if (!this->Moving)
+  {
+    auto* source = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(this->proxy());
+    this->WasApplied = source && source->modifiedState() == pqProxy::UNMODIFIED;
+    this->PoseBefore.clear();
+    for (const char* function : poseFunctions)
+    {
+      if (vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function))
+      {
+        const std::vector<double> values = vtkSMPropertyHelper(smproperty).GetDoubleArray();
+        this->PoseBefore.append({ function, QVector<double>(values.begin(), values.end()) });
+      }
+    }
+    this->Moving = true;
+  }
+  this->Rest.stop();
+}
+
+void pqSonoProbeWidget::move()
+{
+  this->showMessage();
+  if (this->isLive() && !this->Frame.isActive())
+  {
+    this->Frame.start();
+  }
+}
+
+void pqSonoProbeWidget::finish()
+{
+  this->showMessage();
+  this->Rest.start();
+}
+
+void pqSonoProbeWidget::takePose()
+{
+  vtkSonoProbeRepresentation* moved = this->probe();
+  vtkSMProxy* widget = this->widgetProxy();
+  vtkSMPropertyHelper(widget, "PositionMm").Set(moved->GetPositionMm(), 3);
+  vtkSMPropertyHelper(widget, "Axial").Set(moved->GetAxial(), 3);
+  vtkSMPropertyHelper(widget, "Lateral").Set(moved->GetLateral(), 3);
+  widget->UpdateVTKObjects();
+  Q_EMIT this->changeAvailable();
+  this->render();
+  this->move();
+  this->finish();
+}
+
+void pqSonoProbeWidget::snap()
+{
+  this->start();
+  this->probe()->SnapToSkin();
+  this->takePose();
+}
+
+void pqSonoProbeWidget::resetPose()
+{
+  this->start();
+  for (const char* function : poseFunctions)
+  {
+    vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function);
+    vtkSMProperty* ofWidget = this->widgetProxy()->GetProperty(function);
+    if (smproperty && ofWidget && function != QString("DepthMm"))
+    {
+      ofWidget->ResetToXMLDefaults();
+    }
+  }
+  this->widgetProxy()->UpdateVTKObjects();
+  Q_EMIT this->changeAvailable();
+  this->render();
+  this->move();
+  this->finish();
+}
+
+void pqSonoProbeWidget::showMessage()
+{
+  const QString message = this->probe()->GetMessage();
+  this->Message->setText(message);
+  this->Message->setVisible(!message.isEmpty());
+}
+
+QList<QPair<QString, QVector<double>>> pqSonoProbeWidget::pose() const
+{
+  QList<QPair<QString, QVector<double>>> values;
+  for (const auto& [function, before] : this->PoseBefore)
+  {
+    const std::vector<double> now = vtkSMPropertyHelper(this->widgetProxy(), function.toUtf8().data()).GetDoubleArray();
+    values.append({ function, QVector<double>(now.begin(), now.end()) });
+  }
+  return values;
+}
+
+void pqSonoProbeWidget::push(const QList<QPair<QString, QVector<double>>>& values, bool preview)
+{
+  for (const auto& [function, numbers] : values)
+  {
+    vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function.toUtf8().data());
+    vtkSMPropertyHelper(smproperty).Set(numbers.data(), static_cast<unsigned int>(numbers.size()));
+  }
+  vtkSMPropertyHelper(this->proxy(), "Preview", true).Set(preview ? 1 : 0);
+  this->proxy()->UpdateVTKObjects();
+}
+
+void pqSonoProbeWidget::showMoving()
+{
+  if (!this->isLive() || !this->Moving)
+  {
+    return;
+  }
+  if (this->proxy()->GetSession()->GetPendingProgress())
+  {
+    this->Frame.start(); // not while something runs
+    return;
+  }
+  {
+    SCOPED_UNDO_EXCLUDE();
+    this->push(this->pose(), true);
+  }
+  for (pqView* shown : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>())
+  {
+    if (shown->widget()->isVisible())
+    {
+      shown->forceRender(); // an interactive one would not run the pipeline
+    }
+  }
+}
+
+void pqSonoProbeWidget::rest()
+{
+  if (!this->Moving)
+  {
+    return;
+  }
+  if (this->proxy()->GetSession()->GetPendingProgress())
+  {
+    this->Rest.start();
+    return;
+  }
+  this->Frame.stop();
+  this->Moving = false;
+  if (!this->isLive())
+  {
+    return;
+  }
+  const auto after = this->pose();
+  {
+    // So that undo finds the pose before the movement, not one on the way.
+    SCOPED_UNDO_EXCLUDE();
+    this->push(this->PoseBefore, false);
+  }
+  auto* panel = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
+  if (panel && this->WasApplied)
+  {
+    // As if the new pose had been typed and applied.
+    for (const auto& [function, numbers] : after)
+    {
+      vtkSMPropertyHelper(this->widgetProxy(), function.toUtf8().data())
+        .Set(numbers.data(), static_cast<unsigned int>(numbers.size()));
+    }
+    this->widgetProxy()->UpdateVTKObjects();
+    Q_EMIT this->changeAvailable();
+    panel->apply();
+    return;
+  }
+  {
+    // Something else waits for Apply and goes on waiting.
+    SCOPED_UNDO_SET(tr("Move Probe"));
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this->proxy());
+    this->push(after, false);
+  }
+  pqApplicationCore::instance()->render();
+}
+
+void pqSonoProbeWidget::findSkin()
+{
+  vtkNew<vtkMultiBlockDataSet> surfaces;
+  if (this->view())
+  {
+    for (pqRepresentation* each : this->view()->getRepresentations())
+    {
+      auto* shown = qobject_cast<pqDataRepresentation*>(each);
+      pqOutputPort* port = shown && shown->isVisible() ? shown->getOutputPortFromInput() : nullptr;
+      if (port && port->getSource()->getProxy() != this->proxy())
+      {
+        surfaces->SetBlock(surfaces->GetNumberOfBlocks(),
+                           this->fetch(port->getSource()->getProxy(), port->getPortNumber()));
+      }
+    }
+  }
+  this->probe()->GetSkin()->SetSurfaces(surfaces);
+}
+
+vtkDataObject* pqSonoProbeWidget::fetch(vtkSMProxy* source, int port)
+{
+  auto* producer = vtkSMSourceProxy::SafeDownCast(source);
+  vtkPVDataInformation* about = producer->GetDataInformation(static_cast<unsigned int>(port));
+  const bool isSurface = about->DataSetTypeIsA("vtkPolyData") || about->DataSetTypeIsA("vtkCompositeDataSet");
+  if (!isSurface)
+  {
+    return nullptr;
+  }
+  auto& fetcher = this->Fetchers[qMakePair(source, port)];
+  if (!fetcher)
+  {
+    // From a remote server, too; it runs again only when the data have changed.
+    fetcher.TakeReference(source->GetSessionProxyManager()->NewProxy("filters", "ClientServerMoveData"));
+    vtkSMPropertyHelper(fetcher, "Input").Set(source, static_cast<unsigned int>(port));
+  }
+  const bool isComposite = about->GetCompositeDataSetType() > 0;
+  vtkSMPropertyHelper(fetcher, "OutputDataType")
+    .Set(isComposite ? about->GetCompositeDataSetType() : about->GetDataSetType());
+  fetcher->UpdateVTKObjects();
+  vtkSMSourceProxy::SafeDownCast(fetcher)->UpdatePipeline();
+  return vtkAlgorithm::SafeDownCast(fetcher->GetClientSideObject())->GetOutputDataObject(0);
+}
+
+void pqSonoProbeWidget::forget(pqPipelineSource* source)
+{
+  for (auto each = this->Fetchers.begin(); each != this->Fetchers.end();)
+  {
+    each = each.key().first == source->getProxy() ? this->Fetchers.erase(each) : std::next(each);
+  }
+}

@@ -1,0 +1,83 @@
+#ifndef pqSonoProbeWidget_h
+#define pqSonoProbeWidget_h
+
+#include "pqInteractivePropertyWidget.h"
+
+#include <QMap>
+#include <QPair>
+#include <QTimer>
+
+class QCheckBox;
+class QDoubleSpinBox;
+class QGridLayout;
+class QLabel;
+class pqPipelineSource;
+class vtkDataObject;
+class vtkSMPropertyGroup;
+class vtkSonoProbeRepresentation;
+
+/**
+ * The panel of a probe's pose, with vtkSonoProbeWidget in the view: panel_widget="SonoProbe" of a property group with
+ * the functions PositionMm, Axial and Lateral, and optionally DepthMm. The layout of the scan lines is taken from the
+ * properties of the same proxy that are named as vtkSonoProbeSource's, so that the fan follows them.
+ *
+ * "Live" needs no Apply: while the probe moves, its pose and Preview = 1 go to the proxy and the views show what comes
+ * of it; when it has rested for a moment, the pose is set once more with Preview = 0, as one step of undo and of the
+ * trace.
+ */
+class pqSonoProbeWidget : public pqInteractivePropertyWidget
+{
+  Q_OBJECT
+  typedef pqInteractivePropertyWidget Superclass;
+
+public:
+  pqSonoProbeWidget(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
+  ~pqSonoProbeWidget() override;
+
+  ///@{
+  /// The probe is shown while its source is selected. (ParaView 5.11 hides it with the panel as well, and then forgets
+  /// that it was shown when another source is selected in between.)
+  void hideEvent(QHideEvent*) override {}
+  void showEvent(QShowEvent*) override {}
+  ///@}
+
+protected Q_SLOTS:
+  void placeWidget() override {}
+
+private Q_SLOTS:
+  void start();
+  void move();
+  void showMoving();
+  void rest();
+  void snap();
+  void resetPose();
+  void forget(pqPipelineSource* source);
+
+private:
+  Q_DISABLE_COPY(pqSonoProbeWidget)
+
+  void addRow(QGridLayout* grid, const char* function);
+  void addTurn(QGridLayout* grid, int row, const QString& name, const QString& toolTip,
+               void (vtkSonoProbeRepresentation::*turn)(double));
+  void finish();
+  void takePose();
+  void findSkin();
+  vtkDataObject* fetch(vtkSMProxy* source, int port);
+  vtkSonoProbeRepresentation* probe() const;
+  bool isLive() const;
+  QList<QPair<QString, QVector<double>>> pose() const;
+  void push(const QList<QPair<QString, QVector<double>>>& pose, bool preview);
+  void showMessage();
+
+  QDoubleSpinBox* Step;
+  QCheckBox* Live;
+  QLabel* Message;
+  QTimer Frame; // fires when there is nothing else to do
+  QTimer Rest;
+  bool Moving = false;
+  bool WasApplied = false;
+  QList<QPair<QString, QVector<double>>> PoseBefore;
+  QMap<QPair<vtkSMProxy*, int>, vtkSmartPointer<vtkSMProxy>> Fetchers;
+};
+
+#endif

@@ -1,0 +1,243 @@
+#include "Cuda/DeviceDisplay.cuh"
+
+#include <algorithm>
+
+namespace sono {
+
+namespace {
+
+constexpr int threads = 256;
+
+__global__ void addNoise(float* envelope, std::size_t count, int lines, int samples, float rms, std::uint64_t seed)
+{
+  const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
+  if (i < count)
+  {
+    const std::size_t line = i / samples;
+    envelope[i] = noisyEnvelope(envelope[i], rms, seed, std::uint32_t(line % lines), std::uint32_t(i % samples));
+  }
+}
+
+// The value of a rank is found from its highest bits down: 11, 10 and 10 of the 31 that a non-negative float has. A
+// pass counts the values whose higher bits are those found so far; its last block picks the bin that holds the rank.
+constexpr int passes = 3;
+constexpr int passBits[passes] = { 11, 10, 10 };
+constexpr int passShift[passes] = { 20, 10, 0 };
+constexpr int binCount = 2048;
+
+/// What is known of an image's rank; all zero at first.
+struct RankState
+{
+  std::uint32_t bits;    // found so far
+  std::uint32_t rank;    // from 1, among the values that share them
+  std::uint32_t largest; // bits of the largest value
+  std::uint32_t blocks;  // that have counted in this pass
+  std::uint32_t counts[binCount];
+};
+
+/// By one block: the bin that holds the rank, from a scan over the counts, which are then cleared.
+__device__ void pickBin(RankState& state, std::uint32_t rank, int shift)
+{
+  __shared__ std::uint32_t sums[threads];
+  constexpr int perThread = binCount / threads;
+  std::uint32_t mine[perThread];
+  std::uint32_t own = 0;
+  for (int i = 0; i < perThread; ++i)
+  {
+    std::uint32_t& count = state.counts[threadIdx.x * perThread + i];
+    mine[i] = atomicExch(&count, 0u); // as other blocks left it
+    own += mine[i];
+  }
+  sums[threadIdx.x] = own;
+  __syncthreads();
+  for (int step = 1; step < threads; step *= 2)
+  {
+    const std::uint32_t before = int(threadIdx.x) >= step ? sums[threadIdx.x - step] : 0u;
+    __syncthreads();
+    sums[threadIdx.x] += before;
+    __syncthreads();
+  }
+  std::uint32_t below = sums[threadIdx.x] - own;
+  if (below < rank && rank <= below + own)
+  {
+    int i = 0;
+    while (rank > below + mine[i])
+    {
+      below += mine[i++];
+    }
+    state.bits |= std::uint32_t(threadIdx.x * perThread + i) << shift;
+    state.rank = rank - below;
+  }
+}
+
+/// blockIdx.y is the image. The last pass leaves the reference: the value of the rank where it is an amplitude at all,
+/// else the largest, else 1.
+template<int pass>
+__global__ void __launch_bounds__(threads)
+  findRank(const float* envelope, const float* factor, int samples, std::size_t perImage, std::uint32_t rank,
+           RankState* states, double* reference)
+{
+  __shared__ std::uint32_t counts[binCount];
+  __shared__ std::uint32_t largest;
+  __shared__ bool last;
+  constexpr int shift = passShift[pass];
+  constexpr int bits = passBits[pass];
+  RankState& state = states[blockIdx.y];
+  for (int b = threadIdx.x; b < binCount; b += threads)
+  {
+    counts[b] = 0u;
+  }
+  largest = 0u;
+  __syncthreads();
+  const float* values = envelope + blockIdx.y * perImage;
+  const std::uint32_t prefix = state.bits;
+  std::uint32_t most = 0;
+  for (std::size_t i = blockIdx.x * std::size_t(threads) + threadIdx.x; i < perImage;
+       i += std::size_t(gridDim.x) * threads)
+  {
+    const std::uint32_t v = gainedBits(values[i], factor[i % samples]);
+    most = max(most, v);
+    if (pass == 0 || v >> (shift + bits) == prefix >> (shift + bits))
+    {
+      atomicAdd(counts + ((v >> shift) & ((1u << bits) - 1u)), 1u);
+    }
+  }
+  atomicMax(&largest, most);
+  __syncthreads();
+  for (int b = threadIdx.x; b < binCount; b += threads)
+  {
+    if (counts[b])
+    {
+      atomicAdd(state.counts + b, counts[b]);
+    }
+  }
+  __threadfence();
+  __syncthreads();
+  if (threadIdx.x == 0)
+  {
+    atomicMax(&state.largest, largest);
+    __threadfence();
+    last = atomicAdd(&state.blocks, 1u) == gridDim.x - 1;
+  }
+  __syncthreads();
+  if (!last)
+  {
+    return;
+  }
+  pickBin(state, pass == 0 ? rank : state.rank, shift);
+  __syncthreads();
+  if (threadIdx.x == 0)
+  {
+    state.blocks = 0u;
+    if (pass == passes - 1)
+    {
+      const float value = __uint_as_float(state.bits);
+      const float top = __uint_as_float(atomicMax(&state.largest, 0u));
+      reference[blockIdx.y] =
+        value >= smallestNormalFloat ? double(value) : (top >= smallestNormalFloat ? double(top) : 1.0);
+    }
+  }
+}
+
+__global__ void setReference(double* reference, int images, double value)
+{
+  const int image = blockIdx.x * blockDim.x + threadIdx.x;
+  if (image < images)
+  {
+    reference[image] = value;
+  }
+}
+
+__global__ void compressSamples(const float* envelope, const double* gainDb, const double* reference, int samples,
+                                std::size_t perImage, float rangeDb, float rejectDb, GreyMap map, float* grey)
+{
+  const std::size_t image = blockIdx.y;
+  const double referenceDb = 20.0 * log10(reference[image]);
+  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < perImage;
+       i += std::size_t(gridDim.x) * blockDim.x)
+  {
+    const std::size_t at = image * perImage + i;
+    const float offsetDb = float(gainDb[i % samples] - referenceDb);
+    grey[at] = mapGrey(map, compressedLevel(envelope[at], offsetDb, rangeDb, rejectDb));
+  }
+}
+
+__global__ void fillPixels(PlaneScan scan, const float* grey, std::size_t perImage, float* pixels, std::uint8_t* mask)
+{
+  const int i = blockIdx.x * blockDim.x + threadIdx.x;
+  const int j = blockIdx.y * blockDim.y + threadIdx.y;
+  if (i >= scan.width || j >= scan.height)
+  {
+    return;
+  }
+  const float lateral = scan.lateralMm(i);
+  const float x = scan.beams.axialFromCentre(scan.axialMm(j));
+  const bool parallel = scan.beams.parallel;
+  const float line =
+    parallel ? scan.beams.lineOfParallel(lateral) : scan.beams.lineOfFan(lateral, PlaneBeams::notZero(x));
+  const float depth = parallel ? x - scan.beams.faceRadiusMm : scan.beams.depthInFan(lateral, x);
+  const bool inside = scan.area.contains(line, depth);
+  const std::size_t at = (std::size_t(blockIdx.z) * scan.height + std::size_t(j)) * scan.width + std::size_t(i);
+  pixels[at] = inside ? scan.samples(grey + blockIdx.z * perImage).at(line, depth * scan.samplesPerMm) : 0.0f;
+  mask[at] = inside ? 1 : 0;
+}
+
+} // namespace
+
+void DeviceDisplay::prepare(const ImageJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  settings_ = *job.bmode;
+  factor_.upload(settings_.gainFactor, stream, traffic);
+  gainDb_.upload(settings_.gainDb, stream, traffic);
+  lines_ = job.linesPerImage();
+  samples_ = job.echo->sampleCount;
+  scan_ = job.scan;
+}
+
+void DeviceDisplay::compress(float* envelope, int images, cudaStream_t stream)
+{
+  const std::size_t perImage = std::size_t(lines_) * samples_;
+  const std::size_t count = perImage * images;
+  reference_.resize(images);
+  grey_.resize(count);
+  const int imageBlocks = (images + threads - 1) / threads;
+  if (settings_.noiseRms > 0.0f)
+  {
+    addNoise<<<unsigned((count + threads - 1) / threads), threads, 0, stream>>>(
+      envelope, count, lines_, samples_, settings_.noiseRms, settings_.noiseSeed);
+  }
+  if (settings_.automaticReference)
+  {
+    rank_.resize(sizeof(RankState) * std::size_t(images));
+    rank_.clear(stream);
+    auto* states = reinterpret_cast<RankState*>(rank_.data());
+    const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 4096, 264))), images);
+    const auto rank = std::uint32_t(perImage - perImage / 1000);
+    for (const auto pass : { findRank<0>, findRank<1>, findRank<2> })
+    {
+      pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples_, perImage, rank, states, reference_.data());
+    }
+  }
+  else
+  {
+    setReference<<<imageBlocks, threads, 0, stream>>>(reference_.data(), images, settings_.referenceAmplitude);
+  }
+  const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 1024, 2048))), images);
+  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), reference_.data(), samples_, perImage,
+                                                settings_.rangeDb, settings_.rejectDb, settings_.greyMap, grey_.data());
+  check(cudaGetLastError(), "compressing grey levels");
+}
+
+void DeviceDisplay::convert(int images, cudaStream_t stream)
+{
+  const std::size_t perImage = std::size_t(scan_->width) * scan_->height;
+  pixels_.resize(perImage * images);
+  mask_.resize(perImage * images);
+  const dim3 block(32, 8);
+  const dim3 grid((scan_->width + block.x - 1) / block.x, (scan_->height + block.y - 1) / block.y, images);
+  fillPixels<<<grid, block, 0, stream>>>(*scan_, grey_.data(), std::size_t(lines_) * samples_, pixels_.data(),
+                                         mask_.data());
+  check(cudaGetLastError(), "converting lines into an image");
+}
+
+} // namespace sono

@@ -1,0 +1,657 @@
+#include "Cuda/DeviceEcho.cuh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+constexpr int warpLanes = 32;
+constexpr unsigned allLanes = 0xffffffffu;
+constexpr int blockThreads = 128;
+constexpr int brickCells = 4;          // cells along an edge of a brick of procedural scatterers (see TissueScatterers)
+constexpr float darkIntensity = 1e-8f; // -160 dB
+
+/// What both kinds of scatterers share.
+struct SplatLaunch
+{
+  const Beam* beams;
+  LineGrid grid;
+  float sampleMm;
+  int sumCount;
+  float scale; // of a sum's unit
+  bool hasField;
+  BeamFieldView field;
+  bool hasSight;
+  BeamSightView sight;
+  float lateralMm; // half axes of the ellipse around the axis that holds all that the beam sees
+  float elevationalMm;
+  float perLateralSigma;
+  float perElevationalSigma;
+  float2* sum;
+
+  /// Weight of the beam at a place, 0 where it does not see.
+  __device__ float weight(const BeamPlace& p) const
+  {
+    if (!(p.position >= 0.0f && p.position < grid.lastSample))
+    {
+      return 0.0f;
+    }
+    if (hasField)
+    {
+      return beamWeight(field, p.lateral, p.elevational, fminf(p.position * sampleMm, field.depth.highMm));
+    }
+    const float squared = squaredSigmas(p, perLateralSigma, perElevationalSigma);
+    return squared < beamCutSigma * beamCutSigma ? expNegative(-0.5f * squared) : 0.0f;
+  }
+  __device__ bool sightMeets(const Beam& beam, const Vec3f& centre) const
+  {
+    const Vec3f q = centre - beam.origin;
+    return !hasSight || sight.sees(glm::dot(q, beam.lateral), glm::dot(q, beam.elevation), glm::dot(q, beam.axis));
+  }
+};
+
+struct TissueLaunch
+{
+  SplatLaunch splat;
+  const std::uint8_t* voxels;
+  Vec3i size;
+  Vec3f perMm;
+  Vec3f extentMm;
+  const ScatteringMedium* media; // 256
+  float cellMm;
+  std::uint64_t seed;
+  const float* intensity; // or null
+  int binCount;
+  float binMm;
+};
+
+/// A piece of a line: its samples and the depths that scatterers into them have.
+struct Chunk
+{
+  int line;
+  int first;
+  int count;
+  float fromMm;
+  float toMm;
+
+  __device__ bool holds(const BeamPlace& p) const
+  {
+    return p.position >= float(first - 1) && p.position < float(first + count);
+  }
+};
+
+__device__ Chunk chunkOf(const SplatLaunch& launch)
+{
+  const int first = int(blockIdx.x) * chunkSamples;
+  const int count = min(chunkSamples, launch.sumCount - first);
+  return { int(blockIdx.y), first, count, float(first - 1) * launch.sampleMm, float(first + count) * launch.sampleMm };
+}
+
+/// Writes or adds the chunk's sums.
+template<class Sums>
+__device__ void writeChunk(const SplatLaunch& launch, const Chunk& chunk, const Sums& sums, bool add)
+{
+  float2* to = launch.sum + std::size_t(chunk.line) * launch.sumCount + chunk.first;
+  const float perUnit = 1.0f / launch.scale;
+  for (int s = threadIdx.x; s < chunk.count; s += blockDim.x)
+  {
+    float2 v{ sums.value(2 * s, perUnit), sums.value(2 * s + 1, perUnit) };
+    if (add)
+    {
+      v.x += to[s].x;
+      v.y += to[s].y;
+    }
+    to[s] = v;
+  }
+}
+
+/// Whether any of the paths' intensity reaches a chunk; the last bin's holds below it.
+__device__ bool isLit(const TissueLaunch& launch, const Chunk& chunk)
+{
+  if (!launch.intensity)
+  {
+    return true;
+  }
+  const float* bins = launch.intensity + std::size_t(chunk.line) * launch.binCount;
+  const int firstBin = min(max(0, int(chunk.fromMm / launch.binMm) - 1), launch.binCount - 1);
+  const int lastBin = min(int(chunk.toMm / launch.binMm) + 2, launch.binCount);
+  bool lit = false;
+  for (int b = firstBin + int(threadIdx.x); b < lastBin; b += blockDim.x)
+  {
+    lit |= bins[b] > darkIntensity;
+  }
+  return __syncthreads_or(lit);
+}
+
+__global__ void __launch_bounds__(blockThreads) splatTissueCells(TissueLaunch launch)
+{
+  __shared__ ShortSums sums;
+  __shared__ ScatteringMedium media[256];
+  const SplatLaunch& splat = launch.splat;
+  const Chunk chunk = chunkOf(splat);
+  for (int m = threadIdx.x; m < 256; m += blockThreads)
+  {
+    media[m] = launch.media[m];
+  }
+  sums.clear();
+  const bool lit = isLit(launch, chunk);
+  __syncthreads();
+  const Beam beam = splat.beams[chunk.line];
+  const auto splatCell = [&](const Vec3i& cell) {
+    const Vec3i brick(cell.x >> 2, cell.y >> 2, cell.z >> 2);
+    if (!splat.sightMeets(beam, (Vec3f(brick) + 0.5f) * (launch.cellMm * brickCells)))
+    {
+      return;
+    }
+    const ScattererSeed seed = scattererSeed(launch.seed, cell);
+    const float x = (float(cell.x) + seed.fraction.x) * launch.cellMm;
+    const float y = (float(cell.y) + seed.fraction.y) * launch.cellMm;
+    const float z = (float(cell.z) + seed.fraction.z) * launch.cellMm;
+    const BeamPlace place = placeInBeam(x, y, z, beam, splat.grid);
+    const float weight = chunk.holds(place) ? splat.weight(place) : 0.0f;
+    const Vec3i voxel(int(floorf(x * launch.perMm.x)), int(floorf(y * launch.perMm.y)),
+                      int(floorf(z * launch.perMm.z)));
+    if (weight == 0.0f || unsigned(voxel.x) >= unsigned(launch.size.x) ||
+        unsigned(voxel.y) >= unsigned(launch.size.y) || unsigned(voxel.z) >= unsigned(launch.size.z))
+    {
+      return;
+    }
+    const std::size_t at =
+      std::size_t(voxel.x) + std::size_t(launch.size.x) * (std::size_t(voxel.y) + std::size_t(launch.size.y) * voxel.z);
+    const float amplitude = scattererAmplitude(media[launch.voxels[at]], seed.presence, seed.deviate);
+    if (amplitude != 0.0f)
+    {
+      addScatterer(sums, splitScatterer(amplitude * weight, place.position, splat.grid), chunk.first, splat.scale);
+    }
+  };
+  if (lit)
+  {
+    const CellRows rows(beam, { chunk.fromMm, chunk.toMm, splat.lateralMm, splat.elevationalMm }, launch.cellMm,
+                        Vec3f(0.0f), launch.extentMm);
+    const int rowCount = rows.rowCount();
+    for (int first = int(threadIdx.x) / warpLanes * warpLanes; first < rowCount; first += blockThreads)
+    {
+      const int r = first + int(threadIdx.x) % warpLanes;
+      const CellRows::Row row = r < rowCount ? rows.row(r) : CellRows::Row{ 0, 0, 0, 0 };
+      forItemsOfWarp(row.count, [&](int owner, int place) {
+        const int layer = __shfl_sync(allLanes, row.layer, owner);
+        const int v = __shfl_sync(allLanes, row.v, owner);
+        const int u = __shfl_sync(allLanes, row.first, owner) + place;
+        if (owner >= 0)
+        {
+          splatCell(rows.cell(layer, v, u));
+        }
+      });
+    }
+    __syncthreads();
+  }
+  writeChunk(splat, chunk, sums, false);
+}
+
+struct PointLaunch
+{
+  SplatLaunch splat;
+  const float* x;
+  const float* y;
+  const float* z;
+  const float* amplitude;
+  const int* begin;
+  Vec3i firstBrick;
+  Vec3i bricks;
+  float edgeMm;
+  bool add;
+};
+
+/// A point in front of its beam: what it echoes, at a position on the line.
+struct SeenPoint
+{
+  float amplitude;
+  float position;
+};
+
+struct PointRange
+{
+  int first;
+  int count;
+};
+
+/// The points of a brick that the beam may see.
+__device__ PointRange pointsOf(const PointLaunch& launch, const Beam& beam, const Vec3i& cell)
+{
+  const Vec3i brick = cell - launch.firstBrick;
+  if (unsigned(brick.x) >= unsigned(launch.bricks.x) || unsigned(brick.y) >= unsigned(launch.bricks.y) ||
+      unsigned(brick.z) >= unsigned(launch.bricks.z) ||
+      !launch.splat.sightMeets(beam, (Vec3f(cell) + 0.5f) * launch.edgeMm))
+  {
+    return { 0, 0 };
+  }
+  const int b = brick.x + launch.bricks.x * (brick.y + launch.bricks.y * brick.z);
+  return { launch.begin[b], launch.begin[b + 1] - launch.begin[b] };
+}
+
+__global__ void __launch_bounds__(blockThreads) splatPointBricks(PointLaunch launch)
+{
+  __shared__ LongSums sums;
+  __shared__ WarpQueue<SeenPoint> queues[blockThreads / warpLanes];
+  const SplatLaunch& splat = launch.splat;
+  const Chunk chunk = chunkOf(splat);
+  sums.clear();
+  __syncthreads();
+  const Beam beam = splat.beams[chunk.line];
+  const Vec3f low = Vec3f(launch.firstBrick) * launch.edgeMm;
+  const Vec3f high = Vec3f(launch.firstBrick + launch.bricks) * launch.edgeMm;
+  const CellRows rows(beam, { chunk.fromMm, chunk.toMm, splat.lateralMm, splat.elevationalMm }, launch.edgeMm, low,
+                      high);
+  const auto splatPoint = [&](const SeenPoint& p) {
+    addScatterer(sums, splitScatterer(p.amplitude, p.position, splat.grid), chunk.first, splat.scale);
+  };
+  const int lane = int(threadIdx.x) % warpLanes;
+  const int warp = int(threadIdx.x) / warpLanes;
+  const int rowCount = rows.rowCount();
+  int queued = 0;
+  // Rows of bricks are few: a warp takes a row, then brick by brick.
+  for (int r = warp; r < rowCount; r += blockThreads / warpLanes)
+  {
+    const CellRows::Row row = rows.row(r);
+    for (int n = 0; n < row.count; ++n)
+    {
+      const PointRange range = pointsOf(launch, beam, rows.cell(row.layer, row.v, row.first + n));
+      for (int first = 0; first < range.count; first += warpLanes)
+      {
+        const int p = range.first + first + lane;
+        SeenPoint point{ 0.0f, 0.0f };
+        if (first + lane < range.count)
+        {
+          const BeamPlace at = placeInBeam(launch.x[p], launch.y[p], launch.z[p], beam, splat.grid);
+          point = { chunk.holds(at) ? launch.amplitude[p] * splat.weight(at) : 0.0f, at.position };
+        }
+        queues[warp].push(point.amplitude != 0.0f, point, queued, splatPoint);
+      }
+    }
+  }
+  queues[warp].finish(queued, splatPoint);
+  __syncthreads();
+  writeChunk(splat, chunk, sums, launch.add);
+}
+
+struct FinishLaunch
+{
+  const float2* sum; // or null: no scatterers
+  TracedOnDevice traced;
+  const float* level; // of boundaries at each sample, or null
+  const float2* carrier;
+  const float* pulse; // re, then im where it is complex
+  int half;
+  int sumCount;
+  int sampleCount;
+  float sampleMm;
+  float2* iq; // null: not wanted
+  float* envelope;
+};
+
+constexpr int outputsOfThread = 4;
+constexpr int finishThreads = 128;
+constexpr int tileSamples = outputsOfThread * finishThreads;
+
+/// Shifts rows of 32 apart, so that threads that are some samples apart use different banks.
+__device__ int padded(int i)
+{
+  return i + (i >> 5);
+}
+
+/// The sum at a sample: times the intensity, plus the boundary echoes, demodulated.
+__device__ float2 demodulated(const FinishLaunch& launch, int line, int s)
+{
+  if (s < 0 || s >= launch.sumCount)
+  {
+    return { 0.0f, 0.0f };
+  }
+  float2 v{ 0.0f, 0.0f };
+  const std::size_t at = std::size_t(line) * launch.sumCount + s;
+  if (launch.sum)
+  {
+    v = launch.sum[at];
+  }
+  const TracedOnDevice& traced = launch.traced;
+  if (traced.intensity)
+  {
+    // Linear between the centres of the tracer's bins.
+    const float* bins = traced.intensity + std::size_t(line) * traced.binCount;
+    const double wanted = s * double(launch.sampleMm) / double(traced.binMm) - 0.5;
+    const float position = float(fmin(fmax(wanted, 0.0), double(traced.binCount - 1)));
+    const int bin = min(int(position), max(0, traced.binCount - 2));
+    const int next = min(bin + 1, traced.binCount - 1);
+    const float intensity = bins[bin] + (bins[next] - bins[bin]) * (position - float(bin));
+    v.x *= intensity;
+    v.y *= intensity;
+  }
+  const float level = launch.level ? launch.level[s] : 1.0f;
+  if (traced.echoSums && s < traced.echoCount)
+  {
+    const EchoSum* echo = traced.echoSums + 2 * (std::size_t(line) * traced.echoCount + s);
+    v.x += float((long long)(echo[0])) * traced.echoPerUnit * level;
+    v.y += float((long long)(echo[1])) * traced.echoPerUnit * level;
+  }
+  if (traced.echo)
+  {
+    v.x += traced.echo[at].x;
+    v.y += traced.echo[at].y;
+  }
+  const float2 c = launch.carrier[s];
+  return { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
+}
+
+/// Convolves a tile of a line with the pulse; each thread keeps the sums of neighbouring samples in registers.
+template<bool ComplexPulse>
+__global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch launch)
+{
+  extern __shared__ float memory[];
+  const int taps = 2 * launch.half + 1;
+  const int width = tileSamples + 2 * launch.half;
+  float* re = memory;
+  float* im = re + padded(width) + 1;
+  float* pulse = im + padded(width) + 1;
+  const int line = blockIdx.y;
+  const int first = blockIdx.x * tileSamples;
+  for (int i = threadIdx.x; i < width; i += finishThreads)
+  {
+    const float2 v = demodulated(launch, line, first + i - launch.half);
+    re[padded(i)] = v.x;
+    im[padded(i)] = v.y;
+  }
+  for (int k = threadIdx.x; k < taps * (ComplexPulse ? 2 : 1); k += finishThreads)
+  {
+    pulse[k] = launch.pulse[k];
+  }
+  __syncthreads();
+
+  float sumRe[outputsOfThread] = {};
+  float sumIm[outputsOfThread] = {};
+  float windowRe[outputsOfThread];
+  float windowIm[outputsOfThread];
+  const int base = threadIdx.x * outputsOfThread;
+  for (int j = 0; j + 1 < outputsOfThread; ++j)
+  {
+    windowRe[j + 1] = re[padded(base + j)];
+    windowIm[j + 1] = im[padded(base + j)];
+  }
+  for (int k = 0; k < taps; ++k)
+  {
+#pragma unroll
+    for (int j = 0; j + 1 < outputsOfThread; ++j)
+    {
+      windowRe[j] = windowRe[j + 1];
+      windowIm[j] = windowIm[j + 1];
+    }
+    windowRe[outputsOfThread - 1] = re[padded(base + k + outputsOfThread - 1)];
+    windowIm[outputsOfThread - 1] = im[padded(base + k + outputsOfThread - 1)];
+    const float p = pulse[k];
+    const float q = ComplexPulse ? pulse[taps + k] : 0.0f;
+#pragma unroll
+    for (int j = 0; j < outputsOfThread; ++j)
+    {
+      sumRe[j] += p * windowRe[j];
+      sumIm[j] += p * windowIm[j];
+      if (ComplexPulse)
+      {
+        sumRe[j] -= q * windowIm[j];
+        sumIm[j] += q * windowRe[j];
+      }
+    }
+  }
+  for (int j = 0; j < outputsOfThread; ++j)
+  {
+    const int s = first + base + j;
+    if (s < launch.sampleCount)
+    {
+      const std::size_t at = std::size_t(line) * launch.sampleCount + s;
+      if (launch.iq)
+      {
+        launch.iq[at] = { sumRe[j], sumIm[j] };
+      }
+      launch.envelope[at] = sqrtf(sumRe[j] * sumRe[j] + sumIm[j] * sumIm[j]);
+    }
+  }
+}
+
+/// The unit of 64-bit sums: the largest single amplitude becomes 2^30, which leaves room for 2^32 of them.
+float scaleFor(float largest)
+{
+  return largest > 0.0f ? std::ldexp(1.0f, 30 - std::ilogb(largest)) : 1.0f;
+}
+
+} // namespace
+
+void DeviceEcho::Sight::upload(const std::optional<SightJob>& job, cudaStream_t stream, Traffic& traffic)
+{
+  some = job.has_value();
+  if (some)
+  {
+    seen.upload(job->seen, stream, traffic);
+    view = job->view;
+    view.seen = seen.data();
+    lateralMm = job->lateralMm;
+    elevationalMm = job->elevationalMm;
+  }
+}
+
+void DeviceEcho::setBeams(const std::vector<Beam>& beams)
+{
+  sigmas_ = Vec2f(beams.front().lateralSigmaMm, beams.front().elevationalSigmaMm);
+}
+
+/// Half axes of the ellipse around the axis that holds all that a beam sees: around a field's rectangle, or a
+/// Gaussian's own.
+Vec2f DeviceEcho::ellipse(const Sight& sight) const
+{
+  return sight.some ? Vec2f(1.4143f * sight.lateralMm, 1.4143f * sight.elevationalMm) : beamCutSigma * sigmas_;
+}
+
+void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  sampleCount_ = job.sampleCount;
+  sumCount_ = job.sumCount;
+  half_ = int(job.pulseRe.size() / 2);
+  sampleMm_ = job.sampleMm;
+  grid_ = makeLineGrid(float(job.sampleMm), job.radPerMm, job.sumCount);
+  complexPulse_ = !job.pulseIm.empty();
+  std::vector<float> pulse = job.pulseRe;
+  pulse.insert(pulse.end(), job.pulseIm.begin(), job.pulseIm.end());
+  pulse_.upload(pulse, stream, traffic);
+  std::vector<float2> carrier;
+  for (int s = 0; s < job.sumCount; ++s)
+  {
+    const double phase = job.radPerMm * s * job.sampleMm;
+    carrier.push_back({ float(std::cos(phase)), float(-std::sin(phase)) });
+  }
+  carrier_.upload(carrier, stream, traffic);
+  level_.upload(job.boundaryLevel, stream, traffic);
+  field_.reset();
+  if (job.field)
+  {
+    if (fieldSource_ != job.field->values)
+    {
+      fieldSource_ = nullptr; // stays so when the upload fails
+      fieldValues_.upload(*job.field->values, stream, traffic);
+      fieldSource_ = job.field->values;
+    }
+    field_ = job.field->view;
+    field_->values = fieldValues_.data();
+  }
+
+  tissues_ = job.tissues.has_value();
+  if (tissues_)
+  {
+    const TissueJob& tissues = *job.tissues;
+    if (sceneId_ != tissues.sceneId)
+    {
+      sceneId_ = 0; // stays so when the upload fails
+      voxels_.upload(*tissues.voxels, stream, traffic);
+      sceneId_ = tissues.sceneId;
+    }
+    sceneBeams_.upload(tissues.beams, stream, traffic);
+    setBeams(tissues.beams);
+    media_.upload(tissues.media.data(), tissues.media.size(), stream, traffic);
+    tissueSight_.upload(tissues.sight, stream, traffic);
+    size_ = tissues.size;
+    spacing_ = tissues.spacing;
+    cellMm_ = tissues.cellMm;
+    seed_ = tissues.seed;
+    float largest = 0.0f;
+    for (const ScatteringMedium& m : tissues.media)
+    {
+      largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
+    }
+    // Amplitudes that come together in a sample, on average, and a wide margin; 32 bits hold them with 24 to spare for
+    // their fractions.
+    const double areaMm2 =
+      field_ ? 4.0 * field_->lateral.highMm * field_->elevational.highMm : 6.3 * double(sigmas_.x) * double(sigmas_.y);
+    const double together = 64.0 + 16.0 * areaMm2 * sampleMm_ / std::pow(double(cellMm_), 3);
+    tissueScale_ = largest > 0.0f ? float(2147483647.0 / (together * largest)) : 1.0f;
+  }
+
+  points_ = job.points.has_value();
+  if (points_)
+  {
+    const PointJob& points = *job.points;
+    if (table_ != points.table)
+    {
+      table_ = nullptr;
+      x_.upload(points.table->x, stream, traffic);
+      y_.upload(points.table->y, stream, traffic);
+      z_.upload(points.table->z, stream, traffic);
+      amplitude_.upload(points.table->amplitude, stream, traffic);
+      begin_.upload(points.table->begin, stream, traffic);
+      float largest = 0.0f;
+      for (const float a : points.table->amplitude)
+      {
+        largest = std::max(largest, std::fabs(a));
+      }
+      pointScale_ = scaleFor(largest);
+      table_ = points.table;
+    }
+    pointBeams_.upload(points.beams, stream, traffic);
+    setBeams(points.beams);
+    pointSight_.upload(points.sight, stream, traffic);
+  }
+
+  given_ = {};
+  if (job.given)
+  {
+    givenIntensity_.upload(job.given->intensity, stream, traffic);
+    given_.intensity = givenIntensity_.data();
+    given_.binCount = job.given->binCount;
+    given_.binMm = job.given->binMm;
+    if (!job.given->boundaryEcho.empty())
+    {
+      givenEcho_.upload(reinterpret_cast<const float2*>(job.given->boundaryEcho.data()), job.given->boundaryEcho.size(),
+                        stream, traffic);
+      given_.echo = givenEcho_.data();
+    }
+  }
+}
+
+TracedOnDevice DeviceEcho::given(int first) const
+{
+  TracedOnDevice traced = given_;
+  traced.intensity = given_.intensity ? given_.intensity + std::size_t(first) * given_.binCount : nullptr;
+  traced.echo = given_.echo ? given_.echo + std::size_t(first) * sumCount_ : nullptr;
+  return traced;
+}
+
+void DeviceEcho::splatTissues(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
+{
+  TissueLaunch launch{};
+  launch.splat = { sceneBeams_.data() + first,
+                   grid_,
+                   float(sampleMm_),
+                   sumCount_,
+                   tissueScale_,
+                   field_.has_value(),
+                   field_.value_or(BeamFieldView{}),
+                   tissueSight_.some,
+                   tissueSight_.view,
+                   ellipse(tissueSight_).x,
+                   ellipse(tissueSight_).y,
+                   1.0f / sigmas_.x,
+                   1.0f / sigmas_.y,
+                   sum_.data() };
+  launch.voxels = voxels_.data();
+  launch.size = size_;
+  launch.perMm = 1.0f / spacing_;
+  launch.extentMm = Vec3f(size_) * spacing_;
+  launch.media = media_.data();
+  launch.cellMm = cellMm_;
+  launch.seed = seed_;
+  launch.intensity = traced.intensity;
+  launch.binCount = traced.binCount;
+  launch.binMm = traced.binMm;
+  splatTissueCells<<<dim3(chunks(), count), blockThreads, 0, stream>>>(launch);
+}
+
+void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)
+{
+  PointLaunch launch{};
+  launch.splat = { pointBeams_.data() + first,
+                   grid_,
+                   float(sampleMm_),
+                   sumCount_,
+                   pointScale_,
+                   field_.has_value(),
+                   field_.value_or(BeamFieldView{}),
+                   pointSight_.some,
+                   pointSight_.view,
+                   ellipse(pointSight_).x,
+                   ellipse(pointSight_).y,
+                   1.0f / sigmas_.x,
+                   1.0f / sigmas_.y,
+                   sum_.data() };
+  launch.x = x_.data();
+  launch.y = y_.data();
+  launch.z = z_.data();
+  launch.amplitude = amplitude_.data();
+  launch.begin = begin_.data();
+  launch.firstBrick = table_->firstBrick;
+  launch.bricks = table_->bricks;
+  launch.edgeMm = table_->edgeMm;
+  launch.add = tissues_;
+  splatPointBricks<<<dim3(chunks(), count), blockThreads, 0, stream>>>(launch);
+}
+
+void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wantsIq, cudaStream_t stream)
+{
+  const std::size_t lines = std::size_t(count);
+  sum_.resize(lines * sumCount_);
+  iq_.resize(wantsIq ? lines * sampleCount_ : 0);
+  envelope_.resize(lines * sampleCount_);
+  if (tissues_)
+  {
+    splatTissues(first, count, traced, stream);
+  }
+  if (points_)
+  {
+    splatPoints(first, count, stream);
+  }
+  const FinishLaunch launch{ tissues_ || points_ ? sum_.data() : nullptr,
+                             traced,
+                             level_.size() > 0 ? level_.data() : nullptr,
+                             carrier_.data(),
+                             pulse_.data(),
+                             half_,
+                             sumCount_,
+                             sampleCount_,
+                             float(sampleMm_),
+                             wantsIq ? iq_.data() : nullptr,
+                             envelope_.data() };
+  const int width = tileSamples + 2 * half_;
+  const std::size_t bytes = (2 * std::size_t(width + width / 32 + 2) + pulse_.size()) * sizeof(float);
+  const auto kernel = complexPulse_ ? convolveLines<true> : convolveLines<false>;
+  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
+        "preparing to convolve a pulse of that length");
+  kernel<<<dim3((sampleCount_ + tileSamples - 1) / tileSamples, count), finishThreads, bytes, stream>>>(launch);
+  check(cudaGetLastError(), "forming RF lines");
+}
+
+} // namespace sono

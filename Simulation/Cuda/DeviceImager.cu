@@ -1,0 +1,341 @@
+#include "Cuda/DeviceImager.h"
+
+#include "Cuda/DeviceDisplay.cuh"
+#include "Cuda/DeviceEcho.cuh"
+#include "Cuda/DeviceTracer.cuh"
+#include "Trace/PathBatches.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+
+namespace sono {
+
+namespace {
+
+/// Moments of a run on the device.
+class StageClock
+{
+public:
+  enum Mark
+  {
+    Start,
+    Uploaded,
+    Traced,
+    Formed,
+    Compressed,
+    Converted,
+    Downloaded,
+    Marks
+  };
+
+  StageClock()
+  {
+    for (cudaEvent_t& e : event_)
+    {
+      check(cudaEventCreate(&e), "creating an event");
+    }
+  }
+  ~StageClock()
+  {
+    for (cudaEvent_t e : event_)
+    {
+      cudaEventDestroy(e);
+    }
+  }
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+
+  void mark(Mark m, cudaStream_t stream) { check(cudaEventRecord(event_[m], stream), "timing"); }
+  double between(Mark a, Mark b) const
+  {
+    float ms = 0.0f;
+    check(cudaEventElapsedTime(&ms, event_[a], event_[b]), "timing");
+    return ms;
+  }
+
+private:
+  std::array<cudaEvent_t, Marks> event_{};
+};
+
+/// Bytes that the stages need for one line.
+double bytesPerLine(const ImageJob& job)
+{
+  double bytes = 0.0;
+  if (job.trace)
+  {
+    const double slices = 1024.0 / std::max(1, job.linesPerImage()) + 1.0;
+    bytes += 16.0 * job.trace->echoCount + 4.0 * job.trace->binCount * (3.0 + batchCount * slices);
+  }
+  if (job.echo)
+  {
+    bytes += 24.0 * job.echo->sumCount;
+  }
+  return bytes;
+}
+
+} // namespace
+
+struct DeviceImager::Work
+{
+  std::mutex mutex;
+  cudaStream_t stream = nullptr;
+  std::unique_ptr<DeviceTracer> tracer = std::make_unique<DeviceTracer>();
+  std::unique_ptr<DeviceEcho> echo = std::make_unique<DeviceEcho>();
+  std::unique_ptr<DeviceDisplay> display = std::make_unique<DeviceDisplay>();
+  std::unique_ptr<StageClock> clock;
+
+  void forget()
+  {
+    tracer = std::make_unique<DeviceTracer>();
+    echo = std::make_unique<DeviceEcho>();
+    display = std::make_unique<DeviceDisplay>();
+  }
+
+  /// Images that go through the stages together: what fits in a quarter of the device's memory.
+  int imagesAtOnce(const ImageJob& job) const
+  {
+    std::size_t free = 0;
+    std::size_t total = 0;
+    check(cudaMemGetInfo(&free, &total), "asking for its memory");
+    const double perImage = bytesPerLine(job) * job.linesPerImage();
+    return std::max(1, std::min(job.images, int(0.25 * double(total) / std::max(1.0, perImage))));
+  }
+
+  void upload(const ImageJob& job, Traffic& traffic)
+  {
+    if (job.trace)
+    {
+      tracer->prepare(*job.trace, job.linesPerImage(), stream, traffic);
+    }
+    if (job.echo)
+    {
+      echo->prepare(*job.echo, stream, traffic);
+    }
+    if (job.bmode)
+    {
+      display->prepare(job, stream, traffic);
+    }
+  }
+
+  TracedOnDevice traced(const ImageJob& job, int firstLine) const
+  {
+    if (!job.trace)
+    {
+      return echo->given(firstLine);
+    }
+    TracedOnDevice t;
+    t.intensity = tracer->intensity();
+    t.binCount = tracer->binCount();
+    t.binMm = tracer->binMm();
+    t.echoSums = tracer->echo();
+    t.echoCount = tracer->echoCount();
+    t.echoPerUnit = tracer->echoPerUnit();
+    return t;
+  }
+
+  void allocateResult(const ImageJob& job, const DeviceWants& wants, DeviceResult& result) const
+  {
+    const std::size_t lines = std::size_t(job.lineCount());
+    if (wants.traced)
+    {
+      result.intensity.resize(lines * job.trace->binCount);
+      result.standardError.resize(result.intensity.size());
+      result.boundaryEcho.resize(lines * job.trace->echoCount);
+    }
+    if (wants.rf)
+    {
+      result.iq.resize(lines * job.echo->sampleCount);
+    }
+    if (wants.bmode)
+    {
+      result.grey.resize(lines * job.echo->sampleCount);
+    }
+    if (job.bmode)
+    {
+      result.referenceAmplitude.resize(std::size_t(job.images));
+    }
+    if (wants.image)
+    {
+      result.pixels.resize(std::size_t(job.images) * job.scan->width * job.scan->height);
+      result.mask.resize(result.pixels.size());
+    }
+  }
+
+  /// Brings back what is wanted of the images that were just made.
+  void bringBack(const ImageJob& job, const DeviceWants& wants, int firstImage, int images, DeviceResult& result,
+                 Traffic& traffic)
+  {
+    const std::size_t firstLine = std::size_t(firstImage) * job.linesPerImage();
+    const std::size_t lines = std::size_t(images) * job.linesPerImage();
+    std::vector<EchoSum> sums;
+    if (wants.traced)
+    {
+      const std::size_t bins = std::size_t(job.trace->binCount);
+      download(tracer->intensity(), lines * bins, result.intensity, firstLine * bins, stream, traffic);
+      download(tracer->standardError(), lines * bins, result.standardError, firstLine * bins, stream, traffic);
+      sums.resize(2 * lines * job.trace->echoCount);
+      download(tracer->echo(), sums.size(), sums, 0, stream, traffic);
+    }
+    if (wants.rf)
+    {
+      const std::size_t samples = std::size_t(job.echo->sampleCount);
+      download(echo->iq(), lines * samples, result.iq, firstLine * samples, stream, traffic);
+    }
+    if (wants.bmode)
+    {
+      const std::size_t samples = std::size_t(job.echo->sampleCount);
+      download(display->grey(), lines * samples, result.grey, firstLine * samples, stream, traffic);
+    }
+    if (job.bmode)
+    {
+      download(display->reference(), std::size_t(images), result.referenceAmplitude, std::size_t(firstImage), stream,
+               traffic);
+    }
+    if (wants.image)
+    {
+      const std::size_t pixels = std::size_t(job.scan->width) * job.scan->height;
+      download(display->pixels(), images * pixels, result.pixels, firstImage * pixels, stream, traffic);
+      download(display->mask(), images * pixels, result.mask, firstImage * pixels, stream, traffic);
+    }
+    check(cudaStreamSynchronize(stream), "computing");
+    const float perUnit = tracer->echoPerUnit();
+    for (std::size_t i = 0; i + 1 < sums.size(); i += 2)
+    {
+      result.boundaryEcho[firstLine * job.trace->echoCount + i / 2] = { float(std::int64_t(sums[i])) * perUnit,
+                                                                        float(std::int64_t(sums[i + 1])) * perUnit };
+    }
+  }
+
+  DeviceResult run(const ImageJob& job, const DeviceWants& wants, const Progress& progress, DeviceTimes* times)
+  {
+    Traffic traffic;
+    DeviceResult result;
+    DeviceTimes sum;
+    allocateResult(job, wants, result);
+    clock->mark(StageClock::Start, stream);
+    upload(job, traffic);
+    clock->mark(StageClock::Uploaded, stream);
+    const int atOnce = imagesAtOnce(job);
+    for (int image = 0; image < job.images; image += atOnce)
+    {
+      const int images = std::min(atOnce, job.images - image);
+      const int firstLine = image * job.linesPerImage();
+      const int lines = images * job.linesPerImage();
+      if (image > 0)
+      {
+        clock->mark(StageClock::Uploaded, stream);
+      }
+      if (job.trace)
+      {
+        const double share = double(images) / job.images;
+        const double before = double(image) / job.images;
+        const Progress part = progress ? Progress([&](double f) { return progress(before + share * f); }) : Progress{};
+        tracer->run(firstLine, lines, part, stream);
+      }
+      clock->mark(StageClock::Traced, stream);
+      if (job.echo)
+      {
+        echo->run(firstLine, lines, traced(job, firstLine), wants.rf, stream);
+      }
+      clock->mark(StageClock::Formed, stream);
+      if (job.bmode)
+      {
+        display->compress(echo->envelope(), images, stream);
+      }
+      clock->mark(StageClock::Compressed, stream);
+      if (job.scan)
+      {
+        display->convert(images, stream);
+      }
+      clock->mark(StageClock::Converted, stream);
+      bringBack(job, wants, image, images, result, traffic);
+      clock->mark(StageClock::Downloaded, stream);
+      check(cudaStreamSynchronize(stream), "computing");
+      sum.upload += image == 0 ? clock->between(StageClock::Start, StageClock::Uploaded) : 0.0;
+      sum.trace += clock->between(StageClock::Uploaded, StageClock::Traced);
+      sum.echo += clock->between(StageClock::Traced, StageClock::Formed);
+      sum.bmode += clock->between(StageClock::Formed, StageClock::Compressed);
+      sum.scan += clock->between(StageClock::Compressed, StageClock::Converted);
+      sum.download += clock->between(StageClock::Converted, StageClock::Downloaded);
+      report(progress, double(image + images) / job.images);
+    }
+    if (job.trace)
+    {
+      check(cudaMemcpy(&result.segments, tracer->segments(), sizeof result.segments, cudaMemcpyDeviceToHost),
+            "downloading");
+    }
+    sum.uploadedBytes = traffic.up;
+    sum.downloadedBytes = traffic.down;
+    if (times)
+    {
+      *times = sum;
+    }
+    return result;
+  }
+};
+
+DeviceStatus cudaStatus()
+{
+  int count = 0;
+  const cudaError_t error = cudaGetDeviceCount(&count);
+  if (error != cudaSuccess || count == 0)
+  {
+    cudaGetLastError();
+    return { false, error == cudaErrorInsufficientDriver || error == cudaErrorNoDevice || count == 0
+                      ? "no NVIDIA GPU with a driver for CUDA " + std::to_string(CUDART_VERSION / 1000) + " was found"
+                      : std::string("the GPU does not answer (") + cudaGetErrorString(error) + ")" };
+  }
+  cudaDeviceProp properties{};
+  if (cudaGetDeviceProperties(&properties, 0) != cudaSuccess)
+  {
+    cudaGetLastError();
+    return { false, "the GPU does not say what it is" };
+  }
+  return { true, std::string(properties.name) + ", " + std::to_string(properties.totalGlobalMem >> 20) + " MiB" };
+}
+
+DeviceImager::DeviceImager()
+  : work_(std::make_unique<Work>())
+{
+  const DeviceStatus status = cudaStatus();
+  if (!status.usable)
+  {
+    throw Error("the GPU cannot be used: " + status.what + "; choose the CPU");
+  }
+  check(cudaStreamCreateWithFlags(&work_->stream, cudaStreamNonBlocking), "opening a stream");
+  work_->clock = std::make_unique<StageClock>();
+}
+
+DeviceImager::~DeviceImager() = default;
+
+DeviceImager& DeviceImager::instance()
+{
+  // Never destroyed: at the end of a process the driver may go first.
+  static auto* imager = new DeviceImager;
+  return *imager;
+}
+
+DeviceResult DeviceImager::run(const ImageJob& job, const DeviceWants& wants, const Progress& progress,
+                               DeviceTimes* times)
+{
+  const std::lock_guard<std::mutex> lock(work_->mutex);
+  try
+  {
+    return work_->run(job, wants, progress, times);
+  }
+  catch (const Aborted&)
+  {
+    cudaStreamSynchronize(work_->stream);
+    throw;
+  }
+  catch (...)
+  {
+    cudaStreamSynchronize(work_->stream);
+    cudaGetLastError();
+    work_->forget();
+    throw;
+  }
+}
+
+} // namespace sono

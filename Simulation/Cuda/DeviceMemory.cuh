@@ -1,0 +1,109 @@
+#pragma once
+
+#include "Progress.h"
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sono {
+
+/// Throws Error with CUDA's own words when a call failed.
+inline void check(cudaError_t error, const char* doing)
+{
+  if (error != cudaSuccess)
+  {
+    cudaGetLastError(); // an error that is not sticky ends here
+    throw Error(std::string("the GPU failed while ") + doing + " (" + cudaGetErrorString(error) +
+                "): try again, or choose the CPU");
+  }
+}
+
+/// Counts what crosses the bus.
+struct Traffic
+{
+  std::uint64_t up = 0;
+  std::uint64_t down = 0;
+};
+
+/// An array on the device that only grows.
+template<class T>
+class DeviceArray
+{
+public:
+  DeviceArray() = default;
+  DeviceArray(const DeviceArray&) = delete;
+  DeviceArray& operator=(const DeviceArray&) = delete;
+  ~DeviceArray() { release(); }
+
+  T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+  void release()
+  {
+    cudaFree(data_);
+    data_ = nullptr;
+    capacity_ = size_ = 0;
+  }
+
+  /// Contents are lost when it grows.
+  void resize(std::size_t count)
+  {
+    if (count > capacity_)
+    {
+      release();
+      const std::size_t bytes = count * sizeof(T);
+      void* memory = nullptr;
+      const cudaError_t error = cudaMalloc(&memory, bytes);
+      if (error == cudaErrorMemoryAllocation)
+      {
+        cudaGetLastError();
+        std::size_t free = 0;
+        std::size_t total = 0;
+        cudaMemGetInfo(&free, &total);
+        throw Error("the GPU has no room for " + std::to_string(bytes) + " bytes (" + std::to_string(free) + " of " +
+                    std::to_string(total) +
+                    " are free): close what else uses it, take fewer lines or poses, or choose the CPU");
+      }
+      check(error, "allocating memory");
+      data_ = static_cast<T*>(memory);
+      capacity_ = count;
+    }
+    size_ = count;
+  }
+
+  void upload(const T* from, std::size_t count, cudaStream_t stream, Traffic& traffic)
+  {
+    resize(count);
+    if (count > 0)
+    {
+      check(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream), "uploading");
+      traffic.up += count * sizeof(T);
+    }
+  }
+  void upload(const std::vector<T>& from, cudaStream_t stream, Traffic& traffic)
+  {
+    upload(from.data(), from.size(), stream, traffic);
+  }
+
+  void clear(cudaStream_t stream) { check(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "clearing memory"); }
+
+private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+/// Brings `count` values back; the caller synchronises.
+template<class T, class U>
+void download(const T* from, std::size_t count, std::vector<U>& to, std::size_t at, cudaStream_t stream,
+              Traffic& traffic)
+{
+  static_assert(sizeof(T) == sizeof(U), "one value becomes one value");
+  check(cudaMemcpyAsync(to.data() + at, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream), "downloading");
+  traffic.down += count * sizeof(T);
+}
+
+} // namespace sono

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "Cuda/DeviceMemory.cuh"
+#include "Cuda/ImageJob.h"
+#include "Kernel/TracePath.h"
+
+namespace sono {
+
+/// Boundary echoes are summed as integers, whose sum does not depend on the order: amplitude * scale.
+using EchoSum = unsigned long long;
+
+/// Traces lines on the device. Kept between jobs: the region's cells and records.
+class DeviceTracer
+{
+public:
+  /// Uploads what is new. `linesPerImage` restarts the numbering of the random streams.
+  void prepare(const TraceJob& job, int linesPerImage, cudaStream_t stream, Traffic& traffic);
+  /// Traces the lines [first, first + count) of the job; the results below are theirs until the next call.
+  void run(int first, int count, const Progress& progress, cudaStream_t stream);
+
+  const float* intensity() const { return intensity_.data(); } ///< lines x bins
+  const float* standardError() const { return error_.data(); }
+  const EchoSum* echo() const { return echo_.data(); } ///< lines x echoCount x (re, im)
+  float echoPerUnit() const { return echoPerUnit_; }   ///< turns an EchoSum into an amplitude
+  const std::uint64_t* segments() const { return segments_.data(); }
+  int binCount() const { return binCount_; }
+  int echoCount() const { return echoCount_; }
+  float binMm() const { return binMm_; }
+
+private:
+  std::shared_ptr<const TraceRegion> region_;
+  RowCells cells_;
+  DeviceArray<std::uint16_t> words_;
+  DeviceArray<std::uint32_t> firstRecord_;
+  DeviceArray<std::uint32_t> record_;
+  DeviceArray<BvhNode> nodes_;
+  DeviceArray<BvhTriangle> triangles_;
+  DeviceArray<TraceMedium> media_;
+  DeviceArray<TraceLine> lines_;
+  DeviceArray<std::uint8_t> starts_;
+  DeviceArray<float> partial_;
+  DeviceArray<float> shared_;
+  DeviceArray<float> intensity_;
+  DeviceArray<float> error_;
+  DeviceArray<EchoSum> echo_;
+  DeviceArray<std::uint64_t> segments_;
+  TraceView view_;
+  BvhTargets targets_;
+  int linesPerImage_ = 1;
+  int paths_ = 0;
+  int binCount_ = 0;
+  float binMm_ = 0.0f;
+  int echoCount_ = 0;
+  float echoSampleMm_ = 0.0f;
+  float radPerMm_ = 0.0f;
+  float echoScale_ = 1.0f;
+  float echoPerUnit_ = 1.0f;
+};
+
+} // namespace sono

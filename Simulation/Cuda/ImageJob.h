@@ -1,0 +1,134 @@
+#pragma once
+
+#include "Echo/PointTable.h"
+#include "Kernel/BeamSight.h"
+#include "Kernel/EchoSplat.h"
+#include "Kernel/GreyLevel.h"
+#include "Kernel/PlaneScan.h"
+#include "Kernel/Scatterer.h"
+#include "Kernel/TraceView.h"
+#include "Scene/TraceRegion.h"
+#include "Trace/TargetBvh.h"
+
+#include <array>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace sono {
+
+/// Data that is shared, not copied.
+template<class T>
+using SharedVector = std::shared_ptr<const std::vector<T>>;
+
+/// Tracing as a device needs it: numbers only. Lines of all images stand one after the other; those of one image are
+/// numbered from 0 for their random numbers, so that an image does not depend on the others of its batch.
+struct TraceJob
+{
+  TraceView view;                 ///< its `media` are those below
+  std::vector<TraceMedium> media; ///< at most 65536
+  std::vector<TraceLine> lines;
+  std::shared_ptr<const TraceRegion> region; ///< kept on the device while it is the same
+  TargetBvh targets;
+  int paths = 0; ///< of a line
+  int binCount = 0;
+  float binMm = 0.0f;
+  int echoCount = 0;
+  float echoSampleMm = 0.0f;
+  float radPerMm = 0.0f; ///< 2 k of the boundary echoes' phases
+};
+
+/// A field in place of a Gaussian beam.
+struct FieldJob
+{
+  BeamFieldView view;         ///< its `values` are those below
+  SharedVector<float> values; ///< kept on the device while they are the same
+};
+
+/// Where a field matters to bricks of `brickMm`.
+struct SightJob
+{
+  BeamSightView view; ///< its `seen` is the one below
+  std::vector<std::uint8_t> seen;
+  float lateralMm = 0.0f; ///< furthest distance of a seen brick's centre from the axis
+  float elevationalMm = 0.0f;
+};
+
+/// Procedural scatterers of a volume of tissues.
+struct TissueJob
+{
+  std::vector<Beam> beams;           ///< local mm of the volume
+  SharedVector<std::uint8_t> voxels; ///< belong to the scene where it made the job, which it must outlive
+  std::uint64_t sceneId = 0;         ///< the voxels are kept on the device while it is the same
+  Vec3i size{ 0 };
+  Vec3f spacing{ 1.0f };
+  std::array<ScatteringMedium, 256> media{};
+  float cellMm = 0.5f;
+  std::uint64_t seed = 1;
+  std::optional<SightJob> sight;
+};
+
+/// Explicit scatterers, sorted by brick (see PointScatterers).
+struct PointJob
+{
+  std::vector<Beam> beams;                 ///< mm from the scatterers' own origin
+  std::shared_ptr<const PointTable> table; ///< kept on the device while it is the same
+  std::optional<SightJob> sight;
+};
+
+/// Traced lines that are not traced by the same job.
+struct GivenTrace
+{
+  std::vector<float> intensity; ///< lines x bins
+  int binCount = 0;
+  float binMm = 0.0f;
+  std::vector<std::complex<float>> boundaryEcho; ///< lines x sumCount, on the RF's samples; empty: none
+};
+
+/// Image formation as a device needs it.
+struct EchoJob
+{
+  int lineCount = 0;
+  int sampleCount = 0;
+  int sumCount = 0; ///< samples of the sum before the pulse: half a pulse more
+  double sampleMm = 0.0;
+  double radPerMm = 0.0;
+  std::vector<float> pulseRe;       ///< envelope, from its end to its start
+  std::vector<float> pulseIm;       ///< empty where it would be zero
+  std::vector<float> boundaryLevel; ///< of each sample; empty: 1
+  std::optional<FieldJob> field;
+  std::optional<TissueJob> tissues;
+  std::optional<PointJob> points;
+  std::optional<GivenTrace> given; ///< when the job does not trace; without either, intensity 1 and no boundaries
+};
+
+/// B-mode as a device needs it, for each sample of a line.
+struct BModeJob
+{
+  std::vector<float> gainFactor; ///< for the automatic reference
+  std::vector<double> gainDb;    ///< of depth, all other gain and the bottom of the range, without the reference
+  bool automaticReference = true;
+  double referenceAmplitude = 1.0;
+  float rangeDb = 60.0f;
+  float rejectDb = 0.0f;
+  GreyMap greyMap = GreyMap::Linear;
+  float noiseRms = 0.0f; ///< 0: none
+  std::uint64_t noiseSeed = 1;
+};
+
+/// What a device is asked to do, from the stages that are given; `images` of equally many lines.
+struct ImageJob
+{
+  int images = 1;
+  std::optional<TraceJob> trace;
+  std::optional<EchoJob> echo;
+  std::optional<BModeJob> bmode;
+  std::optional<PlaneScan> scan;
+
+  int lineCount() const { return trace ? int(trace->lines.size()) : echo->lineCount; }
+  int linesPerImage() const { return lineCount() / images; }
+};
+
+} // namespace sono

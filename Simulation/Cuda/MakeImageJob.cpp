@@ -1,0 +1,155 @@
+#include "Cuda/MakeImageJob.h"
+
+#include "Echo/EchoSetup.h"
+#include "Kernel/TracePath.h"
+#include "Trace/TraceSetup.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+SightJob makeSight(const FieldSight& sight)
+{
+  SightJob job;
+  job.view = sight.view();
+  job.seen.assign(job.view.seen, job.view.seen + job.view.size());
+  job.lateralMm = sight.lateralMm();
+  job.elevationalMm = sight.elevationalMm();
+  return job;
+}
+
+TissueJob makeTissues(const EchoSetup& setup)
+{
+  const Scene& scene = *setup.sources.scene;
+  TissueJob job;
+  for (std::size_t l = 0; l < setup.lines.size(); ++l)
+  {
+    job.beams.push_back(setup.sceneBeam(int(l)));
+    job.beams.back().field = nullptr;
+  }
+  job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
+  job.sceneId = scene.id();
+  job.size = scene.placement().size;
+  job.spacing = Vec3f(scene.placement().spacingMm);
+  job.media = setup.tissues->media();
+  job.cellMm = float(setup.settings.scattererCellMm);
+  job.seed = setup.settings.seed;
+  if (setup.tissueSight)
+  {
+    job.sight = makeSight(*setup.tissueSight);
+  }
+  return job;
+}
+
+PointJob makePoints(const EchoSetup& setup)
+{
+  PointJob job;
+  job.table = setup.sources.points->table();
+  for (std::size_t l = 0; l < setup.lines.size(); ++l)
+  {
+    job.beams.push_back(setup.pointBeam(int(l)));
+    job.beams.back().field = nullptr;
+  }
+  if (setup.pointSight)
+  {
+    job.sight = makeSight(*setup.pointSight);
+  }
+  return job;
+}
+
+} // namespace
+
+TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings)
+{
+  TraceJob job;
+  job.view = setup.view;
+  job.media = setup.media;
+  job.view.media = nullptr;
+  job.lines = setup.lines;
+  job.region = setup.region;
+  job.targets = buildTargetBvh(setup.targets->triangles());
+  job.paths = setup.paths;
+  job.binCount = settings.binCount();
+  job.binMm = float(settings.radialBinMm);
+  job.echoCount = settings.echoCount();
+  job.echoSampleMm = float(settings.echoSampleMm);
+  job.radPerMm = float(4.0 * 3.14159265358979323846 * settings.frequencyMHz / assumedSoundSpeedMmPerUs);
+  return job;
+}
+
+EchoJob makeEchoJob(const EchoSetup& setup)
+{
+  EchoJob job;
+  job.lineCount = int(setup.lines.size());
+  job.sampleCount = setup.settings.sampleCount();
+  job.sumCount = setup.finisher.sumCount();
+  job.sampleMm = setup.settings.sampleMm();
+  job.radPerMm = setup.finisher.radPerMm();
+  job.pulseRe = setup.finisher.pulse().re();
+  job.pulseIm = setup.finisher.pulse().im();
+  if (setup.field)
+  {
+    job.field = FieldJob{ *setup.field, SharedVector<float>(setup.settings.field, &setup.settings.field->values()) };
+    job.field->view.values = nullptr;
+  }
+  if (setup.level)
+  {
+    for (int s = 0; s < job.sumCount; ++s)
+    {
+      job.boundaryLevel.push_back(float(setup.level->at(s * job.sampleMm)));
+    }
+  }
+  // Without scatterers there is nothing to look for.
+  if (setup.tissues && setup.tissues->grid().highMm.x > 0.0f)
+  {
+    job.tissues = makeTissues(setup);
+  }
+  if (setup.sources.points && setup.sources.points->count() > 0)
+  {
+    job.points = makePoints(setup);
+  }
+  if (setup.sources.traced)
+  {
+    const TracedLines& traced = *setup.sources.traced;
+    GivenTrace given;
+    given.intensity = traced.intensity;
+    given.binCount = traced.binCount;
+    given.binMm = float(traced.binMm);
+    for (int l = 0; l < job.lineCount; ++l)
+    {
+      LineSum sum = setup.finisher.emptySum();
+      setup.finisher.addBoundaryEchoes(l, sum);
+      for (int s = 0; s < job.sumCount; ++s)
+      {
+        given.boundaryEcho.emplace_back(sum.iq[2 * std::size_t(s)], sum.iq[2 * std::size_t(s) + 1]);
+      }
+    }
+    job.given = std::move(given);
+  }
+  return job;
+}
+
+BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sampleMm)
+{
+  settings.validate();
+  BModeJob job;
+  const std::vector<double> gainDb = depthGainDb(settings, sampleCount, sampleMm);
+  for (const double decibels : gainDb)
+  {
+    job.gainFactor.push_back(gainFactor(decibels));
+    job.gainDb.push_back(decibels + settings.gainDb + settings.dynamicRangeDb);
+  }
+  job.automaticReference = settings.automaticReference;
+  job.referenceAmplitude = settings.referenceAmplitude;
+  job.rangeDb = float(settings.dynamicRangeDb);
+  job.rejectDb = float(settings.rejectDb);
+  job.greyMap = settings.greyMap;
+  job.noiseRms = float(std::pow(10.0, settings.noiseDb / 20.0)); // 0 at minus infinity
+  job.noiseSeed = settings.noiseSeed;
+  return job;
+}
+
+} // namespace sono

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "Cuda/ImageJob.h"
+#include "Echo/FormRf.h"
+#include "Image/BMode.h"
+#include "Trace/Trace.h"
+
+#include <vector>
+
+namespace sono {
+
+struct TraceSetup;
+struct EchoSetup;
+
+// From the simulator's own arguments to the numbers that a device works on. A scene must outlive its
+// jobs.
+
+/// Throws Error when no line of an image meets the volume, as trace() does.
+TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings);
+
+/// `traced` is what the setup was given, or nothing when the job traces too.
+EchoJob makeEchoJob(const EchoSetup& setup);
+
+BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sampleMm);
+
+} // namespace sono

@@ -1,0 +1,105 @@
+#include "Cuda/RunOnDevice.h"
+
+#include "Cuda/DeviceImager.h"
+#include "Cuda/MakeImageJob.h"
+#include "Echo/EchoSetup.h"
+#include "Trace/TraceSetup.h"
+
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+void requireMatch(bool same, const char* what)
+{
+  if (!same)
+  {
+    throw Error(std::string("the stages disagree about ") + what + ": set it alike for tracing and image formation");
+  }
+}
+
+bool near(double a, double b)
+{
+  return std::abs(a - b) <= 1e-9 * std::abs(b);
+}
+
+} // namespace
+
+TracedLines traceOnDevice(const TraceSetup& setup, const TraceSettings& settings, const Progress& progress)
+{
+  ImageJob job;
+  job.trace = makeTraceJob(setup, settings);
+  DeviceWants wants;
+  wants.traced = true;
+  DeviceResult result = DeviceImager::instance().run(job, wants, progress);
+  TracedLines out;
+  out.lineCount = job.lineCount();
+  out.binMm = settings.radialBinMm;
+  out.binCount = settings.binCount();
+  out.echoSampleMm = settings.echoSampleMm;
+  out.echoCount = settings.echoCount();
+  out.intensity = std::move(result.intensity);
+  out.standardError = std::move(result.standardError);
+  out.boundaryEcho = std::move(result.boundaryEcho);
+  out.segments = result.segments;
+  return out;
+}
+
+RfLines formRfOnDevice(const EchoSetup& setup, const Progress& progress)
+{
+  ImageJob job;
+  job.echo = makeEchoJob(setup);
+  DeviceWants wants;
+  wants.rf = true;
+  RfLines out = setup.emptyRf();
+  out.iq = DeviceImager::instance().run(job, wants, progress).iq;
+  return out;
+}
+
+ImageJob makeImageJob(const Scene& scene, const std::vector<ProbePose>& poses, const ImageSettings& settings,
+                      const Progress& progress, const std::vector<TargetSurface>& targets)
+{
+  requireMatch(near(settings.tracing.depthMm, settings.geometry.depthMm) &&
+                 near(settings.echo.depthMm, settings.geometry.depthMm),
+               "the depth");
+  requireMatch(near(settings.tracing.frequencyMHz, settings.echo.centreFrequencyMHz), "the frequency");
+  requireMatch(near(settings.tracing.echoSampleMm, settings.echo.sampleMm()), "the sampling of echoes");
+  std::vector<ScanLine> lines;
+  for (const ProbePose& pose : poses)
+  {
+    const auto more = makeScanLines(settings.geometry, pose);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  ImageJob job;
+  job.images = int(poses.size());
+  job.scan = planeScan(settings.geometry, settings.echo.sampleCount(), settings.echo.sampleMm(), settings.pixelMm);
+  job.trace = makeTraceJob(TraceSetup(scene, lines, settings.tracing, targets, progress), settings.tracing);
+  const EchoSources sources{ &scene, nullptr, nullptr };
+  job.echo = makeEchoJob(EchoSetup(sources, lines, settings.echo));
+  job.bmode = makeBModeJob(settings.bmode, settings.echo.sampleCount(), settings.echo.sampleMm());
+  return job;
+}
+
+std::vector<PlaneImage> simulateOnDevice(const Scene& scene, const std::vector<ProbePose>& poses,
+                                         const ImageSettings& settings, const Progress& progress,
+                                         const std::vector<TargetSurface>& targets)
+{
+  const Progress preparing = progress ? Progress([&](double f) { return progress(0.3 * f); }) : Progress{};
+  const Progress running = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
+  const ImageJob job = makeImageJob(scene, poses, settings, preparing, targets);
+  DeviceWants wants;
+  wants.image = true;
+  const DeviceResult result = DeviceImager::instance().run(job, wants, running);
+  std::vector<PlaneImage> images(poses.size(), planeImageLayout(settings.geometry, settings.pixelMm));
+  for (std::size_t i = 0; i < images.size(); ++i)
+  {
+    const std::size_t pixels = std::size_t(images[i].width) * std::size_t(images[i].height);
+    const auto from = std::ptrdiff_t(i * pixels);
+    images[i].value.assign(result.pixels.begin() + from, result.pixels.begin() + from + std::ptrdiff_t(pixels));
+    images[i].mask.assign(result.mask.begin() + from, result.mask.begin() + from + std::ptrdiff_t(pixels));
+  }
+  return images;
+}
+
+} // namespace sono

@@ -1,0 +1,182 @@
+#include "Echo/EchoSetup.h"
+
+#include "Echo/Pulse.h"
+#include "Require.h"
+
+#include <cmath>
+#include <string>
+
+namespace sono {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+double gaussianAreaMm2(const EchoSettings& s)
+{
+  return pi * s.lateralSigmaMm * s.elevationalSigmaMm;
+}
+
+/// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
+/// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * A * integral of g^2, with the beam's area
+/// A = pi sL sE for a Gaussian and that at the focus for a field.
+double scattererScale(const EchoSettings& s, double areaMm2)
+{
+  const double seen = areaMm2 * pulseEnergyMm(s) / (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
+  return std::pow(10.0, s.scattererLevelDb / 20.0) / std::sqrt(seen);
+}
+
+void requireReaches(const PulseEchoField& field, double depthMm)
+{
+  const BeamFieldAxis depth = field.view().depth;
+  const double slackMm = 1e-3; // for rounded steps
+  if (depth.highMm < depthMm - slackMm || depth.lowMm > depthMm)
+  {
+    throw Error("the pulse-echo field covers depths of " + std::to_string(depth.lowMm) + " to " +
+                std::to_string(depth.highMm) + " mm but the image is " + std::to_string(depthMm) +
+                " mm deep: give a field that reaches there, or lower the depth");
+  }
+}
+
+void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings)
+{
+  if (lines.empty())
+  {
+    throw Error("the probe has no scan lines: give it at least one");
+  }
+  if (double(lines.size()) * settings.sampleCount() > 5e8)
+  {
+    throw Error("the number of scan lines is " + std::to_string(lines.size()) +
+                ": at this depth and sampling their samples do not fit; use fewer lines or a lower sampling frequency");
+  }
+  for (std::size_t l = 0; l < lines.size(); ++l)
+  {
+    const Vec3d sum = lines[l].originMm + lines[l].axis + lines[l].lateral + lines[l].elevation;
+    if (!std::isfinite(sum.x + sum.y + sum.z))
+    {
+      throw Error("scan line " + std::to_string(l) +
+                  " has an origin or a direction that is not finite: place the probe");
+    }
+  }
+  if (!sources.traced)
+  {
+    return;
+  }
+  const TracedLines& traced = *sources.traced;
+  if (lines.size() != std::size_t(traced.lineCount))
+  {
+    throw Error("the probe has " + std::to_string(lines.size()) + " scan lines but " +
+                std::to_string(traced.lineCount) + " were traced: trace again with this probe");
+  }
+  if (traced.binCount < 1 || !(traced.binMm > 0.0) ||
+      traced.intensity.size() != lines.size() * std::size_t(traced.binCount) || traced.echoCount < 0 ||
+      (traced.echoCount > 0 && !(traced.echoSampleMm > 0.0)) ||
+      traced.boundaryEcho.size() != lines.size() * std::size_t(traced.echoCount))
+  {
+    throw Error("the traced lines do not have the intensities and echoes that they announce: trace again");
+  }
+}
+
+/// The settings, once they and the sources are known to be good.
+const EchoSettings& checked(const EchoSources& sources, const std::vector<ScanLine>& lines,
+                            const EchoSettings& settings)
+{
+  settings.validate();
+  requireConsistent(sources, lines, settings);
+  return settings;
+}
+
+} // namespace
+
+void EchoSettings::validate() const
+{
+  requireInRange(centreFrequencyMHz > 0.0 && std::isfinite(centreFrequencyMHz), "centre frequency (MHz)",
+                 centreFrequencyMHz, "more than 0");
+  requireInRange(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
+                 "more than 0 and below 2");
+  requireInRange(
+    samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
+    "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
+  requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
+  requireInRange(lateralSigmaMm > 0.0 && lateralSigmaMm <= 50.0, "lateral beam sigma (mm)", lateralSigmaMm,
+                 "more than 0 and at most 50");
+  requireInRange(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0, "elevational beam sigma (mm)",
+                 elevationalSigmaMm, "more than 0 and at most 50");
+  if (field)
+  {
+    requireReaches(*field, depthMm);
+  }
+  requireInRange(scattererCellMm >= 0.05 && scattererCellMm <= 10.0, "scatterer cell (mm)", scattererCellMm,
+                 "0.05 to 10");
+  requireInRange(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0, "scatterer level (dB)",
+                 scattererLevelDb, "-200 to 200");
+}
+
+int EchoSettings::sampleCount() const
+{
+  return int(std::floor(depthMm / sampleMm())) + 1;
+}
+
+EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>& scanLines,
+                     const EchoSettings& echoSettings)
+  : sources(echoSources)
+  , lines(scanLines)
+  , settings(checked(echoSources, scanLines, echoSettings))
+  , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
+  , finisher(settings, sources.traced, level ? &*level : nullptr)
+{
+  if (settings.field)
+  {
+    field = settings.field->view();
+  }
+  if (sources.scene)
+  {
+    const double scale = scattererScale(settings, level ? level->focusAreaMm2() : gaussianAreaMm2(settings));
+    tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
+  }
+  if (field && tissues)
+  {
+    tissueSight.emplace(*settings.field, tissues->grid().edgeMm);
+  }
+  if (field && sources.points)
+  {
+    pointSight.emplace(*settings.field, sources.points->grid().edgeMm);
+  }
+}
+
+Beam EchoSetup::beam(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const
+{
+  return { Vec3f(origin),
+           Vec3f(rotation * line.axis),
+           Vec3f(rotation * line.lateral),
+           Vec3f(rotation * line.elevation),
+           float(settings.lateralSigmaMm),
+           float(settings.elevationalSigmaMm),
+           field ? &*field : nullptr };
+}
+
+Beam EchoSetup::sceneBeam(int l) const
+{
+  const ScanLine& line = lines[std::size_t(l)];
+  return beam(line, sources.scene->localFromWorld(line.originMm), sources.scene->rotationToLocal());
+}
+
+Beam EchoSetup::pointBeam(int l) const
+{
+  const ScanLine& line = lines[std::size_t(l)];
+  return beam(line, line.originMm - sources.points->originMm(), Mat3d(1.0));
+}
+
+RfLines EchoSetup::emptyRf() const
+{
+  RfLines out;
+  out.lineCount = int(lines.size());
+  out.sampleCount = settings.sampleCount();
+  out.sampleMm = settings.sampleMm();
+  out.centreFrequencyMHz = settings.centreFrequencyMHz;
+  out.samplingMHz = settings.samplingMHz;
+  out.iq.resize(std::size_t(out.lineCount) * std::size_t(out.sampleCount));
+  return out;
+}
+
+} // namespace sono

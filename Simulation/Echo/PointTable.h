@@ -1,0 +1,20 @@
+#pragma once
+
+#include "Kernel/Vec.h"
+
+#include <vector>
+
+namespace sono {
+
+/// Scatterers sorted by cubic brick, in columns; positions in mm from an origin of their own. Brick b fills
+/// [b, b + 1) * edgeMm.
+struct PointTable
+{
+  std::vector<float> x, y, z, amplitude;
+  std::vector<int> begin; ///< of each brick, x fastest, and the end
+  Vec3i firstBrick{ 0 };
+  Vec3i bricks{ 0 }; ///< along x, y, z
+  float edgeMm = 1.0f;
+};
+
+} // namespace sono

@@ -1,0 +1,92 @@
+#pragma once
+
+#include "Kernel/BeamField.h"
+#include "Kernel/FastMath.h"
+#include "Kernel/Vec.h"
+
+#include <cstdint>
+
+namespace sono {
+
+/// A main beam in its scatterers' coordinates.
+struct Beam
+{
+  Vec3f origin;
+  Vec3f axis;
+  Vec3f lateral;
+  Vec3f elevation;
+  float lateralSigmaMm; ///< of a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2)
+  float elevationalSigmaMm;
+  const BeamFieldView* field; ///< the profile instead of the Gaussian; null: the Gaussian
+};
+
+/// Beyond this many sigma a Gaussian beam does not see a scatterer: it would add less than exp(-16/2) of its amplitude.
+constexpr float beamCutSigma = 4.0f;
+
+/// The sampling of a line as the inner loop wants it.
+struct LineGrid
+{
+  float samplesPerMm;
+  float radPerSample;
+  float halfTurnRe; ///< exp(i radPerSample / 2)
+  float halfTurnIm;
+  float lastSample;
+};
+
+/// `radPerMm` is 2 k; a sample's turn must be below pi (Nyquist).
+inline LineGrid makeLineGrid(float sampleMm, double radPerMm, int sampleCount)
+{
+  const double turn = radPerMm * double(sampleMm);
+  return { 1.0f / sampleMm, float(turn), float(std::cos(0.5 * turn)), float(std::sin(0.5 * turn)),
+           float(sampleCount - 1) };
+}
+
+/// A scatterer in the beam's frame: depth in samples, distances from the axis in mm.
+struct BeamPlace
+{
+  float position;
+  float lateral;
+  float elevational;
+};
+
+SONO_HD inline BeamPlace placeInBeam(float x, float y, float z, const Beam& b, const LineGrid& g)
+{
+  const float px = x - b.origin.x;
+  const float py = y - b.origin.y;
+  const float pz = z - b.origin.z;
+  return { (px * b.axis.x + py * b.axis.y + pz * b.axis.z) * g.samplesPerMm,
+           px * b.lateral.x + py * b.lateral.y + pz * b.lateral.z,
+           px * b.elevation.x + py * b.elevation.y + pz * b.elevation.z };
+}
+
+/// What a scatterer adds: (re, im) to the sample before it and to the one behind it.
+struct ScattererSplit
+{
+  float sample;
+  float added[4];
+};
+
+/// Splits amplitude a, seen at a position on the line, between its two samples.
+SONO_HD inline ScattererSplit splitScatterer(float a, float position, const LineGrid& g)
+{
+  const float whole = floorf(position);
+  const float fraction = position - whole;
+  // Phase as seen from halfway between the two samples, which keeps it below pi / 2; each is half a turn away.
+  const float phase = g.radPerSample * (fraction - 0.5f);
+  const float re = a * cosSmall(phase);
+  const float im = -a * sinSmall(phase);
+  const float near = 1.0f - fraction;
+  return { whole,
+           { (re * g.halfTurnRe + im * g.halfTurnIm) * near, (im * g.halfTurnRe - re * g.halfTurnIm) * near,
+             (re * g.halfTurnRe - im * g.halfTurnIm) * fraction, (im * g.halfTurnRe + re * g.halfTurnIm) * fraction } };
+}
+
+/// Squared distance from the axis in sigmas.
+SONO_HD inline float squaredSigmas(const BeamPlace& p, float perLateralSigma, float perElevationalSigma)
+{
+  const float dl = p.lateral * perLateralSigma;
+  const float de = p.elevational * perElevationalSigma;
+  return dl * dl + de * de;
+}
+
+} // namespace sono

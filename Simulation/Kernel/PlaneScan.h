@@ -1,0 +1,99 @@
+#pragma once
+
+#include "Kernel/PixelMath.h"
+
+#include <cstddef>
+
+// Scan conversion of one pixel of the probe's plane.
+
+namespace sono {
+
+/// The beam's coordinates of a plane position, (line, r) = ((u - firstUnit) linesPerUnit, rho - faceRadius), where u is
+/// the angle about the lines' common centre, or the lateral position when they are parallel. The twin of
+/// beamFromPlane in single precision, without a branch per pixel.
+struct PlaneBeams
+{
+  bool parallel;
+  float faceRadiusMm;
+  float centreAxialMm; ///< where the lines of a fan come from
+  float firstUnit;
+  float linesPerUnit;
+
+  SONO_HD float axialFromCentre(float axialMm) const { return axialMm - centreAxialMm; }
+  SONO_HD float lineOfParallel(float lateralMm) const { return (lateralMm - firstUnit) * linesPerUnit; }
+  /// `forward` is x, the axial distance from the centre, but not 0: at the centre every line passes.
+  SONO_HD float lineOfFan(float lateralMm, float forward) const
+  {
+    return (fastAtan2(lateralMm, forward) - firstUnit) * linesPerUnit;
+  }
+  SONO_HD float depthInFan(float lateralMm, float x) const
+  {
+    return sqrtf(lateralMm * lateralMm + x * x) - faceRadiusMm;
+  }
+  SONO_HD static float notZero(float x) { return x != 0.0f ? x : 1e-20f; }
+};
+
+/// Lines x samples with bilinear lookup; on a closed circle, the first line follows the last.
+struct BeamSamples
+{
+  const float* values;
+  int lineCount;
+  int sampleCount;
+  bool closed;
+
+  SONO_HD static float within(float x, float low, float high) { return x < low ? low : (x > high ? high : x); }
+  SONO_HD float at(float line, float sample) const
+  {
+    const float turned = line < float(lineCount) ? line : line - float(lineCount);
+    const float wanted = closed || line < float(lineCount - 1) ? turned : float(lineCount - 1);
+    const float lineInside = wanted > 0.0f ? wanted : 0.0f;
+    const float sampleInside = within(sample, 0.0f, float(sampleCount - 1));
+    const int l = int(lineInside);
+    const int s = int(sampleInside);
+    const float fl = lineInside - float(l);
+    const float fs = sampleInside - float(s);
+    const float* near = values + std::size_t(l) * std::size_t(sampleCount) + s;
+    const float* last = values + std::size_t(lineCount - 1) * std::size_t(sampleCount);
+    const float* far = near < last ? near + sampleCount : closed ? values + s : near;
+    const int deeper = s + 1 < sampleCount ? 1 : 0;
+    const float nearValue = near[0] + fs * (near[deeper] - near[0]);
+    const float farValue = far[0] + fs * (far[deeper] - far[0]);
+    return nearValue + fl * (farValue - nearValue);
+  }
+};
+
+/// What the lines cover, with some slack: rounding must not cut the pixels that lie on the sector's edge.
+struct ScannedArea
+{
+  static constexpr float lineSlack = 1e-3f;
+  float lastLine;
+  float firstMm;
+  float lastMm;
+
+  SONO_HD bool contains(float line, float depthMm) const
+  {
+    return line >= -lineSlack && line <= lastLine && depthMm >= firstMm && depthMm <= lastMm;
+  }
+};
+
+/// All that a pixel needs but the samples.
+struct PlaneScan
+{
+  PlaneBeams beams;
+  ScannedArea area;
+  float samplesPerMm;
+  int lineCount;
+  int sampleCount;
+  bool closed;
+  int width;
+  int height;
+  double pixelMm;
+  double lateralMinMm;
+  double axialMinMm;
+
+  SONO_HD float lateralMm(int i) const { return float(lateralMinMm + i * pixelMm); }
+  SONO_HD float axialMm(int j) const { return float(axialMinMm + j * pixelMm); }
+  SONO_HD BeamSamples samples(const float* values) const { return { values, lineCount, sampleCount, closed }; }
+};
+
+} // namespace sono

@@ -1,0 +1,91 @@
+#include "Trace/FacePlace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace sono {
+
+namespace {
+
+constexpr double waterMRayl = 1.48;
+constexpr double mostReflected = 0.3; // of the intensity, at normal incidence
+constexpr double mostGapMm = 10.0;
+constexpr double farMm = 500.0;
+
+/// Label of the voxel at a place in the world; nothing beyond the volume.
+const LabelInfo* labelAt(const Scene& scene, const Vec3d& world)
+{
+  const Vec3i size = scene.placement().size;
+  const Vec3i v(glm::floor(scene.placement().indexFromWorld(world) + 0.5));
+  if (glm::any(glm::lessThan(v, Vec3i(0))) || glm::any(glm::greaterThanEqual(v, size)))
+  {
+    return nullptr;
+  }
+  return scene.volume().find(scene.volume().voxels[v.x + std::size_t(size.x) * (v.y + std::size_t(size.y) * v.z)]);
+}
+
+/// Whether the label is what surrounds the body.
+bool isOutside(const Scene& scene, const LabelInfo* label)
+{
+  return !label || scene.tissueOfLabel()[std::size_t(label->id)] == scene.outsideIndex();
+}
+
+bool keepsSoundOut(const Tissue& tissue)
+{
+  const double r = (tissue.impedanceMRayl - waterMRayl) / (tissue.impedanceMRayl + waterMRayl);
+  return r * r > mostReflected;
+}
+
+/// Way along a line to the first voxel of the body; infinite where there is none.
+double gapMm(const Scene& scene, const ScanLine& line)
+{
+  const Vec3d spacing = scene.placement().spacingMm;
+  const double step = 0.5 * std::min({ spacing.x, spacing.y, spacing.z });
+  for (double t = 0.0; t < farMm; t += step)
+  {
+    if (!isOutside(scene, labelAt(scene, line.originMm + t * line.axis)))
+    {
+      return t;
+    }
+  }
+  return INFINITY;
+}
+
+} // namespace
+
+std::string facePlaceWarning(const Scene& scene, const std::vector<ScanLine>& lines)
+{
+  std::map<const LabelInfo*, std::size_t> blocking;
+  double gap = INFINITY;
+  for (const ScanLine& line : lines)
+  {
+    const LabelInfo* label = labelAt(scene, line.originMm);
+    if (isOutside(scene, label))
+    {
+      gap = std::min(gap, gapMm(scene, line));
+      continue;
+    }
+    gap = 0.0;
+    if (keepsSoundOut(scene.tissues()[scene.tissueOfLabel()[std::size_t(label->id)]]))
+    {
+      ++blocking[label];
+    }
+  }
+  for (const auto& [label, count] : blocking)
+  {
+    if (2 * count > lines.size())
+    {
+      return "The transducer's face is inside '" + label->name + "' (" + label->tissue +
+             "), which sound hardly enters or leaves: move the probe onto the skin.";
+    }
+  }
+  if (std::isfinite(gap) && gap > mostGapMm)
+  {
+    return "The transducer's face is " + std::to_string(std::lround(gap)) +
+           " mm off the body, and the gap counts as coupling gel: move the probe onto the skin.";
+  }
+  return {};
+}
+
+} // namespace sono

@@ -1,0 +1,132 @@
+#include "GpuParity.h"
+#include "TargetScenes.h"
+#include "TestScenes.h"
+
+#include <random>
+
+namespace {
+
+using namespace sono;
+using namespace sono::test;
+
+/// Random balls of random tissues, seen from random places with random settings.
+class RandomScene
+{
+public:
+  explicit RandomScene(unsigned seed)
+    : random_(seed)
+  {
+    const int count = 2 + int(random_() % 5);
+    for (int t = 0; t < count; ++t)
+    {
+      Tissue tissue =
+        makeTissue("t" + std::to_string(t), between(1.3, 2.2), between(1400.0, 1700.0), between(0.0, 1.5));
+      tissue.scattererMean = between(0.0, 1.0);
+      tissue.scattererSigma = between(0.0, 1.0);
+      tissue.scattererProbability = between(0.0, 1.0);
+      tissue.tau = random_() % 3 ? 1.0 : between(0.5, 2.5);
+      tissue.gamma = random_() % 3 ? 0.0 : between(-1.0, 1.0);
+      tissues_.push_back(tissue);
+    }
+    const Vec3i size(12 + int(random_() % 20), 12 + int(random_() % 20), 20 + int(random_() % 20));
+    const Vec3d spacing(between(0.4, 1.2), between(0.4, 1.2), between(0.4, 1.2));
+    extent_ = Vec3d(size) * spacing;
+    std::vector<std::pair<Vec3d, double>> balls;
+    for (int b = 0; b < 6; ++b)
+    {
+      balls.push_back({ Vec3d(between(0, 1), between(0, 1), between(0, 1)) * extent_, between(1.0, 8.0) });
+    }
+    scene = makeScene(size, spacing, tissues_, [&](const Vec3d& p) {
+      int label = 0;
+      for (std::size_t b = 0; b < balls.size(); ++b)
+      {
+        label = glm::length(p - balls[b].first) < balls[b].second ? int(b) % count : label;
+      }
+      return label;
+    });
+    makeSettings();
+    for (int l = 0; l < 6; ++l)
+    {
+      const Vec3d origin(between(0.2, 0.8) * extent_.x, between(0.2, 0.8) * extent_.y, -between(0.0, 3.0));
+      lines.push_back(makeLine(origin, { between(-0.4, 0.4), between(-0.4, 0.4), 1.0 }));
+    }
+    if (random_() % 2)
+    {
+      const Vec3d low(between(0.3, 0.5) * extent_.x, between(0.3, 0.5) * extent_.y, between(0.3, 0.5) * extent_.z);
+      targets.push_back(makeBox("needle", makeTissue("steel", 46.0, 5900.0, 0.1), low, low + Vec3d(2.1, 3.2, 1.7)));
+    }
+  }
+
+  std::unique_ptr<Scene> scene;
+  std::vector<ScanLine> lines;
+  std::vector<TargetSurface> targets;
+  TraceSettings tracing;
+  EchoSettings echo;
+
+private:
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+
+  void makeSettings()
+  {
+    echo.depthMm = tracing.depthMm = between(0.5, 1.2) * extent_.z;
+    tracing.echoSampleMm = random_() % 2 ? echo.sampleMm() : 0.01;
+    tracing.model = random_() % 4 ? InterfaceModel::Acoustic : InterfaceModel::Amadou2024;
+    tracing.sampling = random_() % 2 ? Sampling::LowDiscrepancy : Sampling::Independent;
+    tracing.deterministic = random_() % 6 == 0;
+    tracing.pathsPerLine = 256 + int(random_() % 1000);
+    tracing.maxCollisions = int(random_() % 12);
+    tracing.coherenceMm = between(0.1, 50.0);
+    tracing.lobeSigmaRad = random_() % 4 ? between(0.01, 1.0) : 0.0;
+    tracing.radialBinMm = between(0.1, 0.6);
+    tracing.seed = random_();
+    echo.seed = random_();
+    echo.lateralSigmaMm = between(0.4, 2.0);
+    echo.elevationalSigmaMm = between(0.4, 2.0);
+    echo.scattererCellMm = between(0.3, 0.8);
+  }
+
+  std::mt19937 random_;
+  std::vector<Tissue> tissues_;
+  Vec3d extent_{ 0.0 };
+};
+
+void expectAgreement(const RandomScene& random, unsigned seed)
+{
+  const EchoSources sources{ random.scene.get(), nullptr, nullptr };
+  const auto run = [&](Device device) {
+    return runChain(sources, random.lines, random.tracing, random.echo, device, random.targets);
+  };
+  expectSameRf(run(Device::Cuda), run(Device::Cpu), "scene " + std::to_string(seed));
+}
+
+/// Small enough for compute-sanitizer (see run-gpu.sh), with every kernel in it.
+TEST(GpuSmall, EveryKernel)
+{
+  SONO_GPU_OR_SKIP();
+  RandomScene random(3);
+  random.tracing.pathsPerLine = 100;
+  expectAgreement(random, 3);
+  const PointScatterers points({ { { 5.0, 5.0, 5.0 }, 1.0f }, { { 6.0, 5.5, 9.0 }, -0.5f } });
+  const EchoSources sources{ random.scene.get(), nullptr, &points };
+  expectSameRf(runChain(sources, random.lines, random.tracing, random.echo, Device::Cuda),
+               runChain(sources, random.lines, random.tracing, random.echo, Device::Cpu), "points");
+  ImageSettings settings;
+  settings.geometry.lineCount = 5;
+  settings.geometry.depthMm = 12.0;
+  settings.tracing.pathsPerLine = 50;
+  settings.bmode.noiseDb = -60.0;
+  settings.matchStages();
+  settings.device = Device::Cuda;
+  EXPECT_EQ(simulateImages(*random.scene, { ProbePose{ { 6.0, 6.0, 0.0 } } }, settings).size(), 1u);
+}
+
+TEST(GpuScenes, AHundredRandomScenesAgreeWithTheCpu)
+{
+  SONO_GPU_OR_SKIP();
+  for (unsigned seed = 1; seed <= 100; ++seed)
+  {
+    expectAgreement(RandomScene(seed), seed);
+  }
+}
+
+} // namespace

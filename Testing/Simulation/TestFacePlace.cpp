@@ -1,0 +1,62 @@
+#include "TestScenes.h"
+
+#include "Trace/FacePlace.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace sono;
+using namespace sono::test;
+
+/// From x = 20 mm on: 20 mm of soft tissue, bone, lung; air before that, which is the outside.
+std::unique_ptr<Scene> makeLayers()
+{
+  return makeScene(
+    Vec3i(80, 20, 20), Vec3d(1.0),
+    { makeTissue("air", 0.0004, 343, 7.5), makeTissue("soft", 1.63, 1540, 0.5), makeTissue("bone", 7.8, 4080, 5.0),
+      makeTissue("lung", 0.18, 600, 40.0) },
+    [](const Vec3d& p) { return int(p.x / 20.0); }, "air");
+}
+
+std::string at(double x, const Vec3d& axis = { 1.0, 0.0, 0.0 })
+{
+  return facePlaceWarning(*makeLayers(), { makeLine({ x, 10.0, 10.0 }, axis) });
+}
+
+TEST(FacePlace, OnAndInTheBodyThereIsNothingToSay)
+{
+  EXPECT_EQ(at(19.5), "");
+  EXPECT_EQ(at(20.5), "");
+  EXPECT_EQ(at(35.0), ""); // as a catheter's
+}
+
+TEST(FacePlace, InsideBoneAndLung)
+{
+  EXPECT_NE(at(50.0).find("inside 'label_2' (bone)"), std::string::npos) << at(50.0);
+  EXPECT_NE(at(70.0).find("inside 'label_3' (lung)"), std::string::npos) << at(70.0);
+  EXPECT_NE(at(50.0).find("move the probe onto the skin"), std::string::npos);
+}
+
+TEST(FacePlace, OffTheBody)
+{
+  EXPECT_EQ(at(12.0), "");
+  EXPECT_NE(at(5.0).find("15 mm off the body"), std::string::npos) << at(5.0);
+  EXPECT_NE(at(-35.0).find("55 mm off the body"), std::string::npos) << at(-35.0); // beyond the volume
+}
+
+TEST(FacePlace, LookingAwayIsTheTracersToSay)
+{
+  EXPECT_EQ(at(5.0, { -1.0, 0.0, 0.0 }), "");
+}
+
+TEST(FacePlace, MostOfTheFaceDecides)
+{
+  const auto scene = makeLayers();
+  const ScanLine inSoft = makeLine({ 30.0, 10.0, 10.0 }, { 1.0, 0.0, 0.0 });
+  const ScanLine inBone = makeLine({ 50.0, 10.0, 10.0 }, { 1.0, 0.0, 0.0 });
+  EXPECT_EQ(facePlaceWarning(*scene, { inSoft, inBone }), "");
+  EXPECT_NE(facePlaceWarning(*scene, { inSoft, inBone, inBone }), "");
+}
+
+} // namespace

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "PhantomImaging.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sono::study {
+
+/// Where a wire was seen along the line that should hold it: depth for the vertical group, lateral for the others.
+struct WirePlace
+{
+  bool found = false; ///< a peak 10 dB above the line's median that is not at the end of the searched window
+  double expectedMm = 0.0;
+  double pixelMm = 0.0;  ///< of the brightest pixel
+  double fittedMm = 0.0; ///< vertex of the parabola through the pixels of the main lobe (-6 dB), in dB
+  double aboveMedianDb = 0.0;
+};
+
+/// Looks along the expected line, as the seed does, in a scan-converted image in dB, within 4.9 mm of the wire.
+WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire);
+
+/// Mean and standard deviation of an error's absolute value.
+struct Spread
+{
+  int count = 0;
+  double mean = 0.0;
+  double deviation = 0.0;
+};
+
+struct WireErrors
+{
+  std::vector<std::pair<PhantomTarget, WirePlace>> wires;
+
+  /// Of the wires found, of a view (0: all) and a group (empty: all), fitted or of the brightest pixel.
+  Spread spread(int view, const std::string& group, bool fitted) const;
+};
+
+/// Images all views, with or without the gel's speckle, and locates their wires.
+WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed, bool background);
+
+} // namespace sono::study

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "Image/ScanConvert.h"
+#include "Labels/LabelVolume.h"
+#include "Probe/ScanGeometry.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace sono::study {
+
+/// 8-bit red, green and blue, rows from the top.
+struct Picture
+{
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// Grey levels 0 to 1; outside of the sector dark blue, so that it differs from black inside.
+Picture pictureOf(const PlaneImage& grey);
+
+/// The labels of the probe's plane in their colours, or in a palette of our own where the map has none.
+Picture pictureOfLabels(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout);
+
+/// Pictures of one size in rows.
+Picture montage(const std::vector<Picture>& panels, int columns);
+
+/// Writes a PNG. Throws Error when that fails.
+void writePicture(const Picture& picture, const std::filesystem::path& path);
+
+} // namespace sono::study

@@ -1,0 +1,393 @@
+#include "Report.h"
+
+#include "Detectability.h"
+#include "Labels/CsvFile.h"
+#include "Progress.h"
+#include "SvgPlot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace sono::study {
+namespace {
+
+double numberOf(const std::string& text)
+{
+  std::istringstream stream(text); // "12.3 +- 4" counts as 12.3
+  double value = 0.0;
+  return stream >> value ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// What a figure must reach; empty for those that are only reported.
+struct Goal
+{
+  const char* name;
+  const char* asked;
+  bool (*met)(double);
+};
+
+const std::vector<Goal> goals{
+  { "tre_mean_mm", "0.05 or less", [](double v) { return v <= 0.05; } },
+  { "tre_std_mm", "0.05 or less", [](double v) { return v <= 0.05; } },
+  { "gcnr_mean_abs_error", "0.02 or less", [](double v) { return v <= 0.02; } },
+  { "contrast_mean_abs_error_db", "1.5 or less", [](double v) { return v <= 1.5; } },
+  { "speckle_snr", "1.91 +- 0.01", [](double v) { return std::fabs(v - 1.91) <= 0.01; } },
+  { "rayleigh_sse", "1.0e-5 or less", [](double v) { return v <= 1.0e-5; } },
+  { "attenuation_slope_db_per_cm", "3.60", [](double v) { return std::fabs(v - 3.6) <= 0.005; } },
+  { "equal_rmse_path_ratio", "10 or more", [](double v) { return v >= 10.0; } },
+};
+
+class Report
+{
+public:
+  explicit Report(const std::filesystem::path& folder)
+    : folder_(folder)
+  {
+  }
+
+  std::string html()
+  {
+    summary();
+    wires();
+    lesions();
+    speckle();
+    beam();
+    pictures();
+    errors();
+    asTheyAre();
+    return text_.str();
+  }
+
+private:
+  std::optional<CsvFile> table(const std::string& name)
+  {
+    const auto path = folder_ / name;
+    if (!std::filesystem::exists(path))
+    {
+      paragraph("Not measured: " + name + " is missing.");
+      return std::nullopt;
+    }
+    return CsvFile::read(path.string());
+  }
+
+  std::vector<std::filesystem::path> filesLike(const std::string& prefix) const
+  {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind(prefix, 0) == 0 && entry.path().extension() == ".csv")
+      {
+        files.push_back(entry.path());
+      }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+
+  void heading(const std::string& words) { text_ << "<h2>" << escapedHtml(words) << "</h2>\n"; }
+  void paragraph(const std::string& words) { text_ << "<p>" << escapedHtml(words) << "</p>\n"; }
+
+  void show(const CsvFile& csv)
+  {
+    text_ << "<table><tr>";
+    for (const std::string& name : csv.header)
+    {
+      text_ << "<th>" << escapedHtml(name) << "</th>";
+    }
+    text_ << "</tr>\n";
+    for (const CsvFile::Row& row : csv.rows)
+    {
+      text_ << "<tr>";
+      for (const std::string& field : row.fields)
+      {
+        text_ << "<td>" << escapedHtml(field) << "</td>";
+      }
+      text_ << "</tr>\n";
+    }
+    text_ << "</table>\n";
+  }
+
+  void showTable(const std::string& name)
+  {
+    if (const auto csv = table(name))
+    {
+      show(*csv);
+    }
+  }
+
+  /// Columns of a table over its first, one curve each.
+  void plotColumns(const CsvFile& csv, const std::string& title, const std::string& unit)
+  {
+    std::vector<Curve> curves;
+    for (std::size_t column = 1; column < csv.header.size(); ++column)
+    {
+      Curve curve{ csv.header[column], {}, {}, false };
+      for (const CsvFile::Row& row : csv.rows)
+      {
+        curve.x.push_back(numberOf(row.fields[0]));
+        curve.y.push_back(numberOf(row.fields[column]));
+      }
+      curves.push_back(curve);
+    }
+    text_ << svgPlot(title, { csv.header[0] }, { unit }, curves);
+  }
+
+  void summary()
+  {
+    heading("Figures");
+    text_ << "<table><tr><th>figure</th><th>value</th><th>unit</th><th>asked</th><th></th></tr>\n";
+    for (const auto& path : filesLike("figures_"))
+    {
+      for (const CsvFile::Row& row : CsvFile::read(path.string()).rows)
+      {
+        const auto goal =
+          std::find_if(goals.begin(), goals.end(), [&](const Goal& g) { return row.fields[0] == g.name; });
+        const bool asked = goal != goals.end();
+        const char* verdict = !asked ? "" : goal->met(numberOf(row.fields[1])) ? "met" : "MISSED";
+        text_ << "<tr><td>" << escapedHtml(row.fields[0]) << "</td><td>" << escapedHtml(row.fields[1]) << "</td><td>"
+              << escapedHtml(row.fields[2]) << "</td><td>" << (asked ? goal->asked : "") << "</td><td>" << verdict
+              << "</td></tr>\n";
+      }
+    }
+    text_ << "</table>\n";
+  }
+
+  void wires()
+  {
+    heading("Wires: target registration error");
+    paragraph("Each wire is looked for along the line that should hold it, in the scan-converted image with pixels of "
+              "0.23 mm; its place is the vertex of the parabola through the main lobe in dB. The seed's column stands "
+              "beside it. A wire of 0.1 mm is thinner than a wavelength and scatters; as a surface it is a mirror that "
+              "only those scan lines see that meet it.");
+    showTable("phantom_tre.csv");
+    showTable("phantom_wire_models.csv");
+    if (const auto csv = table("phantom_wires.csv"))
+    {
+      std::map<std::string, Curve> groups;
+      for (const CsvFile::Row& row : csv->rows)
+      {
+        Curve& curve = groups[row.fields[0]];
+        curve.name = row.fields[0];
+        curve.dots = true;
+        curve.x.push_back(numberOf(row.fields[3]));
+        curve.y.push_back(numberOf(row.fields[4]));
+      }
+      std::vector<Curve> curves;
+      for (const auto& [name, curve] : groups)
+      {
+        curves.push_back(curve);
+      }
+      text_ << svgPlot("Error of each wire", { "depth mm" }, { "error mm" }, curves);
+    }
+  }
+
+  void lesions()
+  {
+    heading("Lesions: gCNR, CNR, contrast");
+    paragraph("Ten seeds. gCNR, CNR and contrast are of the envelope; the row \"as shown\" is of the grey levels. Two "
+              "regions of fully developed speckle have one gCNR for each contrast, the curve below. The seed's real "
+              "values lie beside it, so no simulator of such speckle can meet its gCNR and its contrast at once: "
+              "gcnr_error_theory_allows is the smallest mean error of gCNR when contrast is off by 1.5 dB on average. "
+              "What size and depth the seed's anechoic lesions have it does not tell; the second table shows what both "
+              "do to their contrast.");
+    if (const auto csv = table("phantom_lesions.csv"))
+    {
+      show(*csv);
+      plotLesions(*csv);
+    }
+    showTable("phantom_anechoic.csv");
+    paragraph("Other settings, each the same for all lesions.");
+    showTable("phantom_settings.csv");
+  }
+
+  /// gCNR over the size of the contrast: theory, the seed's real and simulated lesions, and ours.
+  void plotLesions(const CsvFile& csv)
+  {
+    Curve theory{ "speckle in theory", {}, {}, false };
+    for (double db = 0.5; db <= 26.0; db += 0.5)
+    {
+      theory.x.push_back(db);
+      theory.y.push_back(gcnrOfSpeckle(db));
+    }
+    std::vector<Curve> curves{ theory };
+    const std::map<std::string, std::size_t> columns{ { "real (seed)", 2 }, { "simulated (seed)", 3 }, { "here", 4 } };
+    for (const auto& [name, column] : columns)
+    {
+      Curve curve{ name, {}, {}, true };
+      for (const CsvFile::Row& row : csv.rows)
+      {
+        if (row.fields[1] == "gCNR")
+        {
+          curve.y.push_back(numberOf(row.fields[column]));
+        }
+        if (row.fields[1] == "contrast dB")
+        {
+          curve.x.push_back(std::fabs(numberOf(row.fields[column])));
+        }
+      }
+      curves.push_back(curve);
+    }
+    text_ << svgPlot("gCNR and contrast of the five lesions", { "contrast dB, without sign" }, { "gCNR" }, curves);
+  }
+
+  void speckle()
+  {
+    heading("Speckle");
+    paragraph("600 scatterers of amplitude 1 per mm2 in 40 x 40 mm, beam sigma 2 mm. The error of the fit is what the "
+              "number of independent samples leaves: ten seeds pooled leave a tenth of one.");
+    if (const auto csv = table("phantom_speckle.csv"))
+    {
+      plotColumns(*csv, "Envelope of the first seed", "share");
+    }
+  }
+
+  void beam()
+  {
+    heading("Beam");
+    paragraph("Full width at half maximum of a wire's echo. The lateral reference holds for one frequency and a "
+              "transmit focus at each depth; here it is at 50 mm, and the band and the wire's length widen the beam "
+              "there by a tenth.");
+    if (const auto csv = table("phantom_fwhm.csv"))
+    {
+      plotColumns(*csv, "Width of a wire's echo", "mm");
+    }
+  }
+
+  void picture(const std::string& name, const std::string& words)
+  {
+    if (std::filesystem::exists(folder_ / name))
+    {
+      text_ << "<p><img src='" << name << "' alt='" << name << "'><br>" << escapedHtml(words) << "</p>\n";
+    }
+    else
+    {
+      paragraph("Not drawn: " + name + " is missing.");
+    }
+  }
+
+  void pictures()
+  {
+    heading("Pictures");
+    picture("phantom.png", "The phantom's three views.");
+    picture("artefacts.png", "Enhancement behind a ball of water, with a lobe of 6 and of 45 degrees; shadow of a ball "
+                             "of bone; a rib, labels and image.");
+    const std::string panels = "From the upper left: segmentation, without MCPT, 500 rays, 2500 rays; C0 0.2, "
+                               "gamma -1.8, tau 2.8, Gaussian beam with sigma 1.5 mm.";
+    picture("parameters.png", "Energy kept at boundaries, lobe 6 degrees. " + panels);
+    showTable("phantom_parameters.csv");
+    picture("parameters_seed.png", "The seed's equations to the letter, lobe 45 degrees. " + panels);
+    showTable("phantom_parameters_seed.csv");
+  }
+
+  void errors()
+  {
+    heading("Run time against error");
+    const auto files = filesLike("error_");
+    if (files.empty())
+    {
+      paragraph("Not measured: there is no error_*.csv.");
+    }
+    for (const auto& path : files)
+    {
+      const CsvFile csv = CsvFile::read(path.string());
+      text_ << "<h3>" << escapedHtml(path.stem().string().substr(6)) << "</h3>\n";
+      for (const std::string& error : csv.header)
+      {
+        if (error.rfind("rmse_", 0) == 0)
+        {
+          plotError(csv, error, "paths");
+          plotError(csv, error, "seconds");
+        }
+      }
+      text_ << "<details><summary>Table</summary>\n";
+      show(csv);
+      text_ << "</details>\n";
+    }
+  }
+
+  void plotError(const CsvFile& csv, const std::string& error, const std::string& over)
+  {
+    if (csv.column(over) < 0)
+    {
+      return;
+    }
+    const auto x = std::size_t(csv.column(over));
+    const auto y = std::size_t(csv.column(error));
+    std::map<std::string, Curve> curves;
+    for (const CsvFile::Row& row : csv.rows)
+    {
+      std::string name;
+      for (std::size_t i = 0; i < csv.header.size(); ++i)
+      {
+        const std::string& column = csv.header[i];
+        if (column != "paths" && column != "seconds" && column.rfind("rmse_", 0) != 0)
+        {
+          name += (name.empty() ? "" : ", ") + row.fields[i];
+        }
+      }
+      Curve& curve = curves[name];
+      curve.name = name;
+      curve.x.push_back(numberOf(row.fields[x]));
+      curve.y.push_back(numberOf(row.fields[y]));
+    }
+    std::vector<Curve> list;
+    for (const auto& [name, curve] : curves)
+    {
+      list.push_back(curve);
+    }
+    text_ << svgPlot(error + " over " + over, { over, true }, { error, true }, list);
+  }
+
+  void asTheyAre()
+  {
+    heading("Stability");
+    showTable("stability.csv");
+    heading("Skipping");
+    showTable("skipping.csv");
+  }
+
+  std::filesystem::path folder_;
+  std::ostringstream text_;
+};
+
+constexpr const char* head =
+  R"(<!DOCTYPE html><html><head><meta charset="utf-8"><title>SonoVDB: the study</title><style>
+body { font-family: sans-serif; max-width: 72em; margin: 2em auto; color: #222; }
+table { border-collapse: collapse; margin: 1em 0; font-size: 0.9em; }
+td, th { border: 1px solid #ccc; padding: 0.2em 0.6em; text-align: left; }
+img { max-width: 100%; }
+</style></head><body>
+<h1>SonoVDB: the study</h1>
+<p>"The seed" is Amadou et al. 2024. Settings and their reasons stand in Testing/Study/PhantomImaging.cpp.</p>
+)";
+
+} // namespace
+
+void writeReport(const std::filesystem::path& folder)
+{
+  std::error_code ignored;
+  const bool any = std::filesystem::is_directory(folder, ignored) &&
+                   std::any_of(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator(),
+                               [](const auto& entry) { return entry.path().extension() == ".csv"; });
+  if (!any)
+  {
+    throw Error("'" + folder.string() + "' holds no tables: run the parts of the study first");
+  }
+  std::ofstream html(folder / "report.html");
+  html << head << Report(folder).html() << "</body></html>\n";
+  html.flush();
+  if (!html)
+  {
+    throw Error("'" + (folder / "report.html").string() + "' cannot be written: choose a folder that you may write to");
+  }
+}
+
+} // namespace sono::study

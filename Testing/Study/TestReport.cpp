@@ -1,0 +1,101 @@
+#include "Report.h"
+#include "Study.h"
+#include "SvgPlot.h"
+
+#include "ErrorText.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace {
+
+using namespace sono::study;
+
+std::filesystem::path emptyFolder(const std::string& name)
+{
+  const auto folder = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+std::string textOf(const std::filesystem::path& path)
+{
+  std::ifstream stream(path);
+  return { std::istreambuf_iterator<char>(stream), {} };
+}
+
+TEST(StudyReport, HoldsTheFiguresOfAPart)
+{
+  const auto folder = emptyFolder("study_report");
+  Output output(folder, "sample", true);
+  output.figure("some_name", 12.5, "mm");
+  output.finish();
+  writeReport(folder);
+  const std::string html = textOf(folder / "report.html");
+  EXPECT_NE(html.find("some_name"), std::string::npos);
+  EXPECT_NE(html.find("12.5"), std::string::npos);
+}
+
+TEST(StudyReport, DrawsErrorsOverPathsAndSecondsAndSaysWhatIsMissing)
+{
+  const auto folder = emptyFolder("study_errors");
+  const Output output(folder, "sample", true);
+  output.table("error_stack.csv", { "sampler", "paths", "seconds", "rmse_intensity" },
+               { { "independent", "10", "0.1", "0.3" },
+                 { "independent", "1000", "10", "0.03" },
+                 { "sobol", "10", "0.1", "0.2" } });
+  output.table("stability.csv", { "case", "result" }, { { "depth 0", "refused <clearly>" } });
+  writeReport(folder);
+  const std::string html = textOf(folder / "report.html");
+  sono::testing::expectContains(html, "rmse_intensity over paths");
+  sono::testing::expectContains(html, "rmse_intensity over seconds");
+  sono::testing::expectContains(html, ">sobol<");
+  sono::testing::expectContains(html, "refused &lt;clearly&gt;");
+  sono::testing::expectContains(html, "skipping.csv is missing");
+}
+
+TEST(StudyReport, FiguresThatMissAreNamed)
+{
+  const auto folder = emptyFolder("study_goals");
+  Output output(folder, "sample", true);
+  output.figure("tre_mean_mm", 0.2, "mm");
+  output.figure("speckle_snr", 1.912, "1");
+  output.finish();
+  writeReport(folder);
+  const std::string html = textOf(folder / "report.html");
+  sono::testing::expectContains(html, "MISSED");
+  sono::testing::expectContains(html, "<td>met</td>");
+}
+
+TEST(SvgPlot, PlacesPointsAndLeavesOutWhatItCannotShow)
+{
+  const std::string svg =
+    svgPlot("t", { "x", true }, { "y" }, { { "c", { 1.0, 10.0, 100.0, -1.0 }, { 0.0, 1.0, 2.0, 3.0 }, true } });
+  std::size_t dots = 0;
+  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1))
+  {
+    ++dots;
+  }
+  EXPECT_EQ(dots, 3u);
+  // The middle one lies halfway between the others on a logarithmic axis.
+  const auto placeOf = [&](std::size_t index) {
+    std::size_t at = svg.find("cx='");
+    for (std::size_t i = 0; i < index; ++i)
+    {
+      at = svg.find("cx='", at + 1);
+    }
+    return std::stod(svg.substr(at + 4));
+  };
+  EXPECT_NEAR(placeOf(1), 0.5 * (placeOf(0) + placeOf(2)), 0.1);
+}
+
+TEST(StudyReport, OfAnEmptyFolderIsRefused)
+{
+  const auto folder = emptyFolder("study_empty");
+  sono::testing::expectContains(sono::testing::errorOf([&] { writeReport(folder); }), "study_empty");
+}
+
+} // namespace

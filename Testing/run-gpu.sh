@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# The tests and the benchmark of the GPU, for a machine with a GPU and a driver but none of the simulator's libraries.
+#   run-gpu.sh pack [PART] here: builds, and packs programs, libraries and jobs (or one of them) into build-gpu
+#   run-gpu.sh test        there: the tests of the GPU against the CPU
+#   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
+#   run-gpu.sh sanitize    there: memcheck and racecheck of compute-sanitizer on small scenes
+set -euo pipefail
+
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+pack="$root/build-gpu"
+bin="$root/build-simulation/bin"
+unpacked="${TMPDIR:-/tmp}/sonovdb-gpu"
+
+archive()
+{
+  tar -C "$2" -c . | xz -T0 -3 > "$pack/$1.tar.xz"
+  rm -rf "$2"
+}
+
+pack_programs()
+{
+  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark WriteGpuJobs
+  local work
+  work="$(mktemp -d)"
+  cp "$bin/GpuTests" "$bin/GpuBenchmark" "$root"/Data/*.csv "$work"
+  archive programs "$work"
+}
+
+pack_libraries()
+{
+  local work
+  work="$(mktemp -d)"
+  # All but the C library and the loader, which must be those of the machine.
+  ldd "$bin/GpuTests" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' |
+    xargs -I{} cp -L {} "$work"
+  archive libraries "$work"
+}
+
+pack_jobs()
+{
+  local work
+  work="$(mktemp -d)"
+  "$bin/WriteGpuJobs" "$work"
+  archive jobs "$work"
+}
+
+unpack()
+{
+  local part
+  for part in programs libraries jobs; do
+    mkdir -p "$unpacked/$part"
+    if command -v xz > /dev/null; then
+      tar -C "$unpacked/$part" -xJf "$pack/$part.tar.xz"
+    else
+      python3 -m tarfile -e "$pack/$part.tar.xz" "$unpacked/$part"
+    fi
+  done
+}
+
+run_tests()
+{
+  SONOVDB_DATA_DIR="$unpacked/programs" LD_LIBRARY_PATH="$unpacked/libraries" "$@"
+}
+
+case "${1:-}" in
+  pack)
+    mkdir -p "$pack"
+    for part in ${2:-programs libraries jobs}; do
+      "pack_$part"
+    done
+    ls -l "$pack"
+    ;;
+  test)
+    unpack
+    run_tests "$unpacked/programs/GpuTests"
+    ;;
+  benchmark)
+    unpack
+    "$unpacked/programs/GpuBenchmark" "$unpacked/jobs/a4c.sonojob" "$unpacked/jobs/s1.sonojob"
+    ;;
+  sanitize)
+    unpack
+    for tool in memcheck racecheck; do
+      run_tests compute-sanitizer --tool "$tool" --error-exitcode 9 "$unpacked/programs/GpuTests" \
+        --gtest_filter='GpuSmall.*'
+    done
+    ;;
+  *)
+    sed -n '2,6s/^# *//p' "$0" >&2
+    exit 2
+    ;;
+esac
