@@ -64,6 +64,14 @@ SONO_HD inline Vec3f refractedDirection(const Vec3f& direction, const Vec3f& nor
   return (direction - normal * cos1) * r.ratio + normal * r.cosRefracted;
 }
 
+/// Centre of a branch's lobe.
+SONO_HD inline Vec3f branchDirection(const Vec3f& direction, const Vec3f& normal, float cos1, const Reflection& r,
+                                     bool reflected)
+{
+  return glm::normalize(reflected ? mirrorDirection(direction, normal, cos1)
+                                  : refractedDirection(direction, normal, cos1, r));
+}
+
 /// Draws the branch and its direction from the lobe around the mirror or refracted direction. A direction on the
 /// wrong side of the surface is mirrored across the tangent plane (PHYSICS section 2).
 SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const Vec3f& direction, const Vec3f& normal,
@@ -71,8 +79,7 @@ SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const
 {
   Scattered out;
   out.reflected = u.choice < r.reflectance || r.total;
-  const Vec3f centre = glm::normalize(out.reflected ? mirrorDirection(direction, normal, cos1)
-                                                    : refractedDirection(direction, normal, cos1, r));
+  const Vec3f centre = branchDirection(direction, normal, cos1, r, out.reflected);
   const float phi = samplePolar(lobe, u.polar);
   Vec3f w = phi > 0.0f ? directionAround(centre, phi, u.azimuth) : centre;
   const float side = glm::dot(w, normal);
@@ -91,6 +98,21 @@ SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const
     out.throughput = branch * cosOut * (psi > 0.0f ? 6.28318531f * sinf(phi) / psi : 1.0f);
   }
   return out;
+}
+
+/// Density per solid angle with which scatterAt chooses this branch and the unit vector `out`: the branch's share times
+/// the lobe there and where it is mirrored across the tangent plane. The lobe must have a spread.
+SONO_HD inline float scatterDensity(const Lobe& lobe, const Vec3f& direction, const Vec3f& normal, float cos1,
+                                    const Reflection& r, bool reflected, const Vec3f& out)
+{
+  const float side = glm::dot(out, normal);
+  if ((reflected ? side > 0.0f : side < 0.0f) || (!reflected && r.total))
+  {
+    return 0.0f;
+  }
+  const Vec3f centre = branchDirection(direction, normal, cos1, r, reflected);
+  const float share = reflected ? r.reflectance : 1.0f - r.reflectance;
+  return share * (lobeDensity(lobe, centre, out) + lobeDensity(lobe, centre, out - normal * (2.0f * side)));
 }
 
 /// Amplitude of the echo that a boundary returns along the beam, for unit intensity weight w_R left to the caller.

@@ -54,25 +54,31 @@ struct PathBoundary
 
 /// How far a path may go from where it stands: to the ends of the slab 0 <= r <= depth of its line, and no farther than
 /// an echo could still arrive in time, path length + way back <= 2 depth. Nothing beyond would be deposited or heard.
-SONO_HD inline float remainingLength(const TraceView& view, const TraceLine& line, const PathState& path)
+SONO_HD inline float remainingLength(float depthMm, const TraceLine& line, const Vec3f& position,
+                                     const Vec3f& direction, float length)
 {
-  const Vec3f q = path.ray.position - line.origin;
+  const Vec3f q = position - line.origin;
   const float r = glm::dot(q, line.axis);
-  const float along = glm::dot(path.ray.direction, line.axis);
+  const float along = glm::dot(direction, line.axis);
   float t = 3e38f;
   if (along > 1e-7f)
   {
-    t = (view.depthMm - r) / along;
+    t = (depthMm - r) / along;
   }
   else if (along < -1e-7f)
   {
     t = r / -along;
   }
   // |q + t w| = K - t with K = 2 depth - length.
-  const float k = 2.0f * view.depthMm - path.length;
-  const float towards = k + glm::dot(q, path.ray.direction);
+  const float k = 2.0f * depthMm - length;
+  const float towards = k + glm::dot(q, direction);
   const float timely = towards > 0.0f ? (k * k - glm::dot(q, q)) / (2.0f * towards) : 0.0f;
   return larger(0.0f, smaller(t, timely));
+}
+
+SONO_HD inline float remainingLength(const TraceView& view, const TraceLine& line, const PathState& path)
+{
+  return remainingLength(view.depthMm, line, path.ray.position, path.ray.direction, path.length);
 }
 
 SONO_HD inline bool sameAcoustics(const TraceMedium& a, const TraceMedium& b)
@@ -95,11 +101,11 @@ struct PieceLimit
   float t; ///< mm along the ray
 };
 
-template<class Space>
-SONO_HD inline PieceLimit limitPiece(const TraceView& view, const Space& space, const TraceLine& line,
-                                     const PathState& path)
+/// `Beam` is a TraceLine, or whatever else a remainingLength(view, beam, path) knows.
+template<class Space, class Beam>
+SONO_HD inline PieceLimit limitPiece(const TraceView& view, const Space& space, const Beam& beam, const PathState& path)
 {
-  const float tMax = remainingLength(view, line, path);
+  const float tMax = remainingLength(view, beam, path);
   TargetHit target{ tMax, Vec3f(0.0f), -1 };
   if (space.targets.any())
   {
@@ -195,14 +201,14 @@ SONO_HD inline int mostPieces(const Space& space)
 
 /// Follows the path to its next boundary and hands every segment to the sink. Returns false when the path ends before
 /// one.
-template<class Space, class Sink>
-SONO_HD inline bool advanceToBoundary(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
+template<class Space, class Beam, class Sink>
+SONO_HD inline bool advanceToBoundary(const TraceView& view, const Space& space, const Beam& beam, PathState& path,
                                       PathBoundary& boundary, Sink& sink)
 {
   const int most = mostPieces(space);
   for (int count = 0; count < most; ++count)
   {
-    const PieceLimit limit = limitPiece(view, space, line, path);
+    const PieceLimit limit = limitPiece(view, space, beam, path);
     CellHit hit{};
     if (path.target < 0)
     {
@@ -260,16 +266,12 @@ SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary,
   return larger(0.0f, smaller(8.0f * space.meanSpacing(), across / leaving));
 }
 
-/// Leaves the boundary along the branch drawn by `u`. The path restarts on the voxel face, in the cell it stays in, and
-/// does not see the tissue on the other side again until it is clear of the boundary.
+/// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and does not see
+/// the tissue on the other side again until it is clear of the boundary.
 template<class Space>
-SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
-                                  const BounceSample& u, PathState& path)
+SONO_HD inline void takeBranch(const Space& space, const PathBoundary& boundary, const Scattered& out, PathState& path)
 {
   const Vec3f incident = path.ray.direction;
-  const Scattered out = view.deterministic ? strongerBranch(path, boundary)
-                                           : scatterAt(view.model, view.lobe, incident, boundary.surface.normal,
-                                                       boundary.cosine, boundary.reflection, u);
   const BoundarySide& side = out.reflected ? boundary.before : boundary.after;
   path.ray.position += incident * boundary.restart;
   path.ray.direction = out.direction;
@@ -287,6 +289,18 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
   }
   path.intensity *= out.throughput;
   ++path.collisions;
+}
+
+/// Leaves the boundary along the branch drawn by `u`.
+template<class Space>
+SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
+                                  const BounceSample& u, PathState& path)
+{
+  const Scattered out = view.deterministic
+                          ? strongerBranch(path, boundary)
+                          : scatterAt(view.model, view.lobe, path.ray.direction, boundary.surface.normal,
+                                      boundary.cosine, boundary.reflection, u);
+  takeBranch(space, boundary, out, path);
 }
 
 /// The way from the transducer to the first boundary, which every path of a line shares.

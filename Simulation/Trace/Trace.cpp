@@ -5,7 +5,9 @@
 #include "Kernel/TracePath.h"
 #include "ParallelFor.h"
 #include "Simd.h"
+#include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
+#include "Trace/SharedPaths.h"
 #include "Trace/TraceSetup.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -60,23 +62,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     }
     means.push_back(std::move(mean));
   }
-  for (int b = 0; b < out.binCount; ++b)
-  {
-    double mean = 0.0;
-    double spread = 0.0;
-    for (const auto& m : means)
-    {
-      mean += m[std::size_t(b)];
-    }
-    mean /= batches;
-    for (const auto& m : means)
-    {
-      spread += (m[std::size_t(b)] - mean) * (m[std::size_t(b)] - mean);
-    }
-    out.intensity[row + std::size_t(b)] += float(mean);
-    out.standardError[row + std::size_t(b)] =
-      batches > 1 ? float(std::sqrt(spread / (double(batches) * (batches - 1)))) : 0.0f;
-  }
+  addBatchMeans(means, index, out);
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, LineTally& tally,
@@ -92,15 +78,14 @@ void traceLineByNanoVDB(const TraceSetup& setup, int index, LineTally& tally, Tr
 
 bool runsOnDevice(const TraceSettings& settings)
 {
-  if (settings.march == March::NanoVDB)
+  const bool onlyCpu = settings.march == March::NanoVDB || settings.sampling == Sampling::SharedPaths;
+  if (onlyCpu && settings.device == Device::Cuda)
   {
-    if (settings.device == Device::Cuda)
-    {
-      throw Error("the march through the NanoVDB grid runs on the CPU only: choose the region cache, or the CPU");
-    }
-    return false;
+    throw Error(std::string(settings.march == March::NanoVDB ? "the march through the NanoVDB grid"
+                                                             : "sampling by shared paths") +
+                " runs on the CPU only: choose another, or the CPU");
   }
-  return chooseDevice(settings.device).cuda;
+  return !onlyCpu && chooseDevice(settings.device).cuda;
 }
 
 } // namespace
@@ -130,6 +115,18 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   out.standardError.assign(out.intensity.size(), 0.0f);
   out.boundaryEcho.assign(std::size_t(out.lineCount) * out.echoCount, {});
 
+  if (settings.sampling == Sampling::SharedPaths && canSharePaths(setup.view))
+  {
+    if (settings.march == March::NanoVDB)
+    {
+      traceShared(setup.nanoSpace(), setup, out, tracing);
+    }
+    else
+    {
+      traceShared(setup.space(), setup, out, tracing);
+    }
+    return out;
+  }
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
     return LineTally(out.binCount, out.binMm, out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);

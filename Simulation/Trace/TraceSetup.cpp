@@ -54,7 +54,7 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.outsideTissue = scene.outsideIndex();
   view.model = settings.model;
   view.lobe = makeLobe(settings.lobeMeanRad, settings.lobeSigmaRad, settings.lobeMinRad, settings.lobeMaxRad);
-  view.lowDiscrepancy = settings.sampling == Sampling::LowDiscrepancy;
+  view.lowDiscrepancy = settings.sampling != Sampling::Independent;
   view.deterministic = settings.deterministic;
   view.maxCollisions = settings.maxCollisions;
   view.coherenceMm = float(settings.coherenceMm);
@@ -142,6 +142,7 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
   }
   paths = settings.deterministic ? 1 : settings.pathsPerLine;
+  frequencyMHz = settings.frequencyMHz;
 }
 
 NanoSpace<EmbreeTargets> TraceSetup::nanoSpace() const

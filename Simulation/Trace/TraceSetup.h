@@ -33,6 +33,7 @@ struct TraceSetup
   Mat3d toWorld;
   Vec3d cornerWorldMm;
   int paths;
+  double frequencyMHz;
 };
 
 } // namespace sono

@@ -1,3 +1,5 @@
+#include "ChiSquared.h"
+
 #include "Kernel/Interface.h"
 
 #include <gtest/gtest.h>
@@ -227,6 +229,57 @@ TEST(Interface, DirectionOnTheWrongSideIsMirroredAcrossTheTangentPlane)
     turned += mirrored < kept;
   }
   EXPECT_GT(turned, 1000);
+}
+
+TEST(Interface, DirectionsFollowTheirDensity)
+{
+  // Cells of equal solid angle around the normal, on the branch's side; the density is summed over a fine grid.
+  constexpr int cells = 12;
+  constexpr int fine = 60;
+  const Vec3f n(0.0f, 0.0f, 1.0f);
+  const auto at = [](double cosine, double azimuth) {
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    return Vec3f(Vec3d(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine));
+  };
+  const Vec3f d = at(0.5, 0.3);
+  const Reflection r = reflectionAt(acoustic, 1.5f, 3.0f, 1500.0f, 1600.0f, d.z);
+  for (const double sigma : { 0.2, 0.785, 3.0 })
+  {
+    const Lobe lobe = makeLobe(0.0, sigma, 0.0, 1.570796);
+    std::vector<double> observed(2 * cells * cells, 0.0);
+    std::vector<double> probability(observed.size(), 0.0);
+    for (int i = 0; i < 200000; ++i)
+    {
+      const Scattered s = scatterAt(acoustic, lobe, d, n, d.z, r, independentSample(5, 0, 0, std::uint32_t(i), 0));
+      const double azimuth = std::atan2(s.direction.y, s.direction.x) / (2.0 * M_PI);
+      const int column = int((azimuth < 0.0 ? azimuth + 1.0 : azimuth) * cells);
+      const int row = std::min(cells - 1, int(std::fabs(s.direction.z) * cells));
+      observed[std::size_t((s.reflected ? cells * cells : 0) + row * cells + std::min(cells - 1, column))] += 1.0;
+    }
+    double total = 0.0;
+    for (int i = 0; i < cells * fine; ++i)
+    {
+      for (int j = 0; j < cells * fine; ++j)
+      {
+        const double cosine = (i + 0.5) / (cells * fine);
+        const double azimuth = 2.0 * M_PI * (j + 0.5) / (cells * fine);
+        for (const bool reflected : { false, true })
+        {
+          const double p = scatterDensity(lobe, d, n, d.z, r, reflected, at(reflected ? -cosine : cosine, azimuth)) *
+                           2.0 * M_PI / (cells * fine) / (cells * fine);
+          probability[std::size_t((reflected ? cells * cells : 0) + i / fine * cells + j / fine)] += p;
+          total += p;
+        }
+      }
+    }
+    // The grid blurs the pole at the lobe's axis.
+    EXPECT_NEAR(total, 1.0, 0.01) << sigma;
+    for (double& p : probability)
+    {
+      p /= total;
+    }
+    EXPECT_GT(test::chiSquaredPValue(observed, probability), test::significanceOfEach(3)) << sigma;
+  }
 }
 
 TEST(InterfaceEcho, IsLinearInIntensityAtTheNeutralExponents)

@@ -1,4 +1,4 @@
-#include "TestScenes.h"
+#include "BusyScene.h"
 
 #include "Trace/Trace.h"
 
@@ -13,48 +13,12 @@ namespace {
 using namespace sono;
 using namespace sono::test;
 
-/// Curved and flat boundaries of middling contrast, in a volume that every probe's reach covers whole.
-std::unique_ptr<Scene> makeBusyScene()
-{
-  return makeScene(Vec3i(64, 48, 64), Vec3d(1.0),
-                   { makeTissue("a", 1.5, 1540, 0.4), makeTissue("b", 2.4, 1700, 0.6), makeTissue("c", 4.0, 2500, 1.0),
-                     makeTissue("d", 1.2, 1400, 0.3) },
-                   [](const Vec3d& p) {
-                     if (glm::length(p - Vec3d(30.0, 24.0, 30.0)) < 9.0)
-                     {
-                       return 2;
-                     }
-                     return p.z < 14.0 + 0.2 * p.x ? 0 : (p.z < 45.0 ? 1 : 3);
-                   });
-}
-
-std::vector<ScanLine> fan(int count)
-{
-  std::vector<ScanLine> lines;
-  for (int i = 0; i < count; ++i)
-  {
-    const double angle = (i - 0.5 * (count - 1)) * 0.05;
-    lines.push_back(makeLine({ 32.3, 24.2, 0.0 }, { std::sin(angle), 0.01, std::cos(angle) }));
-  }
-  return lines;
-}
-
-TraceSettings busySettings()
-{
-  TraceSettings s;
-  s.depthMm = 60.0;
-  s.radialBinMm = 0.5;
-  s.pathsPerLine = 256;
-  s.coherenceMm = 5.0;
-  return s;
-}
-
 TEST(TraceError, StandardErrorIsTheSpreadOverThirtySeeds)
 {
   const auto scene = makeBusyScene();
   const auto lines = fan(16);
   constexpr int seeds = 30;
-  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
   {
     for (const int paths : { 100, 256 })
     {
@@ -121,7 +85,7 @@ void expectSameBits(const TracedLines& one, const TracedLines& two)
 TEST(TraceDeterminism, OneTwoAndEightThreadsGiveTheSameBits)
 {
   const auto lines = fan(24);
-  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
   {
     TraceSettings s = busySettings();
     s.sampling = sampling;

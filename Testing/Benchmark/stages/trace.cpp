@@ -195,30 +195,59 @@ double relativeRmse(const TracedLines& traced, const TracedLines& reference)
   return std::sqrt(error / total);
 }
 
-void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& all)
+std::string nameOf(Sampling sampling)
 {
-  std::vector<ScanLine> lines;
-  for (std::size_t i = 0; i < all.size(); i += 8)
+  switch (sampling)
   {
-    lines.push_back(all[i]);
+    case Sampling::Independent:
+      return "independent";
+    case Sampling::LowDiscrepancy:
+      return "low_discrepancy";
+    case Sampling::SharedPaths:
+      return "shared_paths";
   }
-  TraceSettings settings = a4cSettings();
-  settings.pathsPerLine = 200000;
+  return "";
+}
+
+/// Error and time against paths for one setting, and how many independent paths a path of the others is worth where
+/// the image has 1000 of them.
+void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, TraceSettings settings,
+                     const std::string& name)
+{
+  settings.pathsPerLine = 100000;
   settings.seed = 99;
+  settings.sampling = Sampling::SharedPaths;
   const TracedLines reference = trace(scene, lines, settings);
   settings.seed = 1;
-  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+  double independentError = 0.0;
+  double independentSeconds = 0.0;
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
   {
     settings.sampling = sampling;
-    const std::string name = sampling == Sampling::Independent ? "independent" : "low_discrepancy";
-    for (const int paths : { 64, 256, 1024, 4096, 16384 })
+    for (const int paths : { 64, 256, 1000, 4096 })
     {
       settings.pathsPerLine = paths;
       Stopwatch watch;
       const TracedLines traced = trace(scene, lines, settings);
       const double seconds = watch.lap();
-      printFigure("trace_rmse_" + name + "_" + std::to_string(paths), relativeRmse(traced, reference), "of_rms");
-      printFigure("trace_rmse_" + name + "_" + std::to_string(paths) + "_s", seconds, "s");
+      const double error = relativeRmse(traced, reference);
+      const std::string figure = name + "_rmse_" + nameOf(sampling) + "_" + std::to_string(paths);
+      printFigure(figure, error, "of_rms");
+      printFigure(figure + "_s", seconds, "s");
+      if (paths != 1000)
+      {
+        continue;
+      }
+      if (sampling == Sampling::Independent)
+      {
+        independentError = error;
+        independentSeconds = seconds;
+        continue;
+      }
+      const double ratio = std::pow(independentError / error, 2);
+      const std::string which = sampling == Sampling::SharedPaths ? "" : "_" + nameOf(sampling);
+      printFigure(name + which + "_equal_rmse_path_ratio", ratio, "times");
+      printFigure(name + which + "_equal_rmse_time_ratio", ratio * independentSeconds / seconds, "times");
     }
   }
 }
@@ -244,7 +273,13 @@ void measureTrace()
   printFigure("snell_max_rad", snellError(), "rad");
   printFigure("false_rehit_percent",
               100.0 * std::max(test::falseRehitShare(30.0, 100000), test::falseRehitShare(90.0, 100000)), "%");
-  printErrorCurve(*scene, lines);
+  const std::vector<ScanLine> third(lines.begin() + 40, lines.begin() + 80);
+  printErrorCurve(*scene, third, a4cSettings(), "trace");
+  TraceSettings example = a4cSettings(); // of Plugin/examples/simulate.py
+  example.maxCollisions = 20;
+  example.coherenceMm = 20.0;
+  example.lobeSigmaRad = 6.0 * 3.14159265358979 / 180.0;
+  printErrorCurve(*scene, third, example, "trace_example");
 }
 
 const Stage stage("trace", measureTrace);
