@@ -1,0 +1,175 @@
+// What each skip buys: time and memory of a scene with one of them switched off at a time.
+#include "RegionSwitches.h"
+#include "Study.h"
+
+#include "Trace/Deposit.h"
+#include "Trace/TraceSetup.h"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+
+namespace sono {
+
+/// A beam without limits: a path ends where its collisions or the region do.
+struct EndlessBeam
+{
+};
+
+inline float remainingLength(const TraceView&, const EndlessBeam&, const PathState&)
+{
+  return 3e38f;
+}
+
+} // namespace sono
+
+namespace sono::study {
+namespace {
+
+/// Which of the tracer's own short cuts a run takes.
+struct ShortCuts
+{
+  bool sharedStart = true; ///< what all paths of a line share is traced once
+  bool limits = true;      ///< paths end where nothing of them is deposited or heard
+};
+
+template<class Beam>
+void traceRest(const TraceSetup& setup, const Beam& beam, const LineStart& start, const PathKey& key, LineTally& tally)
+{
+  const TraceView& view = setup.view;
+  const auto space = setup.space();
+  PathState path = start.path;
+  PathBoundary boundary = start.boundary;
+  for (;;)
+  {
+    leaveBoundary(view, space, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
+    if (!(path.intensity > 0.0f) || !survivesRoulette(view, key, path) ||
+        !advanceToBoundary(view, space, beam, path, boundary, tally) || path.collisions >= view.maxCollisions)
+    {
+      return;
+    }
+    depositBoundary(view, path, boundary, tally);
+  }
+}
+
+/// Seconds to trace the scene's lines by one thread.
+double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, const ShortCuts& cuts)
+{
+  const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
+  const int bins = int(tracing.depthMm / tracing.radialBinMm);
+  const int echoes = int(tracing.depthMm / tracing.echoSampleMm) + 1;
+  std::vector<std::complex<float>> echo(std::size_t(echoes), 0.0f);
+  LineTally tally(bins, tracing.radialBinMm, echoes, tracing.echoSampleMm,
+                  tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < setup.lines.size(); ++i)
+  {
+    tally.start(setup.lines[i], setup.view.coherenceMm, echo.data());
+    LineStart start = startLine(setup.view, setup.space(), setup.lines[i], tally);
+    for (int path = 0; path < setup.paths && start.meets; ++path)
+    {
+      if (!cuts.sharedStart)
+      {
+        start = startLine(setup.view, setup.space(), setup.lines[i], tally);
+      }
+      const PathKey key{ std::uint32_t(i), 0u, std::uint32_t(path) };
+      if (cuts.limits)
+      {
+        traceRest(setup, setup.lines[i], start, key, tally);
+      }
+      else
+      {
+        traceRest(setup, EndlessBeam{}, start, key, tally);
+      }
+    }
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Median ratio of two times measured alternately, so that the machine's moods cancel.
+double medianRatio(const std::function<double()>& with, const std::function<double()>& without)
+{
+  std::vector<double> ratios;
+  for (int i = 0; i < 5; ++i)
+  {
+    const double base = with();
+    ratios.push_back(without() / base);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return ratios[2];
+}
+
+double megabytes(double bytes)
+{
+  return bytes / 1e6;
+}
+
+double secondsToBuild(const Scene& scene, const VoxelBox& box)
+{
+  const auto begin = std::chrono::steady_clock::now();
+  buildTraceRegion(scene.tissueVoxels().data(), scene.placement().size, scene.placement().spacingMm, box);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void measureScene(const std::string& name, bool quick, std::vector<std::vector<std::string>>& rows)
+{
+  const auto make = [&] { return makeBenchScene(name, quick ? 2.0 : 0.0); };
+  const BenchScene bench = make();
+  TraceSettings tracing = bench.tracing;
+  tracing.pathsPerLine = quick ? 20 : 500;
+  const auto base = [&] { return secondsToTrace(bench, tracing, {}); };
+  const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
+  const TraceRegion& region = *setup.region;
+  const double held = double(region.bytes());
+  const auto add = [&](const std::string& skip, const std::string& what, double time, double memory) {
+    rows.push_back({ name, skip, what, number(time), number(memory) });
+  };
+
+  const BenchScene unskipped = make();
+  removeSkips(unskipped);
+  add("cubes of one tissue", "tracing", medianRatio(base, [&] { return secondsToTrace(unskipped, tracing, {}); }), 1.0);
+  add("the start of a line, traced once for all its paths", "tracing",
+      medianRatio(base,
+                  [&] {
+                    return secondsToTrace(bench, tracing, { false, true });
+                  }),
+      1.0);
+  add("the end of what is deposited or heard", "tracing",
+      medianRatio(base,
+                  [&] {
+                    return secondsToTrace(bench, tracing, { true, false });
+                  }),
+      1.0);
+  TraceSettings endless = tracing;
+  endless.rouletteDb = -1000.0;
+  add("roulette below -100 dB", "tracing", medianRatio(base, [&] { return secondsToTrace(bench, endless, {}); }), 1.0);
+
+  // One record for every voxel instead of those at boundaries.
+  const double dense = double(region.cell.size()) * (sizeof(region.cell[0]) + sizeof(region.record[0]));
+  add("records of boundary voxels alone", "memory of the cache", 1.0, dense / held);
+
+  const VoxelBox whole{ Vec3i(0), bench.scene->placement().size };
+  const double full =
+    double(buildTraceRegion(bench.scene->tissueVoxels().data(), whole.last, bench.scene->placement().spacingMm, whole)
+             .bytes());
+  add("what the fan cannot reach", "building the cache (" + number(megabytes(held)) + " MB)",
+      medianRatio([&] { return secondsToBuild(*bench.scene, region.box); },
+                  [&] { return secondsToBuild(*bench.scene, whole); }),
+      full / held);
+}
+
+void measureSkipping(Output& output)
+{
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string name : { "stack", "cyst", "rib", "a4c", "phantom" })
+  {
+    measureScene(name, output.quick(), rows);
+  }
+  output.table("skipping.csv",
+               { "scene", "skip switched off", "of", "time without it (times)", "memory without it (times)" }, rows);
+}
+
+const Part part("skipping", measureSkipping);
+
+} // namespace
+} // namespace sono::study
