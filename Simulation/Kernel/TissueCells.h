@@ -297,7 +297,7 @@ template<class Cells>
 SONO_HD inline Vec3f interpolateNormal(const Cells& cells, const Vec3f& point, int from, int to,
                                        const SideWeights& weights, const Vec3f& fallback)
 {
-  const Vec3f g = point / cells.spacing - 0.5f;
+  const Vec3f g = point / cells.spacing - Vec3f(0.5f);
   const Vec3i low(int(floorf(g.x)), int(floorf(g.y)), int(floorf(g.z)));
   const Vec3f f = g - Vec3f(low);
   if (glm::any(glm::lessThan(low, Vec3i(-1))) || glm::any(glm::greaterThanEqual(low, cells.size)))
@@ -336,10 +336,11 @@ SONO_HD inline std::uint32_t recordAt(const Cells& cells, const Vec3i& c)
 }
 
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
-/// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.6 of it (a thin
-/// wall has lost its own surface, its thick neighbour has not); else the normals are averaged. The point moves
-/// along the ray to the plane of the records, by one voxel at most; there the normal is interpolated. Where no record
-/// is trustworthy, or the smooth normal says that the ray leaves rather than enters, the voxel face stands.
+/// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.59 of it (a
+/// thin wall has lost its own surface, its thick neighbour has not; gradients come in sevenths, and at 0.6 rounding
+/// would decide on 3/7 beside 5/7); else the normals are averaged. The point moves along the ray to the plane of the
+/// records, by one voxel at most; there the normal is interpolated. Where no record is trustworthy, or the smooth
+/// normal says that the ray leaves rather than enters, the voxel face stands.
 template<class Cells>
 SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit)
 {
@@ -357,8 +358,8 @@ SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray,
   const float confA = bitsA ? a.confidence : 0.0f;
   const float confB = bitsB ? b.confidence : 0.0f;
   const float best = larger(confA, confB);
-  const float weightA = confA >= 0.6f * best ? 1.0f : 0.0f;
-  const float weightB = confB >= 0.6f * best ? 1.0f : 0.0f;
+  const float weightA = confA >= 0.59f * best ? 1.0f : 0.0f;
+  const float weightB = confB >= 0.59f * best ? 1.0f : 0.0f;
   const Vec3f sum = a.normal * weightA - b.normal * weightB;
   const float length = glm::length(sum);
   if (best < 0.15f || length < 0.5f)
@@ -371,8 +372,8 @@ SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray,
   {
     return { face, hit.t };
   }
-  const Vec3f pointA = (Vec3f(hit.before) + 0.5f) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
-  const Vec3f pointB = (Vec3f(hit.after) + 0.5f) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
+  const Vec3f pointA = (Vec3f(hit.before) + Vec3f(0.5f)) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
+  const Vec3f pointB = (Vec3f(hit.after) + Vec3f(0.5f)) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
   const Vec3f point = (pointA * weightA + pointB * weightB) / (weightA + weightB);
   const float reach = cells.meanSpacing;
   const float plane = glm::dot(point - ray.position, n) / cosine;

@@ -12,11 +12,12 @@ namespace sono::study {
 
 namespace {
 
-std::vector<ScanLine> middleLines(const ScanGeometry& geometry, const ProbePose& pose)
+/// `lineCount` lines, at most all 128 of the geometry.
+std::vector<ScanLine> middleLines(const ScanGeometry& geometry, const ProbePose& pose, int lineCount)
 {
   const auto all = makeScanLines(geometry, pose);
-  const auto first = all.begin() + std::ptrdiff_t(all.size()) / 2 - 8;
-  return { first, first + 16 };
+  const auto first = all.begin() + (std::ptrdiff_t(all.size()) - lineCount) / 2;
+  return { first, first + lineCount };
 }
 
 /// Adds what a path leaves from `r` on, inside `layer`, going down or up.
@@ -77,7 +78,7 @@ std::vector<double> stackIntensity(const TraceSettings& tracing)
   return bins;
 }
 
-BenchScene makeBenchScene(const std::string& name, double spacingMm)
+BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCount)
 {
   BenchScene bench;
   bench.name = name;
@@ -102,15 +103,15 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm)
       }
       return layer;
     });
-    for (int i = 0; i < 16; ++i)
+    for (int i = 0; i < lineCount; ++i)
     {
-      bench.lines.push_back(test::makeLine({ 6.0 + 0.5 * i, 10.2, 0.0 }, { 0.0, 0.0, 1.0 }));
+      bench.lines.push_back(test::makeLine({ 6.0 + 8.0 * i / lineCount, 10.2, 0.0 }, { 0.0, 0.0, 1.0 }));
     }
   }
   else if (name == "a4c")
   {
     bench.scene = sceneOf(makeThoraxPhantom(spacingMm > 0.0 ? spacingMm : 1.0));
-    bench.lines = middleLines(ScanGeometry(), thoraxPhantomA4C().orthonormalized());
+    bench.lines = middleLines(ScanGeometry(), thoraxPhantomA4C().orthonormalized(), lineCount);
   }
   else if (name == "cyst" || name == "rib")
   {
@@ -120,7 +121,7 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm)
     ScanGeometry geometry;
     geometry.depthMm = 110.0;
     bench.tracing.depthMm = geometry.depthMm;
-    bench.lines = middleLines(geometry, ProbePose{});
+    bench.lines = middleLines(geometry, ProbePose{}, lineCount);
   }
   else if (name == "phantom")
   {
@@ -129,7 +130,7 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm)
     const auto targets = readPhantomTargets(SONOVDB_DATA_DIR "/phantom_040gse.csv");
     bench.scene = sceneOf(makeCalibrationPhantom(targets, phantom));
     bench.targets.push_back(phantomWireSurface(targets, phantom, bundledTissues()));
-    bench.lines = middleLines(ScanGeometry(), phantomViewPose(phantom, 1));
+    bench.lines = middleLines(ScanGeometry(), phantomViewPose(phantom, 1), lineCount);
   }
   else
   {

@@ -11,8 +11,7 @@
 
 namespace sono::study {
 
-/// A scene on which run time, error and precision are measured, with sixteen neighbouring scan lines through its
-/// middle.
+/// A scene on which run time, error and precision are measured, with neighbouring scan lines through its middle.
 struct BenchScene
 {
   std::string name; ///< stack, cyst, rib, a4c or phantom
@@ -25,7 +24,7 @@ struct BenchScene
 
 /// `spacingMm` is the edge of a voxel; 0 takes the scene's own (stack, a4c: 1; the others: 0.5). Throws Error for a
 /// name that is not one of them.
-BenchScene makeBenchScene(const std::string& name, double spacingMm = 0.0);
+BenchScene makeBenchScene(const std::string& name, double spacingMm = 0.0, int lineCount = 16);
 
 /// The layers of `stack`: flat, across the beam, without spreading, so that every sum over paths is a finite one.
 struct Layer

@@ -1,6 +1,7 @@
 #include "ImageError.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace sono::study {
@@ -8,7 +9,9 @@ namespace sono::study {
 BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing)
 {
   BenchImage image;
+  const auto start = std::chrono::steady_clock::now();
   image.traced = trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
+  image.traceSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   image.rf = formRf(*bench.scene, bench.lines, image.traced, bench.echo);
   return image;
 }

@@ -9,6 +9,7 @@ struct BenchImage
 {
   TracedLines traced;
   RfLines rf;
+  double traceSeconds = 0.0;
 };
 
 BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing);
