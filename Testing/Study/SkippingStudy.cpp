@@ -6,7 +6,7 @@
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <functional>
 
 namespace sono {
@@ -52,7 +52,7 @@ void traceRest(const TraceSetup& setup, const Beam& beam, const LineStart& start
   }
 }
 
-/// Seconds to trace the scene's lines by one thread.
+/// Processor seconds to trace the scene's lines by one thread; what other programs do does not count.
 double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, const ShortCuts& cuts)
 {
   const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
@@ -61,7 +61,7 @@ double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, con
   std::vector<std::complex<float>> echo(std::size_t(echoes), 0.0f);
   LineTally tally(bins, tracing.radialBinMm, echoes, tracing.echoSampleMm,
                   tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
     tally.start(setup.lines[i], setup.view.coherenceMm, echo.data());
@@ -83,7 +83,7 @@ double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, con
       }
     }
   }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
 /// Median ratio of two times measured alternately, so that the machine's moods cancel.
@@ -106,9 +106,9 @@ double megabytes(double bytes)
 
 double secondsToBuild(const Scene& scene, const VoxelBox& box)
 {
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   buildTraceRegion(scene.tissueVoxels().data(), scene.placement().size, scene.placement().spacingMm, box);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
 void measureScene(const std::string& name, bool quick, std::vector<std::vector<std::string>>& rows)
