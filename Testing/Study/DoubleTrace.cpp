@@ -111,7 +111,7 @@ std::vector<double> traceInDouble(const DoubleInput& input)
   space.cells.size = { input.size[0], input.size[1], input.size[2] };
   space.cells.blocks = kernel::TissueCells::blocksFor(space.cells.size);
   space.cells.spacing = vec(input.spacing);
-  space.cells.perMm = vec(1.0 / input.spacing[0], 1.0 / input.spacing[1], 1.0 / input.spacing[2]);
+  space.cells.perMm = Vec(1.0 / input.spacing[0], 1.0 / input.spacing[1], 1.0 / input.spacing[2]);
   space.cells.meanSpacing = std::cbrt(input.spacing[0] * input.spacing[1] * input.spacing[2]);
   kernel::TraceView view;
   view.media = media.data();
