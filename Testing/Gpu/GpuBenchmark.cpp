@@ -93,6 +93,22 @@ double rfDifference(const std::vector<std::complex<float>>& gpu, const std::vect
   return worst / peak;
 }
 
+/// What the stages have to move and to compute at least, as shares of what the device can do in the time they take.
+void printShares(const ImageJob& job, std::uint64_t segments, double scatterers, double ms, const Ceilings& ceilings)
+{
+  // Sums and echoes are written and read, then IQ, envelope, grey level; of the bins the batches' sums, mean and error.
+  const double sampleBytes = double(job.echo->lineCount) * job.echo->sumCount * (16.0 + 8.0 * 4.0 + 4.0 * 6.0);
+  const double binBytes = 4.0 * double(job.trace->lines.size()) * job.trace->binCount * (8.0 * 2.0 + 3.0);
+  const double bytesMs = (sampleBytes + binBytes) / ceilings.gigabytesPerSecond * 1e-6;
+  // Counted by hand: some 17 cells of 40 operations and 64 bins of 25 a segment, 200 operations a scatterer.
+  const double operations = double(segments) * (17.0 * 40.0 + 64.0 * 25.0) + scatterers * 200.0;
+  const double operationsMs = operations / ceilings.teraflops * 1e-9;
+  print("gpu_image_bytes_floor_ms", bytesMs, "ms");
+  print("gpu_image_operations_floor_ms", operationsMs, "ms");
+  print("gpu_image_share_of_bandwidth", 100.0 * bytesMs / ms, "%");
+  print("gpu_image_share_of_arithmetic", 100.0 * operationsMs / ms, "%");
+}
+
 void measureImage(const JobFile& file, const Ceilings& ceilings)
 {
   const ImageJob one = firstImages(file.job, 1);
@@ -122,9 +138,7 @@ void measureImage(const JobFile& file, const Ceilings& ceilings)
   print("gpu_paths_per_s", double(one.trace->lines.size()) * one.trace->paths / traceSeconds, "1/s");
   print("gpu_segments_per_s", double(result.segments) / traceSeconds, "1/s");
   print("gpu_scatterers_per_s", file.scatterers / echoSeconds, "1/s");
-  const double sampleBytes = double(one.echo->lineCount) * one.echo->sumCount * (16.0 + 8.0 * 4.0 + 4.0 * 6.0);
-  const double bins = 4.0 * double(one.trace->lines.size()) * one.trace->binCount * (8.0 * 2.0 + 3.0);
-  print("gpu_image_bytes_floor_ms", (sampleBytes + bins) / ceilings.gigabytesPerSecond * 1e-6, "ms");
+  printShares(one, result.segments, file.scatterers, runs.medianOf(computing), ceilings);
 
   for (const int images : { 1, 2, 4, 8, 16, 32, 64 })
   {
