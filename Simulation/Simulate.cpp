@@ -40,7 +40,9 @@ std::vector<PlaneImage> simulateImages(const Scene& scene, const std::vector<Pro
   {
     return {};
   }
-  if (chooseDevice(settings.device).cuda)
+  TraceSettings tracing = settings.tracing;
+  tracing.device = settings.device;
+  if (runsOnDevice(tracing))
   {
     return simulateOnDevice(scene, poses, settings, progress, targets);
   }

@@ -26,7 +26,8 @@ struct ImageSettings
 };
 
 /// An image of each pose, from the label map's own tissues: tracing, RF, B-mode, scan conversion. On a GPU all poses go
-/// through the stages together and only the images come back; they are the same as one by one. Throws Error as the
+/// through the stages together and only the images come back; they differ from one by one by rounding at
+/// most, since all share one region of the scene. Throws Error as the
 /// stages do, and for a matrix, whose lines fill a volume.
 std::vector<PlaneImage> simulateImages(const Scene& scene, const std::vector<ProbePose>& poses,
                                        const ImageSettings& settings, const Progress& progress = {},

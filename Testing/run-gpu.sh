@@ -3,7 +3,7 @@
 #   run-gpu.sh pack [PART] here: builds, and packs programs, libraries and jobs (or one of them) into build-gpu
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
-#   run-gpu.sh sanitize    there: memcheck and racecheck of compute-sanitizer on small scenes
+#   run-gpu.sh sanitize    there: the checks of compute-sanitizer on small scenes
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -47,6 +47,7 @@ pack_jobs()
 unpack()
 {
   local part
+  rm -rf "$unpacked"
   for part in programs libraries jobs; do
     mkdir -p "$unpacked/$part"
     if command -v xz > /dev/null; then
@@ -80,7 +81,7 @@ case "${1:-}" in
     ;;
   sanitize)
     unpack
-    for tool in memcheck racecheck; do
+    for tool in memcheck racecheck initcheck synccheck; do
       run_tests compute-sanitizer --tool "$tool" --error-exitcode 9 "$unpacked/programs/GpuTests" \
         --gtest_filter='GpuSmall.*'
     done

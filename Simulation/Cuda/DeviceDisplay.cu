@@ -164,8 +164,8 @@ __global__ void compressSamples(const float* envelope, const double* gainDb, con
 
 __global__ void fillPixels(PlaneScan scan, const float* grey, std::size_t perImage, float* pixels, std::uint8_t* mask)
 {
-  const int i = blockIdx.x * blockDim.x + threadIdx.x;
-  const int j = blockIdx.y * blockDim.y + threadIdx.y;
+  const int i = blockIdx.y * blockDim.x + threadIdx.x;
+  const int j = blockIdx.x * blockDim.y + threadIdx.y; // the longer axis of a grid, for any height
   if (i >= scan.width || j >= scan.height)
   {
     return;
@@ -179,7 +179,10 @@ __global__ void fillPixels(PlaneScan scan, const float* grey, std::size_t perIma
   const bool inside = scan.area.contains(line, depth);
   const std::size_t at = (std::size_t(blockIdx.z) * scan.height + std::size_t(j)) * scan.width + std::size_t(i);
   pixels[at] = inside ? scan.samples(grey + blockIdx.z * perImage).at(line, depth * scan.samplesPerMm) : 0.0f;
-  mask[at] = inside ? 1 : 0;
+  if (blockIdx.z == 0)
+  {
+    mask[at] = inside ? 1 : 0; // the same for all images
+  }
 }
 
 } // namespace
@@ -232,9 +235,9 @@ void DeviceDisplay::convert(int images, cudaStream_t stream)
 {
   const std::size_t perImage = std::size_t(scan_->width) * scan_->height;
   pixels_.resize(perImage * images);
-  mask_.resize(perImage * images);
+  mask_.resize(perImage);
   const dim3 block(32, 8);
-  const dim3 grid((scan_->width + block.x - 1) / block.x, (scan_->height + block.y - 1) / block.y, images);
+  const dim3 grid((scan_->height + block.y - 1) / block.y, (scan_->width + block.x - 1) / block.x, images);
   fillPixels<<<grid, block, 0, stream>>>(*scan_, grey_.data(), std::size_t(lines_) * samples_, pixels_.data(),
                                          mask_.data());
   check(cudaGetLastError(), "converting lines into an image");

@@ -3,7 +3,6 @@
 #include "Cuda/DeviceDisplay.cuh"
 #include "Cuda/DeviceEcho.cuh"
 #include "Cuda/DeviceTracer.cuh"
-#include "Trace/PathBatches.h"
 
 #include <algorithm>
 #include <array>
@@ -58,21 +57,53 @@ private:
   std::array<cudaEvent_t, Marks> event_{};
 };
 
-/// Bytes that the stages need for one line.
-double bytesPerLine(const ImageJob& job)
+/// Bytes that the stages need for an image, without what a single launch of the tracer needs.
+double bytesPerImage(const ImageJob& job)
 {
-  double bytes = 0.0;
+  double bytesPerLine = 0.0;
   if (job.trace)
   {
-    const double slices = 1024.0 / std::max(1, job.linesPerImage()) + 1.0;
-    bytes += 16.0 * job.trace->echoCount + 4.0 * job.trace->binCount * (3.0 + batchCount * slices);
+    bytesPerLine += 16.0 * job.trace->echoCount + 12.0 * job.trace->binCount;
   }
   if (job.echo)
   {
-    bytes += 24.0 * job.echo->sumCount;
+    bytesPerLine += 24.0 * job.echo->sumCount;
   }
-  return bytes;
+  return bytesPerLine * job.linesPerImage() + (job.scan ? 4.0 * job.scan->width * job.scan->height : 0.0);
 }
+
+/// Works on the first device, whichever the caller's thread works on.
+class FirstDevice
+{
+public:
+  FirstDevice()
+  {
+    check(cudaGetDevice(&before_), "choosing it");
+    check(cudaSetDevice(0), "choosing it");
+  }
+  ~FirstDevice() { cudaSetDevice(before_); }
+  FirstDevice(const FirstDevice&) = delete;
+  FirstDevice& operator=(const FirstDevice&) = delete;
+
+private:
+  int before_ = 0;
+};
+
+/// Lets what the device writes to outlive its writing, when an exception comes between.
+class WaitAtEnd
+{
+public:
+  explicit WaitAtEnd(cudaStream_t stream)
+    : stream_(stream)
+  {
+  }
+  ~WaitAtEnd() { cudaStreamSynchronize(stream_); }
+  WaitAtEnd(const WaitAtEnd&) = delete;
+  WaitAtEnd& operator=(const WaitAtEnd&) = delete;
+
+private:
+  cudaStream_t stream_;
+};
 
 } // namespace
 
@@ -98,8 +129,8 @@ struct DeviceImager::Work
     std::size_t free = 0;
     std::size_t total = 0;
     check(cudaMemGetInfo(&free, &total), "asking for its memory");
-    const double perImage = bytesPerLine(job) * job.linesPerImage();
-    return std::max(1, std::min(job.images, int(0.25 * double(total) / std::max(1.0, perImage))));
+    const double fitting = std::min(0.25 * double(total) / std::max(1.0, bytesPerImage(job)), 65535.0); // of a grid
+    return std::max(1, std::min(job.images, int(fitting)));
   }
 
   void upload(const ImageJob& job, Traffic& traffic)
@@ -116,6 +147,7 @@ struct DeviceImager::Work
     {
       display->prepare(job, stream, traffic);
     }
+    check(cudaStreamSynchronize(stream), "uploading"); // what was uploaded may go
   }
 
   TracedOnDevice traced(const ImageJob& job, int firstLine) const
@@ -158,7 +190,7 @@ struct DeviceImager::Work
     if (wants.image)
     {
       result.pixels.resize(std::size_t(job.images) * job.scan->width * job.scan->height);
-      result.mask.resize(result.pixels.size());
+      result.mask.resize(std::size_t(job.scan->width) * job.scan->height);
     }
   }
 
@@ -169,6 +201,7 @@ struct DeviceImager::Work
     const std::size_t firstLine = std::size_t(firstImage) * job.linesPerImage();
     const std::size_t lines = std::size_t(images) * job.linesPerImage();
     std::vector<EchoSum> sums;
+    const WaitAtEnd wait(stream);
     if (wants.traced)
     {
       const std::size_t bins = std::size_t(job.trace->binCount);
@@ -196,7 +229,10 @@ struct DeviceImager::Work
     {
       const std::size_t pixels = std::size_t(job.scan->width) * job.scan->height;
       download(display->pixels(), images * pixels, result.pixels, firstImage * pixels, stream, traffic);
-      download(display->mask(), images * pixels, result.mask, firstImage * pixels, stream, traffic);
+      if (firstImage == 0)
+      {
+        download(display->mask(), pixels, result.mask, 0, stream, traffic);
+      }
     }
     check(cudaStreamSynchronize(stream), "computing");
     const float perUnit = tracer->echoPerUnit();
@@ -213,6 +249,7 @@ struct DeviceImager::Work
     DeviceResult result;
     DeviceTimes sum;
     allocateResult(job, wants, result);
+    const WaitAtEnd wait(stream);
     clock->mark(StageClock::Start, stream);
     upload(job, traffic);
     clock->mark(StageClock::Uploaded, stream);
@@ -292,6 +329,11 @@ DeviceStatus cudaStatus()
     cudaGetLastError();
     return { false, "the GPU does not say what it is" };
   }
+  if (properties.major * 10 + properties.minor < 75)
+  {
+    return { false, std::string("the ") + properties.name + " is older than CUDA " +
+                      std::to_string(CUDART_VERSION / 1000) + " serves" };
+  }
   return { true, std::string(properties.name) + ", " + std::to_string(properties.totalGlobalMem >> 20) + " MiB" };
 }
 
@@ -303,6 +345,7 @@ DeviceImager::DeviceImager()
   {
     throw Error("the GPU cannot be used: " + status.what + "; choose the CPU");
   }
+  const FirstDevice device;
   check(cudaStreamCreateWithFlags(&work_->stream, cudaStreamNonBlocking), "opening a stream");
   work_->clock = std::make_unique<StageClock>();
 }
@@ -320,6 +363,7 @@ DeviceResult DeviceImager::run(const ImageJob& job, const DeviceWants& wants, co
                                DeviceTimes* times)
 {
   const std::lock_guard<std::mutex> lock(work_->mutex);
+  const FirstDevice device;
   try
   {
     return work_->run(job, wants, progress, times);

@@ -31,7 +31,7 @@ struct DeviceResult
   std::vector<float> grey;
   std::vector<double> referenceAmplitude; ///< of each image
   std::vector<float> pixels;
-  std::vector<std::uint8_t> mask;
+  std::vector<std::uint8_t> mask; ///< one for all images
 };
 
 /// Device times of a run's stages, ms, from events.

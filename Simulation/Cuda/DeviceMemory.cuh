@@ -17,7 +17,7 @@ inline void check(cudaError_t error, const char* doing)
   {
     cudaGetLastError(); // an error that is not sticky ends here
     throw Error(std::string("the GPU failed while ") + doing + " (" + cudaGetErrorString(error) +
-                "): try again, or choose the CPU");
+                "): choose the CPU, or start the program again if it goes on");
   }
 }
 
@@ -27,6 +27,19 @@ struct Traffic
   std::uint64_t up = 0;
   std::uint64_t down = 0;
 };
+
+/// Of a block of this kernel, bytes of dynamic shared memory.
+template<class Kernel>
+std::size_t sharedMemoryFor(Kernel kernel)
+{
+  int device = 0;
+  int most = 0;
+  cudaFuncAttributes attributes{};
+  check(cudaGetDevice(&device), "asking for its limits");
+  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "asking for its limits");
+  check(cudaFuncGetAttributes(&attributes, kernel), "asking for its limits");
+  return std::size_t(most) - attributes.sharedSizeBytes;
+}
 
 /// An array on the device that only grows.
 template<class T>

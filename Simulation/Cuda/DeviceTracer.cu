@@ -1,6 +1,6 @@
 #include "Cuda/DeviceTracer.cuh"
 
-#include "Kernel/BeamDeposit.h"
+#include "Cuda/WarpDeposit.cuh"
 #include "Trace/PathBatches.h"
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace sono {
 
 namespace {
 
-constexpr int warpSize_ = 32;
 constexpr int blockWarps = 4;
 constexpr int blocksAtOnce =
   9; // on a multiprocessor: more warps, that hide their waits, are worth some spilled registers
 constexpr int launchWarps = 4096; // few lines of many paths are cut into so many warps, to fill a device
-constexpr int blockPaths = blockWarps * warpSize_;
+constexpr int blockPaths = blockWarps * warpLanes;
 constexpr unsigned allLanes = 0xffffffffu;
-constexpr double pathsPerLaunch = 2e8; // a second or so, then progress is asked
-constexpr std::size_t sharedBytes = 96 * 1024;
+constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
+constexpr double binsPerLaunch = 2.5e8;        // 1 GB of partial sums
+constexpr std::size_t sharedBytes = 96 * 1024; // more would keep other blocks away
 
 /// What the kernels of one launch share.
 template<class Targets>
@@ -66,64 +66,6 @@ __device__ void addEcho(const Launch& launch, int line, const Vec3f& point, floa
   }
 }
 
-/// A segment and the bins that it covers, as lanes share it.
-struct StagedSegment
-{
-  BeamSegment beam;
-  float inverseMu;
-  float low;
-  float high;
-  int binLow;
-  int binHigh;
-  float scale; ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
-};
-
-template<class Launch>
-__device__ StagedSegment stage(const Launch& launch, int line, const PathSegment& piece)
-{
-  StagedSegment staged;
-  staged.beam = beamSegment(launch.lines[line], piece, launch.view.coherenceMm);
-  const DepthSpan span = depthSpan(staged.beam, piece.length, launch.binMm * float(launch.binCount));
-  staged.low = span.low;
-  staged.high = span.high;
-  staged.inverseMu = 1.0f / staged.beam.mu;
-  const int last = launch.binCount - 1;
-  staged.binLow = min(int(span.low / launch.binMm), last);
-  staged.binHigh = span.high > span.low ? min(int(span.high / launch.binMm), last) : -1;
-  // At a bin's middle w is within step^2 / 12 C0^2 of its mean: here 1e-4.
-  const float step = launch.binMm * fabsf(staged.inverseMu);
-  const float half = 0.5f * staged.beam.decay * step;
-  const bool smooth = step < 0.035f * staged.beam.coherence && half < 0.3f;
-  staged.scale = smooth ? piece.intensity * (1.0f + half * half * (1.0f / 6.0f)) / launch.binMm : 0.0f;
-  return staged;
-}
-
-/// A warp adds a segment to its bins; a bin always belongs to the same lane, so that the sum's order is that of the
-/// segments.
-__device__ void depositByWarp(const StagedSegment s, float binMm, int lane, float* __restrict__ bins)
-{
-  int b = s.binLow + ((lane - s.binLow) & (warpSize_ - 1));
-  if (s.scale > 0.0f)
-  {
-    float from = fmaxf(s.low, float(b) * binMm);
-    for (; b <= s.binHigh; b += warpSize_)
-    {
-      const float to = fminf(s.high, float(b + 1) * binMm);
-      const float at = (0.5f * (from + to) - s.beam.r0) * s.inverseMu;
-      bins[b] += s.scale * (to - from) * expNegative(-s.beam.decay * at) * beamWeightAt(s.beam, at);
-      from = float(b + warpSize_) * binMm;
-    }
-    return;
-  }
-  const float perMm = 1.0f / binMm;
-  for (; b <= s.binHigh; b += warpSize_)
-  {
-    const float from = fmaxf(s.low, float(b) * binMm);
-    const float to = fminf(s.high, float(b + 1) * binMm);
-    bins[b] += meanOver(s.beam, from, to, s.inverseMu) * (to - from) * perMm;
-  }
-}
-
 /// All lanes follow the same path.
 template<class Launch>
 struct CommonSink
@@ -136,7 +78,8 @@ struct CommonSink
   __device__ void segment(const PathSegment& piece)
   {
     ++segments;
-    depositByWarp(stage(launch, line, piece), launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
+    depositByWarp(stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount),
+                  launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
   }
   __device__ void echo(const Vec3f& point, float amplitude)
   {
@@ -151,12 +94,12 @@ struct CommonSink
 template<class Targets>
 __global__ void startLines(TraceLaunch<Targets> launch, int count)
 {
-  const int line = blockIdx.x * blockWarps + threadIdx.x / warpSize_;
+  const int line = blockIdx.x * blockWarps + threadIdx.x / warpLanes;
   if (line >= count)
   {
     return;
   }
-  CommonSink<TraceLaunch<Targets>> sink{ launch, line, int(threadIdx.x % warpSize_) };
+  CommonSink<TraceLaunch<Targets>> sink{ launch, line, int(threadIdx.x % warpLanes) };
   const LineStart start = startLine(launch.view, launch.space, launch.lines[line], sink);
   if (sink.lane == 0)
   {
@@ -237,7 +180,7 @@ __device__ StagedSegment finishPiece(const Launch& launch, int lineIndex, const 
   {
     nextPath(launch, line, start, key, end, step, walker);
   }
-  return stage(launch, lineIndex, piece);
+  return stage(line, piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
 }
 
 /// One block traces one slice of a batch of a line, each lane one path after the other. The paths of a warp go on
@@ -247,12 +190,12 @@ template<bool BinsInShared, class Targets>
 __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
 {
   extern __shared__ float dynamic[];
-  __shared__ StagedSegment staged[blockWarps][warpSize_];
+  __shared__ StagedSegment staged[blockWarps][warpLanes];
   const int slice = blockIdx.x % launch.slices;
   const int batch = blockIdx.x / launch.slices;
   const int line = blockIdx.y;
-  const int lane = threadIdx.x % warpSize_;
-  const int warp = threadIdx.x / warpSize_;
+  const int lane = threadIdx.x % warpLanes;
+  const int warp = threadIdx.x / warpLanes;
 
   // Bins of the block's warps, then the batch's scrambles.
   const int slots = BinsInShared ? blockWarps : 0;
@@ -260,7 +203,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
   const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
   float* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount
                              : launch.partial + (row * blockWarps + warp) * launch.binCount;
-  for (int b = lane; b < launch.binCount; b += warpSize_)
+  for (int b = lane; b < launch.binCount; b += warpLanes)
   {
     bins[b] = 0.0f;
   }
@@ -307,7 +250,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     }
     __syncwarp();
   }
-  for (int s = warpSize_ / 2; s > 0; s /= 2)
+  for (int s = warpLanes / 2; s > 0; s /= 2)
   {
     segments += __shfl_down_sync(allLanes, segments, unsigned(s));
   }
@@ -370,13 +313,12 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   launch.error[at] = launch.batches > 1 ? float(sqrt(spread / (double(launch.batches) * (launch.batches - 1)))) : 0.0f;
 }
 
-/// From blocks to rows, border included.
+/// From blocks to rows, border included; a block takes a row.
 __global__ void layOutRows(TissueCells blocks, RowCells rows, std::uint16_t* words)
 {
-  const int x = int(blockIdx.x * blockDim.x + threadIdx.x) - 1;
-  const int y = int(blockIdx.y) - 1;
-  const int z = int(blockIdx.z) - 1;
-  if (x <= rows.size.x)
+  const int y = int(blockIdx.x % unsigned(rows.size.y + 2)) - 1;
+  const int z = int(blockIdx.x / unsigned(rows.size.y + 2)) - 1;
+  for (int x = int(threadIdx.x) - 1; x <= rows.size.x; x += blockDim.x)
   {
     words[rows.rowOffset(x, y, z)] = std::uint16_t(blocks.wordAt(x, y, z));
   }
@@ -416,8 +358,9 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
     record_.upload(job.region->record, stream, traffic);
     words_.resize(std::size_t(cells_.pitch.z) * std::size_t(cells_.size.z + 2));
     cells_.cell = blocks.data();
-    const dim3 grid(ceilDiv(cells_.size.x + 2, 128), cells_.size.y + 2, cells_.size.z + 2);
-    layOutRows<<<grid, 128, 0, stream>>>(cells_, cells_, words_.data());
+    const std::size_t rows = std::size_t(cells_.size.y + 2) * std::size_t(cells_.size.z + 2);
+    layOutRows<<<unsigned(rows), 128, 0, stream>>>(cells_, cells_, words_.data());
+    check(cudaGetLastError(), "laying out the tissues");
     check(cudaStreamSynchronize(stream), "laying out the tissues");
     region_ = job.region;
   }
@@ -458,19 +401,23 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const int slices = std::max(1, std::min(wanted, ceilDiv(longest, blockPaths)));
   const std::size_t scrambleBytes = std::size_t(view_.maxCollisions) * sizeof(BounceScramble);
   const std::size_t binBytes = blockWarps * bins * sizeof(float);
-  const bool inShared = binBytes + scrambleBytes <= sharedBytes;
+  const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, BvhTargets>));
+  const bool inShared = binBytes + scrambleBytes <= sharedLimit;
   const int parts = inShared ? slices : slices * blockWarps;
 
   starts_.resize(lineCount * sizeof(LineStart));
   shared_.resize(lineCount * bins);
   shared_.clear(stream);
-  partial_.resize(lineCount * batches * parts * bins);
   intensity_.resize(lineCount * bins);
   error_.resize(lineCount * bins);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echo_.clear(stream);
 
-  const int perLaunch = std::max(1, std::min(count, int(std::min(32768.0, pathsPerLaunch / paths_))));
+  const double partsOfLine = double(batches) * parts * double(bins);
+  const double fitting = std::min(
+    { 32768.0, bouncesPerLaunch / (double(paths_) * std::max(1, view_.maxCollisions)), binsPerLaunch / partsOfLine });
+  const int perLaunch = std::max(1, std::min(count, int(fitting)));
+  partial_.resize(std::size_t(perLaunch) * batches * parts * bins);
   for (int from = 0; from < count; from += perLaunch)
   {
     const int lines = std::min(perLaunch, count - from);
@@ -482,7 +429,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      lines_.data() + first + from,
                      reinterpret_cast<LineStart*>(starts_.data()) + from,
                      shared_.data() + skip * bins,
-                     partial_.data() + skip * batches * parts * bins,
+                     partial_.data(),
                      intensity_.data() + skip * bins,
                      error_.data() + skip * bins,
                      echo_.data() + skip * std::size_t(echoCount_) * 2,

@@ -15,7 +15,7 @@ struct EchoSetup;
 // From the simulator's own arguments to the numbers that a device works on. A scene must outlive its
 // jobs.
 
-/// Throws Error when no line of an image meets the volume, as trace() does.
+/// The setup has checked that some line meets the volume.
 TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings);
 
 /// `traced` is what the setup was given, or nothing when the job traces too.

@@ -3,8 +3,10 @@
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
 #include "Echo/EchoSetup.h"
+#include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sono {
@@ -19,12 +21,42 @@ void requireMatch(bool same, const char* what)
   }
 }
 
+/// Some line of each image, as each is asked for alone.
+void requireEachMeets(const TraceSetup& setup, int images)
+{
+  const CellSpace<NoTargets> space{ setup.region->view(), {} };
+  const std::size_t perImage = setup.lines.size() / std::size_t(images);
+  for (int image = 0; image < images; ++image)
+  {
+    const auto first = setup.lines.begin() + std::ptrdiff_t(std::size_t(image) * perImage);
+    PathState path;
+    if (std::none_of(first, first + std::ptrdiff_t(perImage),
+                     [&](const TraceLine& line) { return enterSpace(space, line, setup.view.depthMm, path); }))
+    {
+      throw Error("no scan line of pose " + std::to_string(image) +
+                  " meets the label map: move the probe onto the skin or increase the depth");
+    }
+  }
+}
+
 bool near(double a, double b)
 {
   return std::abs(a - b) <= 1e-9 * std::abs(b);
 }
 
 } // namespace
+
+bool runsOnDevice(const TraceSettings& settings)
+{
+  const bool onlyCpu = settings.march == March::NanoVDB || settings.sampling == Sampling::SharedPaths;
+  if (onlyCpu && settings.device == Device::Cuda)
+  {
+    throw Error(std::string(settings.march == March::NanoVDB ? "the march through the NanoVDB grid"
+                                                             : "sampling by shared paths") +
+                " runs on the CPU only: choose another, or the CPU");
+  }
+  return !onlyCpu && chooseDevice(settings.device).cuda;
+}
 
 TracedLines traceOnDevice(const TraceSetup& setup, const TraceSettings& settings, const Progress& progress)
 {
@@ -73,8 +105,10 @@ ImageJob makeImageJob(const Scene& scene, const std::vector<ProbePose>& poses, c
   }
   ImageJob job;
   job.images = int(poses.size());
+  const TraceSetup setup(scene, lines, settings.tracing, targets, progress);
+  requireEachMeets(setup, job.images);
   job.scan = planeScan(settings.geometry, settings.echo.sampleCount(), settings.echo.sampleMm(), settings.pixelMm);
-  job.trace = makeTraceJob(TraceSetup(scene, lines, settings.tracing, targets, progress), settings.tracing);
+  job.trace = makeTraceJob(setup, settings.tracing);
   const EchoSources sources{ &scene, nullptr, nullptr };
   job.echo = makeEchoJob(EchoSetup(sources, lines, settings.echo));
   job.bmode = makeBModeJob(settings.bmode, settings.echo.sampleCount(), settings.echo.sampleMm());
@@ -97,7 +131,7 @@ std::vector<PlaneImage> simulateOnDevice(const Scene& scene, const std::vector<P
     const std::size_t pixels = std::size_t(images[i].width) * std::size_t(images[i].height);
     const auto from = std::ptrdiff_t(i * pixels);
     images[i].value.assign(result.pixels.begin() + from, result.pixels.begin() + from + std::ptrdiff_t(pixels));
-    images[i].mask.assign(result.mask.begin() + from, result.mask.begin() + from + std::ptrdiff_t(pixels));
+    images[i].mask = result.mask;
   }
   return images;
 }

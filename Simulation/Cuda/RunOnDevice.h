@@ -10,6 +10,9 @@ struct EchoSetup;
 
 // The stages on the process's GPU; as their twins on the CPU, which call these where the settings' device asks for it.
 
+/// Whether tracing with these settings runs there. Throws Error when it is asked to and cannot.
+bool runsOnDevice(const TraceSettings& settings);
+
 TracedLines traceOnDevice(const TraceSetup& setup, const TraceSettings& settings, const Progress& progress);
 
 RfLines formRfOnDevice(const EchoSetup& setup, const Progress& progress);

@@ -73,11 +73,7 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
 {
   geometry.validate();
   std::ostringstream message;
-  if (geometry.kind == ScanKind::Matrix)
-  {
-    message << "the lines of a matrix fill a volume, not a plane; convert them with scanConvertVolume.";
-  }
-  else if (sampleCount < 1)
+  if (sampleCount < 1)
   {
     message << "sampleCount is " << sampleCount << " but must be at least 1.";
   }
@@ -103,6 +99,10 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
 PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm)
 {
   geometry.validate();
+  if (geometry.kind == ScanKind::Matrix)
+  {
+    throw Error("the lines of a matrix fill a volume, not a plane; convert them with scanConvertVolume.");
+  }
   if (!(pixelMm > 0.0) || !std::isfinite(pixelMm))
   {
     std::ostringstream message;
@@ -152,9 +152,9 @@ PlaneScan planeScan(const ScanGeometry& geometry, int sampleCount, double sample
 PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
                        double pixelMm)
 {
+  PlaneImage image = planeImageLayout(geometry, pixelMm);
   validateSizes(geometry, values, sampleCount, sampleMm);
   const PlaneScan scan = planeScan(geometry, sampleCount, sampleMm, pixelMm);
-  PlaneImage image = planeImageLayout(geometry, pixelMm);
   image.value.resize(std::size_t(image.width) * image.height);
   image.mask.resize(image.value.size());
 

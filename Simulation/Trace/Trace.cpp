@@ -76,18 +76,6 @@ void traceLineByNanoVDB(const TraceSetup& setup, int index, LineTally& tally, Tr
   traceLineIn(setup.nanoSpace(), setup, index, tally, out);
 }
 
-bool runsOnDevice(const TraceSettings& settings)
-{
-  const bool onlyCpu = settings.march == March::NanoVDB || settings.sampling == Sampling::SharedPaths;
-  if (onlyCpu && settings.device == Device::Cuda)
-  {
-    throw Error(std::string(settings.march == March::NanoVDB ? "the march through the NanoVDB grid"
-                                                             : "sampling by shared paths") +
-                " runs on the CPU only: choose another, or the CPU");
-  }
-  return !onlyCpu && chooseDevice(settings.device).cuda;
-}
-
 } // namespace
 
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
