@@ -10,6 +10,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
+#include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
@@ -59,6 +60,20 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   vtkSMPropertyHelper(colors, "ScalarOpacityFunction").Set(opacity);
   vtkSMPropertyHelper(colors, "EnableOpacityMapping").Set(1);
   colors->UpdateVTKObjects();
+}
+
+/// On its way from a server ParaView 5.11 loses how an image is turned, but not where a surface's points lie.
+void keepInPlace(vtkSMProxy* representation)
+{
+  if (vtkSMSessionClient::SafeDownCast(representation->GetSession()))
+  {
+    vtkSMRepresentationProxy::SetRepresentationType(representation, "Surface");
+    vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0); // the greys themselves, whatever the light
+    vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
+    // Between colours, not values: the value 0 would fall out of the table at places and be opaque.
+    vtkSMPropertyHelper(representation, "InterpolateScalarsBeforeMapping", true).Set(0);
+    representation->UpdateVTKObjects();
+  }
 }
 
 /// Whether a bar shows the labels' own colours or grey, which need none.
@@ -139,6 +154,7 @@ public:
              isOutput(input, port, "SonoScanConverter", vtkSonoUltrasound::FLAT_IMAGE))
     {
       hideUnscanned(registered->Proxy->GetSessionProxyManager());
+      keepInPlace(registered->Proxy);
     }
     else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {

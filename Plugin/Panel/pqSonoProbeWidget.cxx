@@ -2,6 +2,7 @@
 
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
+#include "vtkSonoUltrasound.h"
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
@@ -383,7 +384,9 @@ void pqSonoProbeWidget::findSkin()
     {
       auto* shown = qobject_cast<pqDataRepresentation*>(each);
       pqOutputPort* port = shown && shown->isVisible() ? shown->getOutputPortFromInput() : nullptr;
-      if (port && port->getSource()->getProxy() != this->proxy())
+      // Not the fan and the image of the probe itself; but the one filter passes the anatomy on.
+      if (port &&
+          (port->getSource()->getProxy() != this->proxy() || port->getPortNumber() == vtkSonoUltrasound::ANATOMY))
       {
         surfaces->SetBlock(surfaces->GetNumberOfBlocks(),
                            this->fetch(port->getSource()->getProxy(), port->getPortNumber()));

@@ -50,6 +50,10 @@ class TestServer(unittest.TestCase):
         ultrasound.GaindB = 0
         image = Fetch(ultrasound)
         self.assertEqual((image.GetPointData().GetArray("BMode").GetRange(), image.GetNumberOfPoints()), before)
+        # As a surface: an image would arrive at the client without the matrix that turns it.
+        shown = simple.Show(ultrasound, simple.CreateView("RenderView"))
+        self.assertEqual(shown.Representation, "Surface")
+        self.assertEqual(tuple(shown.ColorArrayName), ("POINTS", "BMode"))
         table = simple.LabelTable(Input=simple.OutputPort(ultrasound, 4))
         table.UpdatePipeline()
         table.UpdatePropertyInformation()
