@@ -339,9 +339,17 @@ private:
       curve.y.push_back(numberOf(row.fields[y]));
     }
     std::vector<Curve> list;
-    for (const auto& [name, curve] : curves)
+    bool any = false;
+    for (auto& [name, curve] : curves)
     {
+      curve.dots = curve.x.size() == 1; // an error that more paths do not lessen
+      any = any || *std::max_element(curve.y.begin(), curve.y.end()) > 0.0;
       list.push_back(curve);
+    }
+    if (!any)
+    {
+      paragraph(error + " is 0 throughout: nothing that is chosen by chance lies in the way.");
+      return;
     }
     text_ << svgPlot(error + " over " + over, { over, true }, { error, true }, list);
   }
