@@ -10,6 +10,7 @@
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStaticCellLocator.h"
@@ -26,8 +27,9 @@ class vtkSonoSkin::Surface
 {
 public:
   explicit Surface(vtkPolyData* source)
-    : Source(source)
-    , SourceTime(source->GetMTime())
+    : Points(source->GetPoints())
+    , Polygons(source->GetPolys())
+    , Time(timeOf(source))
   {
     this->Mesh->ShallowCopy(source);
     this->Mesh->SetVerts(nullptr);
@@ -35,7 +37,11 @@ public:
     this->Mesh->GetBounds(this->Bounds);
   }
 
-  bool IsMadeOf(vtkPolyData* source) const { return this->Source == source && this->SourceTime == source->GetMTime(); }
+  /// A pipeline hands the same arrays on in a new mesh each time it runs.
+  bool IsMadeOf(vtkPolyData* source) const
+  {
+    return this->Points == source->GetPoints() && this->Polygons == source->GetPolys() && this->Time == timeOf(source);
+  }
 
   /// Whether a polygon may touch a box. A coarse answer of one look at each polygon, where the locator sorts them all.
   bool MayTouch(const vtkBoundingBox& box)
@@ -200,8 +206,14 @@ private:
   double MarkMm[3];
   int Dimensions[3];
   std::vector<bool> Marked;
-  vtkSmartPointer<vtkPolyData> Source;
-  vtkMTimeType SourceTime;
+  static vtkMTimeType timeOf(vtkPolyData* mesh)
+  {
+    return std::max(mesh->GetPoints() ? mesh->GetPoints()->GetMTime() : 0, mesh->GetPolys()->GetMTime());
+  }
+
+  vtkSmartPointer<vtkPoints> Points;
+  vtkSmartPointer<vtkCellArray> Polygons;
+  vtkMTimeType Time;
   vtkNew<vtkPolyData> Mesh;
   vtkNew<vtkStaticCellLocator> Finder;
   vtkNew<vtkIdList> Cells;
