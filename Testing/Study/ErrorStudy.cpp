@@ -2,6 +2,7 @@
 // bins.
 #include "ImageError.h"
 #include "RegionSwitches.h"
+#include "SamplingName.h"
 #include "Study.h"
 
 #include <tbb/global_control.h>
@@ -112,7 +113,7 @@ void measureSamplers(const BenchScene& bench, const BenchImage& reference, int m
         break;
       }
       const Measured two = measure(bench, tracing, reference);
-      rows.push_back(row(nameOf(sampling), 2, paths, two));
+      rows.push_back(row(test::nameOf(sampling), 2, paths, two));
       secondsPerPath = two.seconds / paths;
       if (paths >= 100)
       {
@@ -122,14 +123,14 @@ void measureSamplers(const BenchScene& bench, const BenchImage& reference, int m
       if (secondsPerPath * paths < 0.5)
       {
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-        rows.push_back(row(nameOf(sampling), 1, paths, measure(bench, tracing, reference)));
+        rows.push_back(row(test::nameOf(sampling), 1, paths, measure(bench, tracing, reference)));
       }
     }
     if (intensity.size() < 2 || intensity.front().second == 0.0)
     {
       continue;
     }
-    const std::string name = "error_" + bench.name + "_" + nameOf(sampling);
+    const std::string name = "error_" + bench.name + "_" + test::nameOf(sampling);
     const PowerLaw law = PowerLaw::through(intensity);
     output.figure(name + "_slope", law.slope, "log_error/log_paths");
     output.figure(name + "_to_1_percent_s", law.pathsFor(0.01) * secondsPerPath, "s");

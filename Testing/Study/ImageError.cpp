@@ -65,18 +65,4 @@ ImageError imageError(const BenchImage& image, const BenchImage& reference)
   return result;
 }
 
-std::string nameOf(Sampling sampling)
-{
-  switch (sampling)
-  {
-    case Sampling::Independent:
-      return "independent";
-    case Sampling::LowDiscrepancy:
-      return "low_discrepancy";
-    case Sampling::SharedPaths:
-      return "shared_paths";
-  }
-  return "";
-}
-
 } // namespace sono::study

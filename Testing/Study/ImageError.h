@@ -27,6 +27,4 @@ ImageError imageError(const BenchImage& image, const BenchImage& reference);
 /// Of the intensity alone, on the finer of the two grids of bins; the coarser bins must be made of whole finer ones.
 double intensityError(const TracedLines& traced, const TracedLines& reference);
 
-std::string nameOf(Sampling sampling);
-
 } // namespace sono::study

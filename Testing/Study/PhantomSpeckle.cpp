@@ -2,6 +2,7 @@
 #include "PhantomSpeckle.h"
 
 #include "Echo/FormRf.h"
+#include "EchoScenes.h"
 #include "Progress.h"
 #include "Study.h"
 
@@ -99,19 +100,6 @@ double rayleighSse(const std::vector<float>& envelope, std::vector<std::vector<s
   return sse;
 }
 
-double envelopeSnr(const std::vector<float>& envelope)
-{
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const float e : envelope)
-  {
-    sum += e;
-    squares += double(e) * e;
-  }
-  const double mean = sum / double(envelope.size());
-  return mean / std::sqrt(squares / double(envelope.size()) - mean * mean);
-}
-
 namespace {
 
 void run(Output& output)
@@ -125,7 +113,7 @@ void run(Output& output)
   for (int seed = 1; seed <= seeds; ++seed)
   {
     const std::vector<float> samples = speckleSamples(unsigned(seed), 600.0);
-    const double ratio = envelopeSnr(samples);
+    const double ratio = test::signalToNoise(samples);
     snr += ratio / seeds;
     snrSquares += ratio * ratio / seeds;
     sse += rayleighSse(samples, seed == 1 ? &histogram : nullptr) / seeds;

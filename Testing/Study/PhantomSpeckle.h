@@ -14,7 +14,4 @@ std::vector<float> speckleSamples(unsigned seed, double densityPerMm2);
 /// about 1 / N. `histogram` takes the rows (bin's middle in rms, share, fit).
 double rayleighSse(const std::vector<float>& envelope, std::vector<std::vector<std::string>>* histogram = nullptr);
 
-/// Mean over standard deviation; sqrt(pi / (4 - pi)) = 1.9131 for Rayleigh.
-double envelopeSnr(const std::vector<float>& envelope);
-
 } // namespace sono::study

@@ -1,4 +1,5 @@
 #include "Detectability.h"
+#include "EchoScenes.h"
 #include "PhantomBeam.h"
 #include "PhantomLesions.h"
 #include "PhantomSpeckle.h"
@@ -114,7 +115,7 @@ TEST(WireEcho, StandsSomeThirtyDecibelsAboveTheGel)
 TEST(PhantomStudy, SpeckleIsRayleigh)
 {
   const auto samples = speckleSamples(1, 600.0);
-  EXPECT_NEAR(envelopeSnr(samples), 1.9131, 0.03);
+  EXPECT_NEAR(test::signalToNoise(samples), 1.9131, 0.03);
   EXPECT_LE(rayleighSse(samples), 1.5e-5);
   EXPECT_GT(rayleighSse(speckleSamples(1, 1.0)), 1e-3); // too few scatterers are told apart
 }

@@ -5,6 +5,7 @@
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
 #include "Progress.h"
+#include "SamplingName.h"
 #include "Scene/ThoraxPhantom.h"
 #include "Stage.h"
 #include "TestScenes.h"
@@ -195,20 +196,6 @@ double relativeRmse(const TracedLines& traced, const TracedLines& reference)
   return std::sqrt(error / total);
 }
 
-std::string nameOf(Sampling sampling)
-{
-  switch (sampling)
-  {
-    case Sampling::Independent:
-      return "independent";
-    case Sampling::LowDiscrepancy:
-      return "low_discrepancy";
-    case Sampling::SharedPaths:
-      return "shared_paths";
-  }
-  return "";
-}
-
 /// Error and time against paths for one setting, and how many independent paths a path of the others is worth where
 /// the image has 1000 of them.
 void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, TraceSettings settings,
@@ -231,7 +218,7 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
       const TracedLines traced = trace(scene, lines, settings);
       const double seconds = watch.lap();
       const double error = relativeRmse(traced, reference);
-      const std::string figure = name + "_rmse_" + nameOf(sampling) + "_" + std::to_string(paths);
+      const std::string figure = name + "_rmse_" + test::nameOf(sampling) + "_" + std::to_string(paths);
       printFigure(figure, error, "of_rms");
       printFigure(figure + "_s", seconds, "s");
       if (paths != 1000)
@@ -245,7 +232,7 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
         continue;
       }
       const double ratio = std::pow(independentError / error, 2);
-      const std::string which = sampling == Sampling::SharedPaths ? "" : "_" + nameOf(sampling);
+      const std::string which = sampling == Sampling::SharedPaths ? "" : "_" + test::nameOf(sampling);
       printFigure(name + which + "_equal_rmse_path_ratio", ratio, "times");
       printFigure(name + which + "_equal_rmse_time_ratio", ratio * independentSeconds / seconds, "times");
     }
