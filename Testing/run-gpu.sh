@@ -58,7 +58,7 @@ unpack()
   done
 }
 
-run_tests()
+with_libraries()
 {
   SONOVDB_DATA_DIR="$unpacked/programs" LD_LIBRARY_PATH="$unpacked/libraries" "$@"
 }
@@ -73,16 +73,16 @@ case "${1:-}" in
     ;;
   test)
     unpack
-    run_tests "$unpacked/programs/GpuTests"
+    with_libraries "$unpacked/programs/GpuTests"
     ;;
   benchmark)
     unpack
-    "$unpacked/programs/GpuBenchmark" "$unpacked/jobs/a4c.sonojob" "$unpacked/jobs/s1.sonojob"
+    with_libraries "$unpacked/programs/GpuBenchmark" "$unpacked/jobs/a4c.sonojob" "$unpacked/jobs/s1.sonojob"
     ;;
   sanitize)
     unpack
     for tool in memcheck racecheck initcheck synccheck; do
-      run_tests compute-sanitizer --tool "$tool" --error-exitcode 9 "$unpacked/programs/GpuTests" \
+      with_libraries compute-sanitizer --tool "$tool" --error-exitcode 9 "$unpacked/programs/GpuTests" \
         --gtest_filter='GpuSmall.*'
     done
     ;;

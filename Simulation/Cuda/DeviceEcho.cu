@@ -1,6 +1,7 @@
 #include "Cuda/DeviceEcho.cuh"
 
 #include "Cuda/LineFinish.cuh"
+#include "Cuda/SplatChunk.cuh"
 
 #include <algorithm>
 #include <cmath>
@@ -14,45 +15,6 @@ constexpr unsigned allLanes = 0xffffffffu;
 constexpr int blockThreads = 128;
 constexpr int brickCells = 4;          // cells along an edge of a brick of procedural scatterers (see TissueScatterers)
 constexpr float darkIntensity = 1e-8f; // -160 dB
-
-/// What both kinds of scatterers share.
-struct SplatLaunch
-{
-  const Beam* beams;
-  LineGrid grid;
-  float sampleMm;
-  int sumCount;
-  float scale; // of a sum's unit
-  bool hasField;
-  BeamFieldView field;
-  bool hasSight;
-  BeamSightView sight;
-  float lateralMm; // half axes of the ellipse around the axis that holds all that the beam sees
-  float elevationalMm;
-  float perLateralSigma;
-  float perElevationalSigma;
-  float2* sum;
-
-  /// Weight of the beam at a place, 0 where it does not see.
-  __device__ float weight(const BeamPlace& p) const
-  {
-    if (!(p.position >= 0.0f && p.position < grid.lastSample))
-    {
-      return 0.0f;
-    }
-    if (hasField)
-    {
-      return beamWeight(field, p.lateral, p.elevational, fminf(p.position * sampleMm, field.depth.highMm));
-    }
-    const float squared = squaredSigmas(p, perLateralSigma, perElevationalSigma);
-    return squared < beamCutSigma * beamCutSigma ? expNegative(-0.5f * squared) : 0.0f;
-  }
-  __device__ bool sightMeets(const Beam& beam, const Vec3f& centre) const
-  {
-    const Vec3f q = centre - beam.origin;
-    return !hasSight || sight.sees(glm::dot(q, beam.lateral), glm::dot(q, beam.elevation), glm::dot(q, beam.axis));
-  }
-};
 
 struct TissueLaunch
 {
@@ -68,46 +30,6 @@ struct TissueLaunch
   int binCount;
   float binMm;
 };
-
-/// A piece of a line: its samples and the depths that scatterers into them have.
-struct Chunk
-{
-  int line;
-  int first;
-  int count;
-  float fromMm;
-  float toMm;
-
-  __device__ bool holds(const BeamPlace& p) const
-  {
-    return p.position >= float(first - 1) && p.position < float(first + count);
-  }
-};
-
-__device__ Chunk chunkOf(const SplatLaunch& launch)
-{
-  const int first = int(blockIdx.y) * chunkSamples;
-  const int count = min(chunkSamples, launch.sumCount - first);
-  return { int(blockIdx.x), first, count, float(first - 1) * launch.sampleMm, float(first + count) * launch.sampleMm };
-}
-
-/// Writes or adds the chunk's sums.
-template<class Sums>
-__device__ void writeChunk(const SplatLaunch& launch, const Chunk& chunk, const Sums& sums, bool add)
-{
-  float2* to = launch.sum + std::size_t(chunk.line) * launch.sumCount + chunk.first;
-  const float perUnit = 1.0f / launch.scale;
-  for (int s = threadIdx.x; s < chunk.count; s += blockDim.x)
-  {
-    float2 v{ sums.value(2 * s, perUnit), sums.value(2 * s + 1, perUnit) };
-    if (add)
-    {
-      v.x += to[s].x;
-      v.y += to[s].y;
-    }
-    to[s] = v;
-  }
-}
 
 /// Whether any of the paths' intensity reaches a chunk; the last bin's holds below it.
 __device__ bool isLit(const TissueLaunch& launch, const Chunk& chunk)
@@ -428,23 +350,29 @@ TracedOnDevice DeviceEcho::given(int first) const
   return traced;
 }
 
+SplatLaunch DeviceEcho::splat(const Beam* beams, float scale, const Sight& sight) const
+{
+  const Vec2f halfAxes = ellipse(sight);
+  return { beams,
+           grid_,
+           float(sampleMm_),
+           sumCount_,
+           scale,
+           field_.has_value(),
+           field_.value_or(BeamFieldView{}),
+           sight.some,
+           sight.view,
+           halfAxes.x,
+           halfAxes.y,
+           1.0f / sigmas_.x,
+           1.0f / sigmas_.y,
+           sum_.data() };
+}
+
 void DeviceEcho::splatTissues(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
 {
   TissueLaunch launch{};
-  launch.splat = { sceneBeams_.data() + first,
-                   grid_,
-                   float(sampleMm_),
-                   sumCount_,
-                   tissueScale_,
-                   field_.has_value(),
-                   field_.value_or(BeamFieldView{}),
-                   tissueSight_.some,
-                   tissueSight_.view,
-                   ellipse(tissueSight_).x,
-                   ellipse(tissueSight_).y,
-                   1.0f / sigmas_.x,
-                   1.0f / sigmas_.y,
-                   sum_.data() };
+  launch.splat = splat(sceneBeams_.data() + first, tissueScale_, tissueSight_);
   launch.voxels = voxels_.data();
   launch.size = size_;
   launch.perMm = 1.0f / spacing_;
@@ -461,20 +389,7 @@ void DeviceEcho::splatTissues(int first, int count, const TracedOnDevice& traced
 void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)
 {
   PointLaunch launch{};
-  launch.splat = { pointBeams_.data() + first,
-                   grid_,
-                   float(sampleMm_),
-                   sumCount_,
-                   pointScale_,
-                   field_.has_value(),
-                   field_.value_or(BeamFieldView{}),
-                   pointSight_.some,
-                   pointSight_.view,
-                   ellipse(pointSight_).x,
-                   ellipse(pointSight_).y,
-                   1.0f / sigmas_.x,
-                   1.0f / sigmas_.y,
-                   sum_.data() };
+  launch.splat = splat(pointBeams_.data() + first, pointScale_, pointSight_);
   launch.x = x_.data();
   launch.y = y_.data();
   launch.z = z_.data();

@@ -21,6 +21,8 @@ struct TracedOnDevice
   const float2* echo = nullptr; ///< or lines x sumCount amplitudes
 };
 
+struct SplatLaunch;
+
 /// Forms RF lines on the device. Kept between jobs: a scene's tissues, explicit scatterers and fields.
 class DeviceEcho
 {
@@ -48,6 +50,8 @@ private:
   };
   void setBeams(const std::vector<Beam>& beams);
   Vec2f ellipse(const Sight& sight) const;
+  /// What a launch for these beams holds.
+  SplatLaunch splat(const Beam* beams, float scale, const Sight& sight) const;
   int chunks() const { return (sumCount_ + chunkSamples - 1) / chunkSamples; }
   void splatTissues(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
   void splatPoints(int first, int count, cudaStream_t stream);

@@ -1,16 +1,22 @@
 #include "Cuda/DeviceImager.h"
 
+#include "Cuda/CopyImages.h"
 #include "Cuda/DeviceDisplay.cuh"
 #include "Cuda/DeviceEcho.cuh"
 #include "Cuda/DeviceTracer.cuh"
 
 #include <algorithm>
 #include <array>
+#include <future>
 #include <mutex>
 
 namespace sono {
 
 namespace {
+
+/// Images that go through the stages together where pictures are wanted: enough to fill a GPU, and few enough that the
+/// host copies those of one group while the next is computed.
+constexpr int picturesTogether = 16;
 
 /// Moments of a run on the device.
 class StageClock
@@ -115,6 +121,7 @@ struct DeviceImager::Work
   std::unique_ptr<DeviceEcho> echo = std::make_unique<DeviceEcho>();
   std::unique_ptr<DeviceDisplay> display = std::make_unique<DeviceDisplay>();
   std::unique_ptr<StageClock> clock;
+  std::array<PinnedArray<float>, 2> pictures; ///< in turn: one is filled while the other is copied
 
   void forget()
   {
@@ -123,14 +130,15 @@ struct DeviceImager::Work
     display = std::make_unique<DeviceDisplay>();
   }
 
-  /// Images that go through the stages together: what fits in a quarter of the device's memory.
-  int imagesAtOnce(const ImageJob& job) const
+  /// Images that go through the stages together: at most what fits in a quarter of the device's memory.
+  int imagesAtOnce(const ImageJob& job, const DeviceWants& wants) const
   {
     std::size_t free = 0;
     std::size_t total = 0;
     check(cudaMemGetInfo(&free, &total), "asking for its memory");
     const double fitting = std::min(0.25 * double(total) / std::max(1.0, bytesPerImage(job)), 65535.0); // of a grid
-    return std::max(1, std::min(job.images, int(fitting)));
+    const int together = wants.image ? std::min(job.images, picturesTogether) : job.images;
+    return std::max(1, std::min(together, int(fitting)));
   }
 
   void upload(const ImageJob& job, Traffic& traffic)
@@ -189,14 +197,14 @@ struct DeviceImager::Work
     }
     if (wants.image)
     {
-      result.pixels.resize(std::size_t(job.images) * job.scan->width * job.scan->height);
+      result.pixels.resize(std::size_t(job.images));
       result.mask.resize(std::size_t(job.scan->width) * job.scan->height);
     }
   }
 
   /// Brings back what is wanted of the images that were just made.
-  void bringBack(const ImageJob& job, const DeviceWants& wants, int firstImage, int images, DeviceResult& result,
-                 Traffic& traffic)
+  void bringBack(const ImageJob& job, const DeviceWants& wants, int firstImage, int images, PinnedArray<float>& picture,
+                 DeviceResult& result, Traffic& traffic)
   {
     const std::size_t firstLine = std::size_t(firstImage) * job.linesPerImage();
     const std::size_t lines = std::size_t(images) * job.linesPerImage();
@@ -228,7 +236,8 @@ struct DeviceImager::Work
     if (wants.image)
     {
       const std::size_t pixels = std::size_t(job.scan->width) * job.scan->height;
-      download(display->pixels(), images * pixels, result.pixels, firstImage * pixels, stream, traffic);
+      picture.resize(images * pixels);
+      download(display->pixels(), images * pixels, picture.data(), stream, traffic);
       if (firstImage == 0)
       {
         download(display->mask(), pixels, result.mask, 0, stream, traffic);
@@ -250,10 +259,12 @@ struct DeviceImager::Work
     DeviceTimes sum;
     allocateResult(job, wants, result);
     const WaitAtEnd wait(stream);
+    std::array<std::future<void>, 2> copying; // into the result, which outlives them
     clock->mark(StageClock::Start, stream);
     upload(job, traffic);
     clock->mark(StageClock::Uploaded, stream);
-    const int atOnce = imagesAtOnce(job);
+    const int atOnce = imagesAtOnce(job, wants);
+    int group = 0;
     for (int image = 0; image < job.images; image += atOnce)
     {
       const int images = std::min(atOnce, job.images - image);
@@ -286,9 +297,23 @@ struct DeviceImager::Work
         display->convert(images, stream);
       }
       clock->mark(StageClock::Converted, stream);
-      bringBack(job, wants, image, images, result, traffic);
+      PinnedArray<float>& picture = pictures[group % 2];
+      std::future<void>& copied = copying[group % 2];
+      if (copied.valid())
+      {
+        copied.get(); // what it held may go
+      }
+      bringBack(job, wants, image, images, picture, result, traffic);
       clock->mark(StageClock::Downloaded, stream);
       check(cudaStreamSynchronize(stream), "computing");
+      if (wants.image)
+      {
+        const std::size_t pixels = std::size_t(job.scan->width) * job.scan->height;
+        copied = std::async(std::launch::async, [from = picture.data(), pixels, to = &result.pixels[image], images] {
+          copyImages(from, pixels, to, images);
+        });
+      }
+      ++group;
       sum.upload += image == 0 ? clock->between(StageClock::Start, StageClock::Uploaded) : 0.0;
       sum.trace += clock->between(StageClock::Uploaded, StageClock::Traced);
       sum.echo += clock->between(StageClock::Traced, StageClock::Formed);
@@ -301,6 +326,13 @@ struct DeviceImager::Work
     {
       check(cudaMemcpy(&result.segments, tracer->segments(), sizeof result.segments, cudaMemcpyDeviceToHost),
             "downloading");
+    }
+    for (std::future<void>& copied : copying)
+    {
+      if (copied.valid())
+      {
+        copied.get();
+      }
     }
     sum.uploadedBytes = traffic.up;
     sum.downloadedBytes = traffic.down;

@@ -30,7 +30,7 @@ struct DeviceResult
   std::vector<std::complex<float>> iq;
   std::vector<float> grey;
   std::vector<double> referenceAmplitude; ///< of each image
-  std::vector<float> pixels;
+  std::vector<std::vector<float>> pixels; ///< of each image
   std::vector<std::uint8_t> mask; ///< one for all images
 };
 

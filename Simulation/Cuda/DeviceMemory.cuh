@@ -109,14 +109,52 @@ private:
   std::size_t capacity_ = 0;
 };
 
+/// An array of the host that the device writes at the bus's full speed. Only grows.
+template<class T>
+class PinnedArray
+{
+public:
+  PinnedArray() = default;
+  PinnedArray(const PinnedArray&) = delete;
+  PinnedArray& operator=(const PinnedArray&) = delete;
+  ~PinnedArray() { cudaFreeHost(data_); }
+
+  T* data() const { return data_; }
+
+  /// Contents are lost when it grows.
+  void resize(std::size_t count)
+  {
+    if (count > capacity_)
+    {
+      cudaFreeHost(data_);
+      data_ = nullptr;
+      capacity_ = 0;
+      void* memory = nullptr;
+      check(cudaMallocHost(&memory, count * sizeof(T)), "pinning memory for its results");
+      data_ = static_cast<T*>(memory);
+      capacity_ = count;
+    }
+  }
+
+private:
+  T* data_ = nullptr;
+  std::size_t capacity_ = 0;
+};
+
 /// Brings `count` values back; the caller synchronises.
+template<class T, class U>
+void download(const T* from, std::size_t count, U* to, cudaStream_t stream, Traffic& traffic)
+{
+  static_assert(sizeof(T) == sizeof(U), "one value becomes one value");
+  check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream), "downloading");
+  traffic.down += count * sizeof(T);
+}
+
 template<class T, class U>
 void download(const T* from, std::size_t count, std::vector<U>& to, std::size_t at, cudaStream_t stream,
               Traffic& traffic)
 {
-  static_assert(sizeof(T) == sizeof(U), "one value becomes one value");
-  check(cudaMemcpyAsync(to.data() + at, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream), "downloading");
-  traffic.down += count * sizeof(T);
+  download(from, count, to.data() + at, stream, traffic);
 }
 
 } // namespace sono

@@ -124,13 +124,11 @@ std::vector<PlaneImage> simulateOnDevice(const Scene& scene, const std::vector<P
   const ImageJob job = makeImageJob(scene, poses, settings, preparing, targets);
   DeviceWants wants;
   wants.image = true;
-  const DeviceResult result = DeviceImager::instance().run(job, wants, running);
+  DeviceResult result = DeviceImager::instance().run(job, wants, running);
   std::vector<PlaneImage> images(poses.size(), planeImageLayout(settings.geometry, settings.pixelMm));
   for (std::size_t i = 0; i < images.size(); ++i)
   {
-    const std::size_t pixels = std::size_t(images[i].width) * std::size_t(images[i].height);
-    const auto from = std::ptrdiff_t(i * pixels);
-    images[i].value.assign(result.pixels.begin() + from, result.pixels.begin() + from + std::ptrdiff_t(pixels));
+    images[i].value = std::move(result.pixels[i]);
     images[i].mask = result.mask;
   }
   return images;
