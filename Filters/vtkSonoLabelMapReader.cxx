@@ -4,6 +4,7 @@
 #include "Labels/ReadLabelMap.h"
 #include "SonoLabelImage.h"
 #include "SonoStage.h"
+#include "SonoVtkImageFile.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -13,7 +14,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkXMLImageDataReader.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -44,14 +44,8 @@ void nameLabels(const std::string& fileName, vtkImageData* image, sono::LabelVol
 
 sono::LabelVolume readVti(const std::string& fileName)
 {
-  vtkNew<vtkXMLImageDataReader> reader;
-  if (!vtksys::SystemTools::FileExists(fileName, true) || !reader->CanReadFile(fileName.c_str()))
-  {
-    throw sono::Error("The file " + fileName + " is missing or no VTK image; name a label map that can be read.");
-  }
-  reader->SetFileName(fileName.c_str());
-  reader->Update();
-  vtkImageData* image = reader->GetOutput();
+  vtkNew<vtkImageData> image;
+  sono::readVtkImage(fileName, image);
   sono::LabelVolume volume;
   try
   {

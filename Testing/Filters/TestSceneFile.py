@@ -216,6 +216,27 @@ class TestNamesBesideAVtkImage(InFolder):
         self.assertIn(5, own)
         self.assertEqual(self.names(chain.thorax.GetOutput()), own)
 
+    def test_appended_data_are_read_and_damaged_ones_named(self):
+        """Debian's updates of expat broke VTK's own reading of these."""
+        voxels = np.arange(4 * 5 * 6, dtype=np.uint8).reshape(6, 5, 4) % 7
+        path = self.folder / "whole.vti"
+        for encoded in (True, False):
+            with self.subTest(encoded=encoded):
+                writer = make(vtkXMLImageDataWriter, FileName=str(path), EncodeAppendedData=encoded)
+                writer.SetDataModeToAppended()
+                writer.SetInputData(label_image(voxels))
+                writer.Write()
+                reader = make(vtkSonoLabelMapReader, FileName=str(path))
+                reader.Update()
+                labels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+                self.assertEqual(labels.tolist(), voxels.ravel().tolist())
+        path.write_bytes(path.read_bytes().replace(b"<Piece", b"<Piece <"))
+        reader = make(vtkSonoLabelMapReader, FileName=str(path))
+        said = listen(reader)
+        reader.Update()
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("whole.vti is damaged", said[0])
+
 
 if __name__ == "__main__":
     unittest.main()
