@@ -19,7 +19,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--plugin", help="the plugin's library; or set SONOVDB_PLUGIN", default=os.environ.get(
     "SONOVDB_PLUGIN", "/usr/local/lib/paraview-5.11/plugins/SonoVDB/SonoVDB.so"))
-parser.add_argument("--labels", help="label map: .nii, .nii.gz, .nrrd or .seg.nrrd; needs --pose")
+parser.add_argument("--labels", help="label map: .nii, .nii.gz, .nrrd, .seg.nrrd or .vti; needs --pose")
 parser.add_argument("--pose", help="where the probe stands: file.json or file.json:NAME")
 parser.add_argument("--output", default="ultrasound.png", help="picture, in any format that OpenImageIO writes")
 parser.add_argument("--spacing", type=float, default=1.0, help="voxel size of the bundled thorax in mm")
