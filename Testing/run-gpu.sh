@@ -3,6 +3,7 @@
 #   run-gpu.sh pack [PART] here: builds, and packs programs, libraries and jobs (or one of them) into build-gpu
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
+#   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh sanitize    there: the checks of compute-sanitizer on small scenes
 set -euo pipefail
 
@@ -19,10 +20,10 @@ archive()
 
 pack_programs()
 {
-  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark WriteGpuJobs
+  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark WriteGpuJobs study_curves
   local work
   work="$(mktemp -d)"
-  cp "$bin/GpuTests" "$bin/GpuBenchmark" "$root"/Data/*.csv "$work"
+  cp "$bin/GpuTests" "$bin/GpuBenchmark" "$bin/study_curves" "$root"/Data/*.csv "$work"
   archive programs "$work"
 }
 
@@ -31,8 +32,8 @@ pack_libraries()
   local work
   work="$(mktemp -d)"
   # All but the C library and the loader, which must be those of the machine.
-  ldd "$bin/GpuTests" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' |
-    xargs -I{} cp -L {} "$work"
+  ldd "$bin/GpuTests" "$bin/study_curves" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' |
+    sort -u | xargs -I{} cp -L {} "$work"
   archive libraries "$work"
 }
 
@@ -48,7 +49,7 @@ unpack()
 {
   local part
   rm -rf "$unpacked"
-  for part in programs libraries jobs; do
+  for part in "$@"; do
     mkdir -p "$unpacked/$part"
     if command -v xz > /dev/null; then
       tar -C "$unpacked/$part" -xJf "$pack/$part.tar.xz"
@@ -72,22 +73,26 @@ case "${1:-}" in
     ls -l "$pack"
     ;;
   test)
-    unpack
+    unpack programs libraries
     with_libraries "$unpacked/programs/GpuTests"
     ;;
   benchmark)
-    unpack
+    unpack programs libraries jobs
     with_libraries "$unpacked/programs/GpuBenchmark" "$unpacked/jobs/a4c.sonojob" "$unpacked/jobs/s1.sonojob"
     ;;
+  study)
+    unpack programs libraries
+    with_libraries "$unpacked/programs/study_curves" "${2:-$pack/study}" error_gpu report
+    ;;
   sanitize)
-    unpack
+    unpack programs libraries
     for tool in memcheck racecheck initcheck synccheck; do
       with_libraries compute-sanitizer --tool "$tool" --error-exitcode 9 "$unpacked/programs/GpuTests" \
         --gtest_filter='GpuSmall.*'
     done
     ;;
   *)
-    sed -n '2,6s/^# *//p' "$0" >&2
+    sed -n '2,7s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac

@@ -31,7 +31,7 @@ struct TraceRegion
     cells.size = box.size();
     cells.blocks = TissueCells::blocksFor(cells.size);
     cells.spacing = spacing;
-    cells.perMm = 1.0f / spacing;
+    cells.perMm = Vec3f(1.0f) / spacing;
     cells.meanSpacing = std::cbrt(spacing.x * spacing.y * spacing.z);
     return cells;
   }

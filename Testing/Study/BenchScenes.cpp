@@ -4,6 +4,7 @@
 #include "Progress.h"
 #include "Scene/TestObjects.h"
 #include "Scene/ThoraxPhantom.h"
+#include "Study.h"
 #include "TestScenes.h"
 
 #include <cmath>
@@ -12,7 +13,7 @@ namespace sono::study {
 
 namespace {
 
-/// `lineCount` lines, at most all 128 of the geometry.
+/// `lineCount` lines, at most all of the geometry.
 std::vector<ScanLine> middleLines(const ScanGeometry& geometry, const ProbePose& pose, int lineCount)
 {
   const auto all = makeScanLines(geometry, pose);
@@ -20,10 +21,25 @@ std::vector<ScanLine> middleLines(const ScanGeometry& geometry, const ProbePose&
   return { first, first + lineCount };
 }
 
+/// Splits an echo between the two samples around it, each with the phase of its distance.
+void addStackEcho(const TraceSettings& tracing, double r, double amplitude, StackLine& out)
+{
+  const double position = r / tracing.echoSampleMm;
+  const std::size_t sample = std::size_t(position);
+  const double fraction = position - double(sample);
+  const double turn = 4.0 * M_PI * tracing.frequencyMHz / assumedSoundSpeedMmPerUs * tracing.echoSampleMm;
+  if (sample + 1 < out.echo.size())
+  {
+    out.echo[sample] += std::polar(amplitude * (1.0 - fraction), -turn * fraction);
+    out.echo[sample + 1] += std::polar(amplitude * fraction, turn * (1.0 - fraction));
+  }
+}
+
 /// Adds what a path leaves from `r` on, inside `layer`, going down or up.
 void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool down, double intensity, double length,
-                 int collisions, std::vector<double>& bins)
+                 int collisions, StackLine& out)
 {
+  std::vector<double>& bins = out.intensity;
   const std::vector<Layer>& layers = stackLayers();
   const double decay = layers[layer].tissue.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0;
   const bool lastDown = down && layer + 1 == layers.size();
@@ -55,8 +71,9 @@ void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool
   const double reflectance = std::pow((z2 - z1) / (z2 + z1), 2);
   const double arrives = intensity * std::exp(-decay * (high - low));
   length += high - low;
-  followStack(tracing, wall, layer, !down, arrives * reflectance, length, collisions + 1, bins);
-  followStack(tracing, wall, next, down, arrives * (1.0 - reflectance), length, collisions + 1, bins);
+  addStackEcho(tracing, wall, arrives * std::fabs(z2 - z1) / (z2 + z1), out);
+  followStack(tracing, wall, layer, !down, arrives * reflectance, length, collisions + 1, out);
+  followStack(tracing, wall, next, down, arrives * (1.0 - reflectance), length, collisions + 1, out);
 }
 
 } // namespace
@@ -71,11 +88,13 @@ const std::vector<Layer>& stackLayers()
   return layers;
 }
 
-std::vector<double> stackIntensity(const TraceSettings& tracing)
+StackLine stackLine(const TraceSettings& tracing)
 {
-  std::vector<double> bins(std::size_t(std::ceil(tracing.depthMm / tracing.radialBinMm - 1e-9)), 0.0);
-  followStack(tracing, 0.0, 0, true, 1.0, 0.0, 0, bins);
-  return bins;
+  StackLine line;
+  line.intensity.resize(std::size_t(tracing.binCount()));
+  line.echo.resize(std::size_t(tracing.echoCount()));
+  followStack(tracing, 0.0, 0, true, 1.0, 0.0, 0, line);
+  return line;
 }
 
 BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCount)
@@ -127,10 +146,12 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCou
   {
     CalibrationPhantomSettings phantom;
     phantom.spacingMm = spacingMm > 0.0 ? spacingMm : 0.5;
-    const auto targets = readPhantomTargets(SONOVDB_DATA_DIR "/phantom_040gse.csv");
+    const auto targets = readPhantomTargets(dataFile("phantom_040gse.csv"));
     bench.scene = sceneOf(makeCalibrationPhantom(targets, phantom));
     bench.targets.push_back(phantomWireSurface(targets, phantom, bundledTissues()));
-    bench.lines = middleLines(ScanGeometry(), phantomViewPose(phantom, 1), lineCount);
+    ScanGeometry close;
+    close.lineCount = 2048;
+    bench.lines = middleLines(close, phantomViewPose(phantom, 1), lineCount);
   }
   else
   {

@@ -5,13 +5,15 @@
 #include "Scene/Scene.h"
 #include "Trace/Trace.h"
 
+#include <complex>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace sono::study {
 
-/// A scene on which run time, error and precision are measured, with neighbouring scan lines through its middle.
+/// A scene on which run time, error and precision are measured, with neighbouring scan lines through its middle; the
+/// phantom's are as close as those of a fan of 2048, so that they meet its first wire.
 struct BenchScene
 {
   std::string name; ///< stack, cyst, rib, a4c or phantom
@@ -34,8 +36,13 @@ struct Layer
 };
 const std::vector<Layer>& stackLayers();
 
-/// Intensity of a line down the stack, bins as in TracedLines, in double precision: all sequences of reflections and
-/// transmissions of at most maxCollisions boundaries, each with its probability.
-std::vector<double> stackIntensity(const TraceSettings& tracing);
+/// A line down the stack, bins and boundary echoes as in TracedLines, in double precision: all sequences of reflections
+/// and transmissions of at most maxCollisions boundaries, each with its probability.
+struct StackLine
+{
+  std::vector<double> intensity;
+  std::vector<std::complex<double>> echo;
+};
+StackLine stackLine(const TraceSettings& tracing);
 
 } // namespace sono::study

@@ -1,121 +1,80 @@
+#include "KernelsInDouble.h"
+// Apart, since that one redefines the types of the kernels.
 #include "DoubleTrace.h"
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vector_relational.hpp>
+namespace sonoInDouble {
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
+// The deposit on the CPU, Trace/Deposit.cpp, without its vector loops.
 
-// The kernels' own source with every float a double, under another name, so that both can be linked. The numbers that
-// decide, labels, records and random words, are the same.
-#define float double
-#define vec2 dvec2
-#define vec3 dvec3
-#define sono sonoInDouble
-#define atan2f atan2
-#define cosf cos
-#define expf exp
-#define fabsf fabs
-#define floorf floor
-#define fmaxf fmax
-#define fminf fmin
-#define logf log
-#define powf pow
-#define sinf sin
-#define sqrtf sqrt
-#include "Kernel/TracePath.h"
-#undef float
-#undef vec2
-#undef vec3
-#undef sono
+LineTally::LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm)
+  : bins_(std::size_t(binCount), 0.0)
+  , binMm_(binMm)
+  , echoCount_(echoCount)
+  , echoSampleMm_(echoSampleMm)
+  , radPerMm_(4.0 * M_PI * wavesPerMm)
+{
+}
+
+void LineTally::start(const TraceLine& line, double coherenceMm, std::complex<double>* echo)
+{
+  line_ = line;
+  coherenceMm_ = coherenceMm;
+  echo_ = echo;
+}
+
+void LineTally::clearBins()
+{
+  std::fill(bins_.begin(), bins_.end(), 0.0);
+}
+
+void LineTally::segment(const PathSegment& s)
+{
+  ++segments_;
+  const BeamSegment g = beamSegment(line_, s, coherenceMm_);
+  const DepthSpan span = depthSpan(g, s.length, binMm_ * double(bins_.size()));
+  if (!(span.high > span.low))
+  {
+    return;
+  }
+  const int last = int(bins_.size()) - 1;
+  for (int b = std::min(last, int(span.low / binMm_)); b <= std::min(last, int(span.high / binMm_)); ++b)
+  {
+    const double from = std::max(span.low, b * binMm_);
+    const double to = std::min(span.high, (b + 1) * binMm_);
+    bins_[std::size_t(b)] += meanOver(g, from, to, 1.0 / g.mu) * (to - from) / binMm_;
+  }
+}
+
+void LineTally::echo(const Vec3d& point, double amplitude)
+{
+  const EchoSplit split =
+    splitEcho(line_, point, amplitude * echoWeight_, coherenceMm_, echoSampleMm_, echoCount_, radPerMm_);
+  if (split.sample >= 0)
+  {
+    echo_[split.sample] += std::complex<double>(split.amplitude[0], split.amplitude[1]);
+    echo_[split.sample + 1] += std::complex<double>(split.amplitude[2], split.amplitude[3]);
+  }
+}
+
+} // namespace sonoInDouble
 
 namespace sono::study {
 
 namespace {
 
 namespace kernel = sonoInDouble;
-using Vec = glm::dvec3;
+using Space = kernel::CellSpace<kernel::BvhTargets>;
 
-/// The deposit of Kernel/BeamDeposit.h, whose fast exponentials are single precision by construction, with the
-/// library's: exact in the decay, two Gauss points for the coherence weight.
-class DoubleTally
-{
-public:
-  DoubleTally(const DoubleInput& input, const kernel::TraceLine& line, std::vector<double>& bins)
-    : input_(input)
-    , line_(line)
-    , bins_(bins)
-  {
-  }
-
-  void segment(const kernel::PathSegment& s)
-  {
-    const Vec q = s.start - line_.origin;
-    const double r0 = glm::dot(q, line_.axis);
-    const double mu = glm::dot(s.direction, line_.axis);
-    const double low = std::max(0.0, std::min(r0, r0 + mu * s.length));
-    const double high = std::min(std::max(r0, r0 + mu * s.length), input_.binMm * double(bins_.size()));
-    if (!(high - low > 1e-6) || std::fabs(mu) < 1e-6)
-    {
-      return;
-    }
-    const auto weight = [&](double t) {
-      const Vec p = q + s.direction * t;
-      const double distance = glm::length(p - line_.axis * glm::dot(p, line_.axis));
-      return distance < 1e-3 ? 1.0 : input_.coherenceMm / (input_.coherenceMm + distance);
-    };
-    const int last = int(bins_.size()) - 1;
-    for (int b = std::min(last, int(low / input_.binMm)); b <= std::min(last, int(high / input_.binMm)); ++b)
-    {
-      const double from = std::max(low, b * input_.binMm);
-      const double to = std::min(high, (b + 1) * input_.binMm);
-      const double near = std::max(0.0, std::min((from - r0) / mu, (to - r0) / mu));
-      const double step = std::max(0.0, (to - from) / std::fabs(mu));
-      const double x = s.decayPerMm * step;
-      const double share = x > 0.0 ? -std::expm1(-x) / x : 1.0;
-      bins_[std::size_t(b)] += s.intensity * std::exp(-s.decayPerMm * near) * share * 0.5 *
-                               (weight(near + 0.2113248654 * step) + weight(near + 0.7886751346 * step)) * (to - from) /
-                               input_.binMm;
-    }
-  }
-  void echo(const Vec&, double) {}
-
-private:
-  const DoubleInput& input_;
-  const kernel::TraceLine& line_;
-  std::vector<double>& bins_;
-};
-
-Vec vec(const std::array<double, 3>& v)
+glm::dvec3 vec(const std::array<double, 3>& v)
 {
   return { v[0], v[1], v[2] };
 }
 
-} // namespace
-
-std::vector<double> traceInDouble(const DoubleInput& input)
+kernel::TraceView makeView(const DoubleInput& input, const std::vector<kernel::TraceMedium>& media)
 {
-  std::vector<kernel::TraceMedium> media;
-  for (const DoubleInput::Medium& m : input.media)
-  {
-    media.push_back({ m.impedance, m.speed, m.decayPerMm, m.tau, m.gamma });
-  }
-  kernel::CellSpace<kernel::NoTargets> space;
-  space.cells.cell = input.cell;
-  space.cells.firstRecord = input.firstRecord;
-  space.cells.record = input.record;
-  space.cells.size = { input.size[0], input.size[1], input.size[2] };
-  space.cells.blocks = kernel::TissueCells::blocksFor(space.cells.size);
-  space.cells.spacing = vec(input.spacing);
-  space.cells.perMm = Vec(1.0 / input.spacing[0], 1.0 / input.spacing[1], 1.0 / input.spacing[2]);
-  space.cells.meanSpacing = std::cbrt(input.spacing[0] * input.spacing[1] * input.spacing[2]);
   kernel::TraceView view;
   view.media = media.data();
-  view.firstTargetMedium = int(media.size());
+  view.firstTargetMedium = input.firstTargetMedium;
   view.outsideTissue = input.outsideTissue;
   view.rouletteIntensity = input.rouletteIntensity;
   view.model = kernel::InterfaceModel(input.model);
@@ -126,35 +85,111 @@ std::vector<double> traceInDouble(const DoubleInput& input)
   view.coherenceMm = input.coherenceMm;
   view.depthMm = input.depthMm;
   view.seed = input.seed;
+  return view;
+}
 
-  const std::size_t binCount = std::size_t(std::ceil(input.depthMm / input.binMm - 1e-9));
-  const int batches = std::min(8, input.paths); // the tracer's
-  std::vector<double> result;
-  for (std::size_t i = 0; i < input.lines.size(); ++i)
+Space makeSpace(const DoubleInput& input, const std::vector<kernel::BvhNode>& nodes,
+                const std::vector<kernel::BvhTriangle>& triangles)
+{
+  Space space;
+  space.cells.cell = input.cell;
+  space.cells.firstRecord = input.firstRecord;
+  space.cells.record = input.record;
+  space.cells.size = { input.size[0], input.size[1], input.size[2] };
+  space.cells.blocks = kernel::TissueCells::blocksFor(space.cells.size);
+  space.cells.spacing = vec(input.spacing);
+  space.cells.perMm = glm::dvec3(1.0) / vec(input.spacing);
+  space.cells.meanSpacing = std::cbrt(input.spacing[0] * input.spacing[1] * input.spacing[2]);
+  space.targets = { nodes.data(), triangles.data(), std::int32_t(nodes.size()) };
+  return space;
+}
+
+/// One line by paths of its own, as trace() follows it.
+void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Space& space,
+               const kernel::TraceLine& line, int index, kernel::TracedLines& out)
+{
+  kernel::LineTally tally(input.binCount, input.binMm, input.echoCount, input.echoSampleMm,
+                          input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
+  tally.start(line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(index) * std::size_t(input.echoCount));
+  const kernel::LineStart start = kernel::startLine(view, space, line, tally);
+  std::copy(tally.bins().begin(), tally.bins().end(),
+            out.intensity.begin() + std::ptrdiff_t(index) * std::ptrdiff_t(input.binCount));
+  if (!start.meets)
   {
-    const kernel::TraceLine line{ vec(input.lines[i].origin), vec(input.lines[i].axis) };
-    std::vector<double> total(binCount, 0.0);
-    DoubleTally first(input, line, total);
-    const kernel::LineStart start = kernel::startLine(view, space, line, first);
-    for (int batch = 0; batch < batches && start.meets; ++batch)
-    {
-      const int begin = int(std::int64_t(input.paths) * batch / batches);
-      const int end = int(std::int64_t(input.paths) * (batch + 1) / batches);
-      std::vector<double> bins(binCount, 0.0);
-      DoubleTally tally(input, line, bins);
-      for (int path = begin; path < end; ++path)
-      {
-        const kernel::PathKey key{ std::uint32_t(i), std::uint32_t(batch), std::uint32_t(path - begin) };
-        kernel::tracePath(view, space, line, start, key, tally);
-      }
-      for (std::size_t b = 0; b < binCount; ++b)
-      {
-        total[b] += bins[b] / (double(end - begin) * batches);
-      }
-    }
-    result.insert(result.end(), total.begin(), total.end());
+    return;
   }
-  return result;
+  tally.setEchoWeight(1.0 / input.paths);
+  const int batches = std::min(kernel::batchCount, input.paths);
+  std::vector<kernel::BounceScramble> scrambles(std::size_t(view.maxCollisions));
+  std::vector<std::vector<double>> means;
+  for (int batch = 0; batch < batches; ++batch)
+  {
+    const kernel::PathRange range = kernel::batchRange(input.paths, batches, batch);
+    for (std::size_t b = 0; b < scrambles.size(); ++b)
+    {
+      scrambles[b] =
+        kernel::makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
+    }
+    tally.clearBins();
+    for (int path = range.first; path < range.last; ++path)
+    {
+      kernel::tracePath(
+        view, space, line, start,
+        { std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - range.first), scrambles.data() }, tally);
+    }
+    means.push_back(tally.bins());
+    for (double& v : means.back())
+    {
+      v /= range.last - range.first;
+    }
+  }
+  kernel::addBatchMeans(means, index, out);
+}
+
+} // namespace
+
+DoubleTraced traceInDouble(const DoubleInput& input)
+{
+  std::vector<kernel::TraceMedium> media;
+  for (const DoubleInput::Medium& m : input.media)
+  {
+    media.push_back({ m.impedance, m.speed, m.decayPerMm, m.tau, m.gamma });
+  }
+  std::vector<kernel::BvhNode> nodes;
+  for (const DoubleInput::Node& n : input.nodes)
+  {
+    nodes.push_back({ vec(n.low), vec(n.high), n.first, n.count });
+  }
+  std::vector<kernel::BvhTriangle> triangles;
+  for (const DoubleInput::Triangle& t : input.triangles)
+  {
+    triangles.push_back({ vec(t.corner[0]), vec(t.corner[1]), vec(t.corner[2]), t.target });
+  }
+  std::vector<kernel::TraceLine> lines;
+  for (const DoubleInput::Line& l : input.lines)
+  {
+    lines.push_back({ vec(l.origin), vec(l.axis) });
+  }
+  const kernel::TraceView view = makeView(input, media);
+  const Space space = makeSpace(input, nodes, triangles);
+  kernel::TracedLines out;
+  out.lineCount = int(lines.size());
+  out.binMm = input.binMm;
+  out.binCount = input.binCount;
+  out.echoSampleMm = input.echoSampleMm;
+  out.echoCount = input.echoCount;
+  out.intensity.assign(lines.size() * std::size_t(input.binCount), 0.0);
+  out.standardError.assign(out.intensity.size(), 0.0);
+  out.boundaryEcho.assign(lines.size() * std::size_t(input.echoCount), {});
+  if (input.sharedPaths)
+  {
+    kernel::traceSharedLines(space, { view, lines, input.paths, input.frequencyMHz }, out, {});
+  }
+  else
+  {
+    parallelFor(out.lineCount, {}, [&](int i) { traceLine(input, view, space, lines[std::size_t(i)], i, out); });
+  }
+  return { std::move(out.intensity), std::move(out.boundaryEcho) };
 }
 
 } // namespace sono::study

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstdint>
 #include <vector>
 
 namespace sono::study {
 
 /// What the tracer needs, in double precision. It names no type of the kernels, which are compiled twice (see
-/// DoubleTrace.cpp).
+/// KernelsInDouble.h).
 struct DoubleInput
 {
   struct Medium
@@ -23,12 +24,28 @@ struct DoubleInput
     std::array<double, 3> origin;
     std::array<double, 3> axis;
   };
+  /// The targets' triangles and the tree over them, as the kernels have them.
+  struct Node
+  {
+    std::array<double, 3> low;
+    std::array<double, 3> high;
+    std::int32_t first;
+    std::int32_t count;
+  };
+  struct Triangle
+  {
+    std::array<std::array<double, 3>, 3> corner;
+    std::int32_t target;
+  };
   const std::uint16_t* cell;
   const std::uint32_t* firstRecord;
   const std::uint32_t* record;
   std::array<int, 3> size;
   std::array<double, 3> spacing;
-  std::vector<Medium> media;
+  std::vector<Medium> media; ///< of the tissues, then of the targets
+  int firstTargetMedium;
+  std::vector<Node> nodes;
+  std::vector<Triangle> triangles;
   std::vector<Line> lines;
   int outsideTissue;
   int model; ///< InterfaceModel
@@ -37,17 +54,28 @@ struct DoubleInput
   double lobeMin;
   double lobeMax;
   bool lowDiscrepancy;
+  bool sharedPaths;
   bool deterministic;
   int maxCollisions;
   double rouletteIntensity;
   double coherenceMm;
   double depthMm;
   double binMm;
+  int binCount;
+  double echoSampleMm;
+  int echoCount;
+  double frequencyMHz;
   std::uint64_t seed;
   int paths;
 };
 
-/// Intensity by line and bin, as trace() gives it with the same random numbers, without targets.
-std::vector<double> traceInDouble(const DoubleInput& input);
+struct DoubleTraced
+{
+  std::vector<double> intensity;          ///< by line and bin
+  std::vector<std::complex<double>> echo; ///< by line and echo sample
+};
+
+/// As trace() gives it with the same random numbers.
+DoubleTraced traceInDouble(const DoubleInput& input);
 
 } // namespace sono::study

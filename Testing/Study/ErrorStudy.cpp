@@ -1,20 +1,41 @@
-// Run time against error: paths, samplers and threads on five scenes, and what else errs: voxels, surfaces, radial
-// bins.
-#include "ImageError.h"
+// Run time against error: paths, samplers, precisions, threads and devices on five scenes, and what else errs: voxels,
+// surfaces, radial bins.
+#include "ErrorCurves.h"
 #include "RegionSwitches.h"
 #include "SamplingName.h"
 #include "Study.h"
 
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
-#include <optional>
+#include <cstdio>
+#include <thread>
 
 namespace sono::study {
 namespace {
 
-const std::vector<std::string> header = { "sampler", "precision",      "threads", "paths",
+const std::vector<std::string> header = { "sampler", "precision",      "device",  "paths",
                                           "seconds", "rmse_intensity", "rmse_rf", "rmse_db" };
+const std::vector<std::string> sceneNames = { "stack", "cyst", "rib", "a4c", "phantom" };
+
+/// Neighbouring lines of a scene: few, so that a million paths of each take seconds.
+constexpr int curveLines = 4;
+
+/// What a curve is measured with.
+struct Way
+{
+  Sampling sampling;
+  Precision precision;
+  int threads; ///< 0: the GPU
+
+  std::string sampler() const { return test::nameOf(sampling); }
+  std::string precisionName() const { return precision == Precision::Double ? "double" : "single"; }
+  std::string device() const
+  {
+    return threads == 0 ? "GPU" : "CPU, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  }
+};
 
 struct Measured
 {
@@ -22,155 +43,160 @@ struct Measured
   double seconds = 0.0; ///< of tracing
 };
 
-Measured measure(const BenchScene& bench, const TraceSettings& tracing, const BenchImage& reference)
+Measured measure(const BenchScene& bench, TraceSettings tracing, const BenchImage& reference,
+                 const Way& way = { Sampling::SharedPaths, Precision::Single, 2 })
 {
-  const BenchImage image = makeBenchImage(bench, tracing);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(std::max(1, way.threads)));
+  tracing.sampling = way.sampling;
+  tracing.device = way.threads == 0 ? Device::Cuda : Device::Cpu;
+  const BenchImage image = makeBenchImage(bench, tracing, way.precision);
   return { imageError(image, reference), image.traceSeconds };
 }
 
-std::vector<std::string> row(const std::string& curve, int threads, int paths, const Measured& m)
+std::vector<std::string> row(const std::string& curve, const Way& way, int paths, double seconds,
+                             const ImageError& error)
 {
-  return { curve,
-           "single",
-           number(threads),
-           number(paths),
-           number(m.seconds),
-           number(m.error.intensity),
-           number(m.error.rf),
-           number(m.error.decibels) };
+  return { curve,           way.precisionName(),     way.device(),     number(paths),
+           number(seconds), number(error.intensity), number(error.rf), number(error.decibels) };
 }
 
-/// Error against paths by least squares in logarithms: error = factor paths^slope.
-struct PowerLaw
+std::vector<std::string> row(const std::string& curve, int paths, const Measured& m)
 {
-  double slope = 0.0;
-  double factor = 0.0;
+  return row(curve, { Sampling::SharedPaths, Precision::Single, 2 }, paths, m.seconds, m.error);
+}
 
-  static PowerLaw through(const std::vector<std::pair<double, double>>& points)
-  {
-    double n = 0.0;
-    double x = 0.0;
-    double y = 0.0;
-    double xx = 0.0;
-    double xy = 0.0;
-    for (const auto& [paths, error] : points)
-    {
-      const double lx = std::log(paths);
-      const double ly = std::log(std::max(error, 1e-12));
-      n += 1.0;
-      x += lx;
-      y += ly;
-      xx += lx * lx;
-      xy += lx * ly;
-    }
-    PowerLaw law;
-    law.slope = (n * xy - x * y) / (n * xx - x * x);
-    law.factor = std::exp((y - law.slope * x) / n);
-    return law;
-  }
-  double pathsFor(double error) const { return std::pow(error / factor, 1.0 / slope); }
-};
+/// A table that a reader sees before the plots: how fast each way converges, and when it is good enough.
+const std::vector<std::string> summaryHeader = { "scene",
+                                                 "sampler",
+                                                 "precision",
+                                                 "device",
+                                                 "slope, intensity",
+                                                 "slope, RF",
+                                                 "slope, dB",
+                                                 "s to 1 % of intensity",
+                                                 "s to 1 % of RF",
+                                                 "s to 1 dB",
+                                                 "most paths",
+                                                 "intensity there",
+                                                 "RF there",
+                                                 "dB there" };
 
-/// The reference image. The stack's is a finite sum; the others' come from shared paths with another seed.
-BenchImage makeReference(const BenchScene& bench, int paths)
+std::vector<std::string> summaryRow(const std::string& scene, const Way& way,
+                                    const std::array<std::vector<ErrorPoint>, 3>& curves, const ImageError& floor)
 {
-  TraceSettings tracing = bench.tracing;
-  tracing.sampling = Sampling::SharedPaths;
-  tracing.pathsPerLine = paths;
-  tracing.seed = 4711;
-  BenchImage reference = makeBenchImage(bench, tracing);
-  if (bench.name == "stack")
+  const auto time = [](double seconds) { return std::isfinite(seconds) ? number(seconds) : "not reached"; };
+  const auto slope = [](double value) { return std::isfinite(value) ? number(value) : "-"; };
+  return { scene,
+           way.sampler(),
+           way.precisionName(),
+           way.device(),
+           slope(convergenceSlope(curves[0], floor.intensity)),
+           slope(convergenceSlope(curves[1], floor.rf)),
+           slope(convergenceSlope(curves[2], floor.decibels)),
+           time(secondsToReach(curves[0], 0.01)),
+           time(secondsToReach(curves[1], 0.01)),
+           time(secondsToReach(curves[2], 1.0)),
+           number(curves[0].back().paths),
+           number(curves[0].back().error),
+           number(curves[1].back().error),
+           number(curves[2].back().error) };
+}
+
+using Rows = std::vector<std::vector<std::string>>;
+
+void measureCurve(const BenchScene& bench, const BenchReference& reference, const Way& way, int mostPaths,
+                  Output& output, Rows& rows, Rows& summary)
+{
+  std::array<std::vector<ErrorPoint>, 3> curves;
+  for (int paths = 1; paths <= mostPaths; paths *= 10)
   {
-    const std::vector<double> exact = stackIntensity(tracing);
-    for (std::size_t i = 0; i < reference.traced.intensity.size(); ++i)
-    {
-      reference.traced.intensity[i] = float(exact[i % exact.size()]);
-    }
+    TraceSettings tracing = bench.tracing;
+    tracing.pathsPerLine = paths;
+    const Measured m = measure(bench, tracing, reference.image, way);
+    rows.push_back(row(way.sampler(), way, paths, m.seconds, m.error));
+    curves[0].push_back({ double(paths), m.seconds, m.error.intensity });
+    curves[1].push_back({ double(paths), m.seconds, m.error.rf });
+    curves[2].push_back({ double(paths), m.seconds, m.error.decibels });
   }
+  summary.push_back(summaryRow(bench.name, way, curves, reference.floor));
+  if (way.precision == Precision::Single && (way.threads == 0 || way.threads == 2))
+  {
+    const std::string name = "error_" + bench.name + "_" + way.sampler() + (way.threads == 0 ? "_gpu" : "");
+    output.figure(name + "_slope", convergenceSlope(curves[0], reference.floor.intensity), "log_error/log_paths");
+    output.figure(name + "_to_1_percent_s", secondsToReach(curves[0], 0.01), "s");
+    output.figure(name + "_to_1_db_s", secondsToReach(curves[2], 1.0), "s");
+  }
+}
+
+std::vector<Sampling> samplersOf(const BenchScene& bench)
+{
+  // Mirrors have no lobe to share, nor do wires that are targets.
+  if (bench.name == "stack" || bench.name == "phantom")
+  {
+    return { Sampling::Independent, Sampling::LowDiscrepancy };
+  }
+  return { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths };
+}
+
+/// The reference, and a row for its own error.
+BenchReference referenceOf(const BenchScene& bench, const Output& output, Rows& rows)
+{
+  const BenchReference reference = makeReference(bench, output.quick() ? 6000 : 4000000);
+  rows.push_back({ "reference", "", "", "1", "", number(reference.floor.intensity), number(reference.floor.rf),
+                   number(reference.floor.decibels) });
   return reference;
 }
 
-void measureSamplers(const BenchScene& bench, const BenchImage& reference, int mostPaths, Output& output,
-                     std::vector<std::vector<std::string>>& rows)
+/// The CPU's curves of a scene.
+void measureCurves(const BenchScene& bench, const BenchReference& reference, Output& output, Rows& rows, Rows& summary)
 {
-  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
+  const int mostPaths = output.quick() ? 1000 : 1000000;
+  for (const Sampling sampling : samplersOf(bench))
   {
-    if (bench.name == "stack" && sampling == Sampling::SharedPaths)
-    {
-      continue; // a mirror has no lobe to share
-    }
-    std::vector<std::pair<double, double>> intensity;
-    std::vector<std::pair<double, double>> decibels;
-    double secondsPerPath = 0.0;
-    for (int paths = 1; paths <= mostPaths; paths *= 10)
-    {
-      TraceSettings tracing = bench.tracing;
-      tracing.sampling = sampling;
-      tracing.pathsPerLine = paths;
-      // The whole study is to take minutes.
-      if (secondsPerPath * paths > (output.quick() ? 0.3 : 15.0))
-      {
-        break;
-      }
-      const Measured two = measure(bench, tracing, reference);
-      rows.push_back(row(test::nameOf(sampling), 2, paths, two));
-      secondsPerPath = two.seconds / paths;
-      if (paths >= 100)
-      {
-        intensity.emplace_back(paths, two.error.intensity);
-        decibels.emplace_back(paths, two.error.decibels);
-      }
-      if (secondsPerPath * paths < 0.5)
-      {
-        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-        rows.push_back(row(test::nameOf(sampling), 1, paths, measure(bench, tracing, reference)));
-      }
-    }
-    if (intensity.size() < 2 || intensity.front().second == 0.0)
-    {
-      continue;
-    }
-    const std::string name = "error_" + bench.name + "_" + test::nameOf(sampling);
-    const PowerLaw law = PowerLaw::through(intensity);
-    output.figure(name + "_slope", law.slope, "log_error/log_paths");
-    output.figure(name + "_to_1_percent_s", law.pathsFor(0.01) * secondsPerPath, "s");
-    output.figure(name + "_to_1_db_s", PowerLaw::through(decibels).pathsFor(1.0) * secondsPerPath, "s");
+    // The lines are one group of shared paths, which one thread traces whatever there are: a million need not be
+    // waited for twice.
+    const int most = sampling == Sampling::SharedPaths ? mostPaths / 10 : mostPaths;
+    measureCurve(bench, reference, { sampling, Precision::Single, 1 }, most, output, rows, summary);
+    measureCurve(bench, reference, { sampling, Precision::Single, 2 }, mostPaths, output, rows, summary);
+    measureCurve(bench, reference, { sampling, Precision::Double, 2 }, mostPaths, output, rows, summary);
   }
 }
 
 /// Coarser radial bins with the same paths: nothing but the bins differs.
-void measureBins(const BenchScene& bench, int paths, std::vector<std::vector<std::string>>& rows)
+void measureBins(const BenchScene& bench, int paths, Rows& rows)
 {
   TraceSettings tracing = bench.tracing;
   tracing.sampling = Sampling::SharedPaths;
   tracing.pathsPerLine = paths;
   tracing.radialBinMm = 0.05;
-  const BenchImage reference = makeBenchImage(bench, tracing);
+  tracing.device = Device::Cpu;
+  const BenchImage reference = makeBenchImage(bench, tracing, Precision::Single);
   for (const double bin : { 0.1, 0.25, 0.5, 1.0, 2.0 })
   {
     tracing.radialBinMm = bin;
-    rows.push_back(row("radial_bin_" + number(bin) + "_mm", 2, paths, measure(bench, tracing, reference)));
+    rows.push_back(row("radial_bin_" + number(bin) + "_mm", paths, measure(bench, tracing, reference)));
   }
 }
 
 /// Voxel faces instead of the smoothed surfaces, and coarser voxels, against the finest voxels.
 void measureVoxels(const std::string& name, double finestMm, const std::vector<double>& spacingsMm, int paths,
-                   std::vector<std::vector<std::string>>& rows)
+                   Rows& rows)
 {
   const auto settings = [&](const BenchScene& bench) {
     TraceSettings tracing = bench.tracing;
     tracing.sampling = Sampling::SharedPaths;
     tracing.pathsPerLine = paths;
+    tracing.device = Device::Cpu;
     return tracing;
   };
   const BenchScene finest = makeBenchScene(name, finestMm);
-  const BenchImage reference = makeBenchImage(finest, settings(finest));
+  const BenchImage reference = makeBenchImage(finest, settings(finest), Precision::Single);
   for (const double spacing : spacingsMm)
   {
     const BenchScene bench = makeBenchScene(name, spacing);
-    rows.push_back(row("voxel_" + number(spacing) + "_mm", 2, paths, measure(bench, settings(bench), reference)));
+    rows.push_back(row("voxel_" + number(spacing) + "_mm", paths, measure(bench, settings(bench), reference)));
     removeSurfaces(bench);
-    rows.push_back(row("voxel_" + number(spacing) + "_mm_faces", 2, paths, measure(bench, settings(bench), reference)));
+    rows.push_back(row("voxel_" + number(spacing) + "_mm_faces", paths, measure(bench, settings(bench), reference)));
   }
 }
 
@@ -179,7 +205,7 @@ void measureVoxels(const std::string& name, double finestMm, const std::vector<d
 void measureRatio(Output& output)
 {
   const BenchScene bench = makeBenchScene("a4c", 0.0, output.quick() ? 16 : 64);
-  const BenchImage reference = makeReference(bench, output.quick() ? 3000 : 20000);
+  const BenchReference reference = makeReference(bench, output.quick() ? 3000 : 20000);
   double squared[2] = { 0.0, 0.0 };
   double seconds[2] = { 0.0, 0.0 };
   for (const Sampling sampling : { Sampling::Independent, Sampling::SharedPaths })
@@ -188,10 +214,9 @@ void measureRatio(Output& output)
     for (int seed = 1; seed <= 6; ++seed)
     {
       TraceSettings tracing = bench.tracing;
-      tracing.sampling = sampling;
       tracing.pathsPerLine = output.quick() ? 100 : 1000;
       tracing.seed = std::uint64_t(seed);
-      const Measured m = measure(bench, tracing, reference);
+      const Measured m = measure(bench, tracing, reference.image, { sampling, Precision::Single, 2 });
       squared[which] += m.error.intensity * m.error.intensity;
       seconds[which] += m.seconds;
     }
@@ -200,34 +225,73 @@ void measureRatio(Output& output)
   output.figure("equal_rmse_time_ratio", squared[0] / squared[1] * seconds[0] / seconds[1], "times");
 }
 
+/// What is not a matter of paths, of the scenes that have surfaces.
+void measureOtherErrors(const std::string& name, Output& output, Rows& rows)
+{
+  const int paths = output.quick() ? 100 : 4000;
+  measureBins(makeBenchScene(name), paths, rows);
+  const bool thorax = name == "a4c";
+  const std::vector<double> spacings =
+    output.quick() ? std::vector<double>{ 3.0 }
+                   : (thorax ? std::vector<double>{ 3.0, 2.0, 1.5, 1.0 } : std::vector<double>{ 2.0, 1.0, 0.7, 0.5 });
+  measureVoxels(name, output.quick() ? 2.0 : (thorax ? 0.7 : 0.35), spacings, paths, rows);
+}
+
 void measureError(Output& output)
 {
-  for (const std::string name : { "stack", "cyst", "rib", "a4c", "phantom" })
+  Rows summary;
+  for (const std::string& name : sceneNames)
   {
-    std::vector<std::vector<std::string>> rows;
-    std::optional<BenchScene> bench = makeBenchScene(name);
-    const BenchImage reference = makeReference(*bench, output.quick() ? 3000 : 60000);
-    measureSamplers(*bench, reference, output.quick() ? 1000 : 1000000, output, rows);
+    Rows rows;
+    {
+      const BenchScene bench = makeBenchScene(name, 0.0, curveLines);
+      measureCurves(bench, referenceOf(bench, output, rows), output, rows, summary);
+    }
     if (name == "a4c")
     {
       measureRatio(output);
     }
-    const int paths = output.quick() ? 100 : 4000;
     if (name == "cyst" || name == "rib" || name == "a4c")
     {
-      measureBins(*bench, paths, rows);
-      bench.reset();
-      const bool thorax = name == "a4c";
-      const std::vector<double> spacings = output.quick() ? std::vector<double>{ 3.0 }
-                                                          : (thorax ? std::vector<double>{ 3.0, 2.0, 1.5, 1.0 }
-                                                                    : std::vector<double>{ 2.0, 1.0, 0.7, 0.5 });
-      measureVoxels(name, output.quick() ? 2.0 : (thorax ? 0.7 : 0.35), spacings, paths, rows);
+      measureOtherErrors(name, output, rows);
     }
     output.table("error_" + name + ".csv", header, rows);
   }
+  output.table("convergence.csv", summaryHeader, summary);
+}
+
+/// The GPU's curves, where there is one, beside those of all the machine's processors. It knows no shared paths.
+void measureErrorOnGpu(Output& output)
+{
+  const DeviceChoice choice = chooseDevice(Device::Auto);
+  if (!choice.cuda)
+  {
+    std::fprintf(stderr, "study error_gpu: %s\n", choice.note.c_str());
+    return;
+  }
+  const int threads = int(std::thread::hardware_concurrency());
+  const int mostPaths = output.quick() ? 1000 : 1000000;
+  Rows summary;
+  for (const std::string& name : sceneNames)
+  {
+    Rows rows;
+    const BenchScene bench = makeBenchScene(name, 0.0, curveLines);
+    const BenchReference reference = referenceOf(bench, output, rows);
+    for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
+    {
+      TraceSettings warm = bench.tracing;
+      warm.pathsPerLine = 1;
+      measure(bench, warm, reference.image, { sampling, Precision::Single, 0 });
+      measureCurve(bench, reference, { sampling, Precision::Single, 0 }, mostPaths, output, rows, summary);
+      measureCurve(bench, reference, { sampling, Precision::Single, threads }, mostPaths, output, rows, summary);
+    }
+    output.table("error_" + name + "_gpu.csv", header, rows);
+  }
+  output.table("convergence_gpu.csv", summaryHeader, summary);
 }
 
 const Part part("error", measureError);
+const Part gpuPart("error_gpu", measureErrorOnGpu);
 
 } // namespace
 } // namespace sono::study

@@ -28,7 +28,7 @@ struct HeartView
 HeartView seedView(bool quick)
 {
   HeartView view;
-  ProbePreset preset = readProbePreset(SONOVDB_DATA_DIR "/probes/phased_p4-2.json");
+  ProbePreset preset = readProbePreset(dataFile("probes/phased_p4-2.json"));
   preset.transmitFocusMm = 60.0;
   view.geometry = preset.geometry;
   view.geometry.sectorDeg = 90.0;
@@ -73,7 +73,7 @@ std::unique_ptr<Scene> heartScene(const LabelVolume& volume, double tau, double 
     table.add(tissue);
   }
   LabelVolume copy = volume;
-  assignTissues(copy, LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv"), table, "air");
+  assignTissues(copy, LabelTissueMap::read(dataFile("label_tissues.csv")), table, "air");
   return std::make_unique<Scene>(std::move(copy), table, "air");
 }
 

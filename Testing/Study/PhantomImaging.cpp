@@ -4,6 +4,7 @@
 #include "Labels/AssignTissues.h"
 #include "Probe/ArrayBeam.h"
 #include "Progress.h"
+#include "Study.h"
 #include "WireEcho.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ PhantomImaging phantomImaging(int lines, Apodization apodization)
 {
   PhantomImaging imaging;
   // The probe: a P4-2 as in the seed, by its data sheets.
-  ProbePreset preset = readProbePreset(SONOVDB_DATA_DIR "/probes/phased_p4-2.json");
+  ProbePreset preset = readProbePreset(dataFile("probes/phased_p4-2.json"));
   preset.transmitFocusMm = 50.0;      // the seed's focus of the phantom study
   preset.centreFrequencyMHz = 3.6;    // the seed's
   imaging.geometry = preset.geometry; // a sector of 75 degrees, 160 mm deep: holds all targets of a view
@@ -64,23 +65,22 @@ double gelDbAt(const PhantomImaging& imaging, double depthMm)
 
 TissueTable bundledTissues()
 {
-  return TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  return TissueTable::read(dataFile("tissues.csv"));
 }
 
 std::unique_ptr<Scene> sceneOf(LabelVolume volume, const std::string& outside)
 {
   const TissueTable table = bundledTissues();
-  const auto unmatched =
-    assignTissues(volume, LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv"), table, outside);
+  const auto unmatched = assignTissues(volume, LabelTissueMap::read(dataFile("label_tissues.csv")), table, outside);
   if (!unmatched.empty())
   {
-    throw Error("label " + unmatched.front() + " matches no row of " SONOVDB_DATA_DIR "/label_tissues.csv");
+    throw Error("label " + unmatched.front() + " matches no row of " + dataFile("label_tissues.csv"));
   }
   return std::make_unique<Scene>(std::move(volume), table, outside);
 }
 
 PhantomBench::PhantomBench(WireModel wires, double spacingMm)
-  : PhantomBench(readPhantomTargets(SONOVDB_DATA_DIR "/phantom_040gse.csv"), wires, spacingMm)
+  : PhantomBench(readPhantomTargets(dataFile("phantom_040gse.csv")), wires, spacingMm)
 {
 }
 

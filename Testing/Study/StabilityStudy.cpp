@@ -1,12 +1,10 @@
 // Single against double precision on every scene, and cost and error as scenes degrade (PHYSICS section 8).
 #include "StabilityStudy.h"
 
-#include "DoubleTrace.h"
 #include "Study.h"
 
 #include "Progress.h"
 #include "TestScenes.h"
-#include "Trace/TraceSetup.h"
 
 #include <chrono>
 #include <cmath>
@@ -14,51 +12,6 @@
 
 namespace sono::study {
 namespace {
-
-/// The setup's numbers before they were rounded to single precision.
-DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, const TraceSetup& setup)
-{
-  DoubleInput input{};
-  const TraceRegion& region = *setup.region;
-  const Scene& scene = *bench.scene;
-  input.cell = region.cell.data();
-  input.firstRecord = region.firstRecord.data();
-  input.record = region.record.data();
-  const Vec3d spacing = scene.placement().spacingMm;
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    input.size[a] = region.box.size()[int(a)];
-    input.spacing[a] = spacing[int(a)];
-  }
-  for (const Tissue& t : scene.tissues())
-  {
-    input.media.push_back({ t.impedanceMRayl, t.soundSpeedMPerS,
-                            t.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0, t.tau, t.gamma });
-  }
-  const Vec3d corner = Vec3d(region.box.first) * spacing;
-  for (const ScanLine& line : bench.lines)
-  {
-    const Vec3d origin = scene.localFromWorld(line.originMm) - corner;
-    const Vec3d axis = scene.rotationToLocal() * line.axis;
-    input.lines.push_back({ { origin.x, origin.y, origin.z }, { axis.x, axis.y, axis.z } });
-  }
-  input.outsideTissue = scene.outsideIndex();
-  input.model = int(tracing.model);
-  input.lobeMean = tracing.lobeMeanRad;
-  input.lobeSigma = tracing.lobeSigmaRad;
-  input.lobeMin = tracing.lobeMinRad;
-  input.lobeMax = tracing.lobeMaxRad;
-  input.lowDiscrepancy = tracing.sampling != Sampling::Independent;
-  input.deterministic = tracing.deterministic;
-  input.maxCollisions = tracing.maxCollisions;
-  input.rouletteIntensity = tracing.deterministic ? 0.0 : std::pow(10.0, tracing.rouletteDb / 20.0);
-  input.coherenceMm = tracing.coherenceMm;
-  input.depthMm = tracing.depthMm;
-  input.binMm = tracing.radialBinMm;
-  input.seed = tracing.seed;
-  input.paths = setup.paths;
-  return input;
-}
 
 /// A way to make things hard.
 struct Hardship
@@ -70,7 +23,6 @@ struct Hardship
 BenchScene bundled(const std::string& name, const std::function<void(TraceSettings&)>& change = {})
 {
   BenchScene bench = makeBenchScene(name);
-  bench.targets.clear(); // double precision knows none
   if (change)
   {
     change(bench.tracing);
@@ -84,9 +36,14 @@ BenchScene ballScene(const Vec3d& spacing, double contrast, double attenuation, 
 {
   BenchScene bench;
   bench.name = "ball";
-  const std::vector<Tissue> tissues = { test::makeTissue("a", 1.5, 1540, attenuation),
-                                        test::makeTissue("b", 1.5 * contrast, 1600, attenuation),
-                                        test::makeTissue("c", 2.4, 1700, attenuation) };
+  std::vector<Tissue> tissues = { test::makeTissue("a", 1.5, 1540, attenuation),
+                                  test::makeTissue("b", 1.5 * contrast, 1600, attenuation),
+                                  test::makeTissue("c", 2.4, 1700, attenuation) };
+  for (Tissue& t : tissues)
+  {
+    t.scattererProbability = 1.0;
+    t.scattererSigma = 0.3;
+  }
   const Vec3i size(60, 60, 60);
   const Vec3d extent = Vec3d(size) * spacing;
   const auto scene = test::makeScene(size, spacing, tissues, [&](const Vec3d& p) {
@@ -106,7 +63,9 @@ BenchScene ballScene(const Vec3d& spacing, double contrast, double attenuation, 
   bench.scene = std::make_unique<Scene>(std::move(volume), table, "none");
   bench.tracing.depthMm = extent.z;
   bench.tracing.radialBinMm = extent.z / 240.0;
-  bench.tracing.echoSampleMm = extent.z / 4000.0;
+  bench.tracing.frequencyMHz = bench.echo.centreFrequencyMHz;
+  bench.tracing.echoSampleMm = bench.echo.sampleMm();
+  bench.echo.depthMm = bench.tracing.depthMm;
   for (int i = 0; i < 16; ++i)
   {
     const double angle = (i - 7.5) * 0.02;
@@ -163,28 +122,28 @@ const std::vector<Hardship>& hardships()
 
 } // namespace
 
-Difference singleAgainstDouble(const BenchScene& bench, const TraceSettings& tracing)
+Difference singleAgainstDouble(const BenchScene& bench, TraceSettings tracing)
 {
-  const TraceSetup setup(*bench.scene, bench.lines, tracing, {}, {});
-  const auto begin = std::chrono::steady_clock::now();
-  const TracedLines single = trace(*bench.scene, bench.lines, tracing);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::vector<double> twice = traceInDouble(doubleInput(bench, tracing, setup));
-  const double paths = double(setup.paths) * double(bench.lines.size());
+  tracing.device = Device::Cpu; // the twin's
+  const BenchImage single = makeBenchImage(bench, tracing, Precision::Single);
+  const BenchImage twice = makeBenchImage(bench, tracing, Precision::Double);
+  const double paths = double(tracing.pathsPerLine) * double(bench.lines.size());
   Difference d;
-  d.microsecondsPerPath = 1e6 * seconds / paths;
-  d.segmentsPerPath = double(single.segments) / paths;
-  double error = 0.0;
+  d.of = imageError(single, twice);
+  d.microsecondsPerPath = 1e6 * single.traceSeconds / paths;
+  d.segmentsPerPath = single.segments / paths;
   double noise = 0.0;
   double power = 0.0;
-  for (std::size_t i = 0; i < twice.size(); ++i)
+  for (std::size_t i = 0; i < twice.intensity.size(); ++i)
   {
     d.finite = d.finite && std::isfinite(single.intensity[i]) && std::isfinite(single.standardError[i]);
-    error += std::pow(single.intensity[i] - twice[i], 2);
-    noise += std::pow(double(single.standardError[i]), 2);
-    power += twice[i] * twice[i];
+    noise += single.standardError[i] * single.standardError[i];
+    power += twice.intensity[i] * twice.intensity[i];
   }
-  d.rms = std::sqrt(error / power);
+  for (const std::complex<double>& v : single.iq)
+  {
+    d.finite = d.finite && std::isfinite(v.real()) && std::isfinite(v.imag());
+  }
   d.noise = std::sqrt(noise / power);
   return d;
 }
@@ -202,12 +161,12 @@ void measureStability(Output& output)
     tracing.pathsPerLine = std::min(tracing.pathsPerLine, output.quick() ? 40 : 1000);
     const Difference d = singleAgainstDouble(bench, tracing);
     rows.push_back({ hardship.name, d.finite ? "yes" : "NO", number(d.microsecondsPerPath), number(d.segmentsPerPath),
-                     number(d.rms), number(d.noise) });
-    worst = std::max(worst, d.finite ? d.rms : 1.0);
+                     number(d.of.intensity), number(d.of.rf), number(d.of.decibels), number(d.noise) });
+    worst = std::max(worst, d.finite ? d.of.intensity : 1.0);
   }
   output.table("stability.csv",
-               { "scene", "finite", "microseconds a path", "segments a path", "single against double (of rms)",
-                 "standard error (of rms)" },
+               { "scene", "finite", "microseconds a path", "segments a path", "single against double: intensity", "RF",
+                 "dB", "standard error of the intensity" },
                rows);
   output.figure("single_against_double_worst", worst, "of_rms");
 }

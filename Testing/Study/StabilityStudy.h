@@ -1,20 +1,19 @@
 #pragma once
 
-#include "BenchScenes.h"
+#include "BenchImage.h"
 
 namespace sono::study {
 
-/// The tracer beside its own source in double precision, with the same random numbers.
+/// Tracing and image formation in single precision beside the same in double, with the same random numbers.
 struct Difference
 {
-  double rms = 0.0;   ///< of single from double, of double's rms
-  double noise = 0.0; ///< the standard error, likewise
+  ImageError of{};    ///< of single, from double
+  double noise = 0.0; ///< the standard error of the intensity, of its rms
   bool finite = true;
   double microsecondsPerPath = 0.0;
   double segmentsPerPath = 0.0;
 };
 
-/// Without the scene's targets. SharedPaths has no twin: take another sampling.
-Difference singleAgainstDouble(const BenchScene& bench, const TraceSettings& tracing);
+Difference singleAgainstDouble(const BenchScene& bench, TraceSettings tracing);
 
 } // namespace sono::study

@@ -4,6 +4,7 @@
 #include "Progress.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 namespace sono::study {
@@ -55,6 +56,12 @@ void Output::table(const std::string& fileName, const std::vector<std::string>& 
 void Output::finish() const
 {
   table("figures_" + part_ + ".csv", { "name", "value", "unit" }, figures_);
+}
+
+std::string dataFile(const std::string& name)
+{
+  const char* carried = std::getenv("SONOVDB_DATA_DIR");
+  return (carried ? std::string(carried) : std::string(SONOVDB_DATA_DIR)) + "/" + name;
 }
 
 std::string number(double value)

@@ -32,6 +32,10 @@ private:
   std::vector<std::vector<std::string>> figures_;
 };
 
+/// A file of the repository's Data folder, or of the folder that SONOVDB_DATA_DIR names where a machine has no
+/// repository.
+std::string dataFile(const std::string& name);
+
 /// A number as tables hold it: six significant digits.
 std::string number(double value);
 

@@ -1,6 +1,7 @@
-#include "BenchScenes.h"
-#include "ImageError.h"
+#include "BenchImage.h"
+#include "ErrorCurves.h"
 #include "RegionSwitches.h"
+#include "SamplingName.h"
 #include "StabilityStudy.h"
 
 #include <gtest/gtest.h>
@@ -12,62 +13,99 @@ namespace {
 using namespace sono;
 using namespace sono::study;
 
-double rmsDistance(const std::vector<float>& is, const std::vector<double>& should)
+double errorAgainstExact(const BenchScene& stack, int paths)
 {
-  double error = 0.0;
-  double power = 0.0;
-  for (std::size_t i = 0; i < is.size(); ++i)
-  {
-    error += std::pow(is[i] - should[i % should.size()], 2);
-    power += std::pow(should[i % should.size()], 2);
-  }
-  return std::sqrt(error / power);
+  TraceSettings tracing = stack.tracing;
+  tracing.sampling = Sampling::Independent;
+  tracing.pathsPerLine = paths;
+  return intensityError(makeBenchImage(stack, tracing, Precision::Single), exactStackImage(stack));
 }
 
 TEST(ErrorStudy, TheStackConvergesToItsFiniteSum)
 {
-  const BenchScene bench = makeBenchScene("stack");
-  const std::vector<double> exact = stackIntensity(bench.tracing);
-  TraceSettings tracing = bench.tracing;
-  tracing.sampling = Sampling::Independent;
-  tracing.pathsPerLine = 400;
-  const double few = rmsDistance(trace(*bench.scene, bench.lines, tracing).intensity, exact);
-  tracing.pathsPerLine = 40000;
-  const double many = rmsDistance(trace(*bench.scene, bench.lines, tracing).intensity, exact);
+  const BenchScene stack = makeBenchScene("stack");
+  const double many = errorAgainstExact(stack, 40000);
   // A hundred times as many paths: a tenth of the error.
-  EXPECT_NEAR(few / many, 10.0, 4.0);
+  EXPECT_NEAR(errorAgainstExact(stack, 400) / many, 10.0, 4.0);
   EXPECT_LT(many, 1e-3);
   // The energy that enters is the energy of the first bins.
-  EXPECT_NEAR(exact.front(), 1.0, 0.05);
+  EXPECT_NEAR(stackLine(stack.tracing).intensity.front(), 1.0, 0.05);
+}
+
+TEST(ErrorStudy, TheExactStackHasTheEchoesOfTheTracedOne)
+{
+  const BenchScene stack = makeBenchScene("stack", 0.0, 2);
+  TraceSettings tracing = stack.tracing;
+  tracing.pathsPerLine = 20000;
+  for (const Precision precision : { Precision::Single, Precision::Double })
+  {
+    const ImageError error = imageError(makeBenchImage(stack, tracing, precision), exactStackImage(stack));
+    EXPECT_LT(error.rf, 2e-3);
+    EXPECT_LT(error.decibels, 0.05);
+  }
 }
 
 TEST(ErrorStudy, CoarseBinsAreComparedOnTheFineOnes)
 {
-  TracedLines fine;
+  BenchImage fine;
   fine.lineCount = 1;
   fine.binMm = 0.5;
-  fine.intensity = { 1.0f, 3.0f, 2.0f, 2.0f };
+  fine.intensity = { 1.0, 3.0, 2.0, 2.0 };
   fine.binCount = 4;
-  TracedLines coarse = fine;
+  BenchImage coarse = fine;
   coarse.binMm = 1.0;
-  coarse.intensity = { 2.0f, 2.0f };
+  coarse.intensity = { 2.0, 2.0 };
   coarse.binCount = 2;
   EXPECT_NEAR(intensityError(coarse, fine), std::sqrt(2.0 / 18.0), 1e-12);
   EXPECT_EQ(intensityError(fine, fine), 0.0);
 }
 
+TEST(ErrorStudy, ASlopeAndTheTimeToAnErrorFollowAPowerLaw)
+{
+  std::vector<ErrorPoint> curve;
+  for (double paths = 1.0; paths <= 1e6; paths *= 10.0)
+  {
+    curve.push_back({ paths, 1e-3 * paths, 0.5 / std::sqrt(paths) });
+  }
+  EXPECT_NEAR(convergenceSlope(curve, 0.0), -0.5, 1e-9);
+  // 0.5 / sqrt(n) = 0.01 at n = 2500.
+  EXPECT_NEAR(secondsToReach(curve, 0.01), 2.5, 1e-9);
+  EXPECT_NEAR(secondsToReach(curve, 0.9), 1e-3, 1e-12);
+  EXPECT_TRUE(std::isinf(secondsToReach(curve, 1e-4)));
+  // A floor of the reference bends the curve where it counts no more.
+  curve.back().error = 1e-3;
+  EXPECT_NEAR(convergenceSlope(curve, 5e-4), -0.5, 1e-9);
+}
+
+TEST(ErrorStudy, AReferenceIsAsFarOffAsItSays)
+{
+  const BenchScene rib = makeBenchScene("rib", 2.0, 4);
+  const BenchReference few = makeReference(rib, 4000);
+  const BenchReference many = makeReference(rib, 60000);
+  EXPECT_NEAR(intensityError(few.image, many.image) / few.floor.intensity, 1.0, 0.5);
+  EXPECT_NEAR(imageError(few.image, many.image).rf / few.floor.rf, 1.0, 0.5);
+  EXPECT_LT(many.floor.intensity, 0.5 * few.floor.intensity);
+}
+
 TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
 {
-  for (const std::string name : { "stack", "rib" })
+  for (const std::string name : { "stack", "rib", "phantom" })
   {
-    const BenchScene bench = makeBenchScene(name, name == "rib" ? 2.0 : 1.0);
-    TraceSettings tracing = bench.tracing;
-    tracing.pathsPerLine = 100;
-    const Difference d = singleAgainstDouble(bench, tracing);
-    EXPECT_TRUE(d.finite) << name;
-    EXPECT_GT(d.noise, 1e-3) << name;
-    EXPECT_LT(d.rms, 0.02 * d.noise) << name;
-    EXPECT_GT(d.rms, 0.0) << name; // two precisions indeed
+    const BenchScene bench = makeBenchScene(name, name == "stack" ? 1.0 : 2.0, 4);
+    for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
+    {
+      TraceSettings tracing = bench.tracing;
+      tracing.sampling = sampling;
+      tracing.pathsPerLine = 100;
+      const Difference d = singleAgainstDouble(bench, tracing);
+      EXPECT_TRUE(d.finite) << name;
+      EXPECT_GT(d.noise, 1e-4) << name;
+      EXPECT_LT(d.of.intensity, 0.02 * d.noise) << name << " " << test::nameOf(sampling);
+      EXPECT_LT(d.of.rf, 1e-3) << name << " " << test::nameOf(sampling);
+      EXPECT_LT(d.of.decibels, 0.01) << name << " " << test::nameOf(sampling);
+      EXPECT_GT(d.of.intensity, 0.0) << name; // two precisions indeed
+      EXPECT_GT(d.of.rf, 0.0) << name;
+    }
   }
 }
 

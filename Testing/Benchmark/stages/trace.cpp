@@ -5,6 +5,7 @@
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
 #include "Progress.h"
+#include "RelativeRms.h"
 #include "SamplingName.h"
 #include "Scene/ThoraxPhantom.h"
 #include "Stage.h"
@@ -182,20 +183,6 @@ double snellError()
   return worst;
 }
 
-/// Root mean square error of the mean intensities of all lines against `reference`, relative to its own rms.
-double relativeRmse(const TracedLines& traced, const TracedLines& reference)
-{
-  double error = 0.0;
-  double total = 0.0;
-  for (std::size_t i = 0; i < traced.intensity.size(); ++i)
-  {
-    const double d = traced.intensity[i] - reference.intensity[i];
-    error += d * d;
-    total += double(reference.intensity[i]) * reference.intensity[i];
-  }
-  return std::sqrt(error / total);
-}
-
 /// Error and time against paths for one setting, and how many independent paths a path of the others is worth where
 /// the image has 1000 of them.
 void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, TraceSettings settings,
@@ -217,7 +204,7 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
       Stopwatch watch;
       const TracedLines traced = trace(scene, lines, settings);
       const double seconds = watch.lap();
-      const double error = relativeRmse(traced, reference);
+      const double error = test::relativeRms(traced.intensity, reference.intensity);
       const std::string figure = name + "_rmse_" + test::nameOf(sampling) + "_" + std::to_string(paths);
       printFigure(figure, error, "of_rms");
       printFigure(figure + "_s", seconds, "s");

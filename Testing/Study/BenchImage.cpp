@@ -1,0 +1,268 @@
+#include "BenchImage.h"
+
+#include "DoubleEcho.h"
+#include "DoubleTrace.h"
+#include "RelativeRms.h"
+
+#include "Echo/EchoSetup.h"
+#include "Echo/Pulse.h"
+#include "Trace/SharedPaths.h"
+#include "Trace/TargetBvh.h"
+#include "Trace/TraceSetup.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace sono::study {
+
+namespace {
+
+std::array<double, 3> array(const Vec3d& v)
+{
+  return { v.x, v.y, v.z };
+}
+
+std::array<int, 3> array(const Vec3i& v)
+{
+  return { v.x, v.y, v.z };
+}
+
+DoubleInput::Medium doubleMedium(const Tissue& t, double frequencyMHz)
+{
+  return { t.impedanceMRayl, t.soundSpeedMPerS, t.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0, t.tau,
+           t.gamma };
+}
+
+void addTargets(const TraceSetup& setup, DoubleInput& input)
+{
+  const TargetBvh bvh = buildTargetBvh(setup.targets->triangles());
+  for (const BvhNode& n : bvh.nodes)
+  {
+    input.nodes.push_back({ array(Vec3d(n.low)), array(Vec3d(n.high)), n.first, n.count });
+  }
+  for (const BvhTriangle& t : bvh.triangles)
+  {
+    input.triangles.push_back({ { array(Vec3d(t.a)), array(Vec3d(t.b)), array(Vec3d(t.c)) }, t.target });
+  }
+}
+
+/// The setup's numbers before they were rounded to single precision.
+DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, const TraceSetup& setup)
+{
+  DoubleInput input{};
+  const TraceRegion& region = *setup.region;
+  const Scene& scene = *bench.scene;
+  input.cell = region.cell.data();
+  input.firstRecord = region.firstRecord.data();
+  input.record = region.record.data();
+  const Vec3d spacing = scene.placement().spacingMm;
+  input.size = array(region.box.size());
+  input.spacing = array(spacing);
+  for (const Tissue& t : scene.tissues())
+  {
+    input.media.push_back(doubleMedium(t, tracing.frequencyMHz));
+  }
+  input.firstTargetMedium = int(input.media.size());
+  for (const TargetSurface& target : bench.targets)
+  {
+    input.media.push_back(doubleMedium(target.tissue, tracing.frequencyMHz));
+  }
+  if (!bench.targets.empty())
+  {
+    addTargets(setup, input);
+  }
+  const Vec3d corner = Vec3d(region.box.first) * spacing;
+  for (const ScanLine& line : bench.lines)
+  {
+    input.lines.push_back(
+      { array(scene.localFromWorld(line.originMm) - corner), array(scene.rotationToLocal() * line.axis) });
+  }
+  input.outsideTissue = scene.outsideIndex();
+  input.model = int(tracing.model);
+  input.lobeMean = tracing.lobeMeanRad;
+  input.lobeSigma = tracing.lobeSigmaRad;
+  input.lobeMin = tracing.lobeMinRad;
+  input.lobeMax = tracing.lobeMaxRad;
+  input.lowDiscrepancy = tracing.sampling != Sampling::Independent;
+  input.sharedPaths = tracing.sampling == Sampling::SharedPaths && canSharePaths(setup.view);
+  input.deterministic = tracing.deterministic;
+  input.maxCollisions = tracing.maxCollisions;
+  input.rouletteIntensity = tracing.deterministic ? 0.0 : std::pow(10.0, tracing.rouletteDb / 20.0);
+  input.coherenceMm = tracing.coherenceMm;
+  input.depthMm = tracing.depthMm;
+  input.binMm = tracing.radialBinMm;
+  input.binCount = tracing.binCount();
+  input.echoSampleMm = tracing.echoSampleMm;
+  input.echoCount = tracing.echoCount();
+  input.frequencyMHz = tracing.frequencyMHz;
+  input.seed = tracing.seed;
+  input.paths = setup.paths;
+  return input;
+}
+
+/// RF of traced lines, all in double precision. `image` has their intensity.
+std::vector<std::complex<double>> rfInDouble(const BenchScene& bench, const BenchImage& image,
+                                             const std::vector<std::complex<double>>& echo)
+{
+  const EchoSources sources{ bench.scene.get(), nullptr, nullptr };
+  const EchoSetup setup(sources, bench.lines, bench.echo);
+  const Scene& scene = *bench.scene;
+  DoubleEchoInput input{};
+  input.tissues = scene.tissueVoxels().data();
+  input.size = array(scene.placement().size);
+  input.spacing = array(scene.placement().spacingMm);
+  for (const ScatteringMedium& m : setup.tissues->media())
+  {
+    input.media.push_back({ m.mean, m.sigma, m.probability });
+  }
+  input.cellMm = bench.echo.scattererCellMm;
+  input.seed = bench.echo.seed;
+  const Mat3d toLocal = scene.rotationToLocal();
+  for (const ScanLine& line : bench.lines)
+  {
+    input.lines.push_back({ array(scene.localFromWorld(line.originMm)), array(toLocal * line.axis),
+                            array(toLocal * line.lateral), array(toLocal * line.elevation) });
+  }
+  input.lateralSigmaMm = bench.echo.lateralSigmaMm;
+  input.elevationalSigmaMm = bench.echo.elevationalSigmaMm;
+  input.sampleMm = bench.echo.sampleMm();
+  input.sampleCount = bench.echo.sampleCount();
+  input.radPerMm = setup.finisher.radPerMm();
+  input.pulseSigmaMm = pulseSigmaMm(bench.echo.centreFrequencyMHz, bench.echo.fractionalBandwidth);
+  input.intensity = image.intensity.data();
+  input.binMm = image.binMm;
+  input.binCount = image.binCount;
+  input.echo = echo.data();
+  input.echoCount = int(echo.size() / bench.lines.size());
+  return formRfInDouble(input);
+}
+
+BenchImage emptyImage(const BenchScene& bench, const TraceSettings& tracing)
+{
+  BenchImage image;
+  image.lineCount = int(bench.lines.size());
+  image.binCount = tracing.binCount();
+  image.binMm = tracing.radialBinMm;
+  return image;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+BenchImage imageInDouble(const BenchScene& bench, const TraceSettings& tracing)
+{
+  BenchImage image = emptyImage(bench, tracing);
+  const auto start = std::chrono::steady_clock::now();
+  const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
+  DoubleTraced traced = traceInDouble(doubleInput(bench, tracing, setup));
+  image.traceSeconds = secondsSince(start);
+  image.intensity = std::move(traced.intensity);
+  image.iq = rfInDouble(bench, image, traced.echo);
+  return image;
+}
+
+/// An image's intensity in bins of `stepMm`, of the first `count` of them of each line.
+std::vector<double> inBins(const BenchImage& image, double stepMm, int count)
+{
+  std::vector<double> values;
+  for (int line = 0; line < image.lineCount; ++line)
+  {
+    for (int b = 0; b < count; ++b)
+    {
+      const int bin = std::min(image.binCount - 1, int((b + 0.5) * stepMm / image.binMm));
+      values.push_back(image.intensity[std::size_t(line) * std::size_t(image.binCount) + std::size_t(bin)]);
+    }
+  }
+  return values;
+}
+
+} // namespace
+
+BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing, Precision precision)
+{
+  if (precision == Precision::Double)
+  {
+    return imageInDouble(bench, tracing);
+  }
+  BenchImage image = emptyImage(bench, tracing);
+  const auto start = std::chrono::steady_clock::now();
+  const TracedLines traced = trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
+  image.traceSeconds = secondsSince(start);
+  image.intensity.assign(traced.intensity.begin(), traced.intensity.end());
+  image.standardError.assign(traced.standardError.begin(), traced.standardError.end());
+  image.segments = double(traced.segments);
+  EchoSettings echo = bench.echo;
+  echo.device = tracing.device;
+  const RfLines rf = formRf(*bench.scene, bench.lines, traced, echo);
+  image.iq.assign(rf.iq.begin(), rf.iq.end());
+  return image;
+}
+
+BenchImage exactStackImage(const BenchScene& stack)
+{
+  BenchImage image = emptyImage(stack, stack.tracing);
+  const StackLine line = stackLine(stack.tracing);
+  std::vector<std::complex<double>> echo;
+  for (int i = 0; i < image.lineCount; ++i)
+  {
+    image.intensity.insert(image.intensity.end(), line.intensity.begin(), line.intensity.end());
+    echo.insert(echo.end(), line.echo.begin(), line.echo.end());
+  }
+  image.iq = rfInDouble(stack, image, echo);
+  return image;
+}
+
+BenchImage meanOf(const std::vector<BenchImage>& images)
+{
+  BenchImage mean = images.front();
+  const double share = 1.0 / double(images.size());
+  for (std::size_t i = 0; i < mean.intensity.size(); ++i)
+  {
+    mean.intensity[i] = 0.0;
+    for (const BenchImage& image : images)
+    {
+      mean.intensity[i] += share * image.intensity[i];
+    }
+  }
+  for (std::size_t i = 0; i < mean.iq.size(); ++i)
+  {
+    mean.iq[i] = 0.0;
+    for (const BenchImage& image : images)
+    {
+      mean.iq[i] += share * image.iq[i];
+    }
+  }
+  return mean;
+}
+
+double intensityError(const BenchImage& image, const BenchImage& reference)
+{
+  const double step = std::min(image.binMm, reference.binMm);
+  const int count = int(std::min(image.binCount * image.binMm, reference.binCount * reference.binMm) / step + 0.5);
+  return test::relativeRms(inBins(image, step, count), inBins(reference, step, count));
+}
+
+ImageError imageError(const BenchImage& image, const BenchImage& reference)
+{
+  ImageError result{ intensityError(image, reference), test::relativeRms(image.iq, reference.iq), 0.0 };
+  double most = 0.0;
+  for (const std::complex<double>& v : reference.iq)
+  {
+    most = std::max(most, std::abs(v));
+  }
+  const auto decibels = [&](const std::complex<double>& v) {
+    return 20.0 * std::log10(std::max(std::abs(v), 1e-3 * most));
+  };
+  double squared = 0.0;
+  for (std::size_t i = 0; i < reference.iq.size(); ++i)
+  {
+    squared += std::pow(decibels(image.iq[i]) - decibels(reference.iq[i]), 2);
+  }
+  result.decibels = std::sqrt(squared / double(reference.iq.size()));
+  return result;
+}
+
+} // namespace sono::study

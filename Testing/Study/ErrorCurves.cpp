@@ -1,0 +1,85 @@
+#include "ErrorCurves.h"
+
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sono::study {
+
+double convergenceSlope(const std::vector<ErrorPoint>& curve, double floor)
+{
+  double n = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  for (const ErrorPoint& p : curve)
+  {
+    if (p.paths >= 100.0 && p.error > 3.0 * floor && p.error > 0.0)
+    {
+      const double lx = std::log(p.paths);
+      const double ly = std::log(p.error);
+      n += 1.0;
+      x += lx;
+      y += ly;
+      xx += lx * lx;
+      xy += lx * ly;
+    }
+  }
+  return n < 2.0 ? std::numeric_limits<double>::quiet_NaN() : (n * xy - x * y) / (n * xx - x * x);
+}
+
+double secondsToReach(const std::vector<ErrorPoint>& curve, double target)
+{
+  std::size_t first = curve.size(); // from here on the error stays there
+  while (first > 0 && curve[first - 1].error <= target)
+  {
+    --first;
+  }
+  if (first == curve.size())
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  const ErrorPoint& to = curve[first];
+  if (first == 0 || to.error <= 0.0)
+  {
+    return to.seconds;
+  }
+  const ErrorPoint& from = curve[first - 1];
+  const double share = std::log(from.error / target) / std::log(from.error / to.error);
+  return from.seconds * std::pow(to.seconds / from.seconds, share);
+}
+
+BenchReference makeReference(const BenchScene& bench, int paths)
+{
+  if (bench.name == "stack")
+  {
+    return { exactStackImage(bench), {} };
+  }
+  constexpr int count = 8;
+  std::vector<BenchImage> images(count);
+  parallelFor(count, {}, [&](int i) {
+    TraceSettings tracing = bench.tracing;
+    tracing.device = Device::Cpu;
+    tracing.sampling = Sampling::SharedPaths;
+    tracing.pathsPerLine = paths / count;
+    tracing.seed = std::uint64_t(4711 + i);
+    images[std::size_t(i)] = makeBenchImage(bench, tracing, Precision::Single);
+  });
+  BenchReference reference{ meanOf(images), {} };
+  const auto standardError = [&](double ImageError::*which) {
+    double sum = 0.0;
+    for (const BenchImage& image : images)
+    {
+      sum += std::pow(imageError(image, reference.image).*which, 2);
+    }
+    return std::sqrt(sum / (count * (count - 1.0)));
+  };
+  reference.floor = { standardError(&ImageError::intensity), standardError(&ImageError::rf),
+                      standardError(&ImageError::decibels) };
+  return reference;
+}
+
+} // namespace sono::study

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "BenchImage.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sono::study {
+
+/// A point of a curve of run time against error.
+struct ErrorPoint
+{
+  double paths;
+  double seconds;
+  double error;
+};
+
+/// Exponent of error = factor paths^slope, by least squares in logarithms over the points of at least 100 paths whose
+/// error is above three times `floor`, the reference's own. NaN when fewer than two are left.
+double convergenceSlope(const std::vector<ErrorPoint>& curve, double floor);
+
+/// Seconds until the error stays at `target` or below, between two points by a power law; those of the first point when
+/// it is there already, infinity when the last is not.
+double secondsToReach(const std::vector<ErrorPoint>& curve, double target);
+
+/// What images are compared with, and how far off it is itself.
+struct BenchReference
+{
+  BenchImage image;
+  ImageError floor;
+};
+
+/// The stack's is a finite sum, without error. The others' is the mean of eight images by shared paths, `paths`
+/// altogether, whose seeds nobody else takes; how far they lie from it tells its error.
+BenchReference makeReference(const BenchScene& bench, int paths);
+
+} // namespace sono::study
