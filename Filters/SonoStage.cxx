@@ -1,5 +1,7 @@
 #include "SonoStage.h"
 
+#include "SonoInterruption.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkCommand.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -80,6 +82,39 @@ void say(vtkAlgorithm* algorithm, const char* sentence)
   }
 }
 
+enum class Outcome
+{
+  Done,
+  Stopped,
+  Failed
+};
+
+Outcome attempt(vtkAlgorithm* algorithm, const std::function<void()>& work)
+{
+  if (algorithm->GetInformation()->Has(quietKey()))
+  {
+    algorithm->GetInformation()->Remove(saidKey());
+  }
+  try
+  {
+    work();
+    return Outcome::Done;
+  }
+  catch (const Aborted&)
+  {
+    return Outcome::Stopped;
+  }
+  catch (const std::bad_alloc&)
+  {
+    say(algorithm, "There is not enough memory for this stage; use a coarser or smaller input.");
+  }
+  catch (const std::exception& error)
+  {
+    say(algorithm, error.what());
+  }
+  return Outcome::Failed;
+}
+
 } // namespace
 
 Progress progressOf(vtkAlgorithm* algorithm)
@@ -90,7 +125,7 @@ Progress progressOf(vtkAlgorithm* algorithm)
       return !algorithm->GetAbortExecute();
     }
     algorithm->UpdateProgress(fraction);
-    return !algorithm->CheckAbort();
+    return !algorithm->CheckAbort() && !stopIsWanted();
   };
 }
 
@@ -112,28 +147,7 @@ std::string saidBy(vtkAlgorithm* algorithm)
 
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
 {
-  if (algorithm->GetInformation()->Has(quietKey()))
-  {
-    algorithm->GetInformation()->Remove(saidKey());
-  }
-  try
-  {
-    work();
-    return 1;
-  }
-  catch (const Aborted&)
-  {
-    return 1;
-  }
-  catch (const std::bad_alloc&)
-  {
-    say(algorithm, "There is not enough memory for this stage; use a coarser or smaller input.");
-  }
-  catch (const std::exception& error)
-  {
-    say(algorithm, error.what());
-  }
-  return 0;
+  return attempt(algorithm, work) != Outcome::Failed;
 }
 
 int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const std::function<void()>& work)
@@ -147,7 +161,29 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
       return 1;
     }
   }
-  return announceStage(algorithm, work);
+  if (algorithm->GetAbortOutput() || standsStill(algorithm, outputVector))
+  {
+    return 1; // its input was stopped, or it was itself
+  }
+  const bool isInner = algorithm->GetInformation()->Has(quietKey());
+  const Outcome outcome = attempt(algorithm, work);
+  if (outcome == Outcome::Done && !isInner)
+  {
+    keepMade(algorithm, outputVector);
+  }
+  else if (outcome == Outcome::Stopped && !algorithm->GetAbortOutput()) // not by VTK, which empties the outputs
+  {
+    if (isInner)
+    {
+      algorithm->SetAbortExecute(1); // for the filter around it
+      algorithm->SetAbortOutput(true);
+    }
+    else
+    {
+      standStill(algorithm, outputVector);
+    }
+  }
+  return outcome != Outcome::Failed;
 }
 
 void announceDevice(Device device)

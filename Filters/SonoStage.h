@@ -11,16 +11,16 @@ class vtkInformationVector;
 
 namespace sono {
 
-/// Progress for Simulation's loops: forwards to UpdateProgress and asks CheckAbort on the calling thread, where VTK
-/// may be touched; worker threads only look at the abort flag, which is atomic.
+/// Progress for Simulation's loops: forwards to UpdateProgress and asks CheckAbort and the interrupter on the calling
+/// thread, where VTK may be touched; worker threads only look at the abort flag, which is atomic.
 Progress progressOf(vtkAlgorithm* algorithm);
 
 /// The part [from, to] of a whole's progress.
 Progress partOf(const Progress& whole, double from, double to);
 
 /// Runs a stage's work and gives RequestData's return value: an exception becomes one vtkErrorMacro sentence and 0, an
-/// abort is quiet and 1. In parallel, only the first piece works; the others stay empty, because the stages do not
-/// split their data.
+/// abort is quiet and 1. Stopped by the interrupter (SonoInterruption.h), it keeps its data of before. In parallel,
+/// only the first piece works; the others stay empty, because the stages do not split their data.
 int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const std::function<void()>& work);
 
 /// The same for RequestInformation, which every piece needs.

@@ -7,32 +7,42 @@
 
 namespace sono {
 
-void parallelFor(int count, const Progress& progress, const std::function<void(int)>& body)
+void parallelFor(int count, const Progress& progress, const std::function<void(int, const Breath&)>& body)
 {
   std::atomic<int> done{ 0 };
   std::atomic<bool> stop{ false };
   std::mutex reporting;
-  tbb::parallel_for(0, count, [&](int i) {
-    if (stop)
-    {
-      return;
-    }
-    body(i);
-    const int finished = ++done;
-    if (!progress)
-    {
-      return;
-    }
+  const auto reportDone = [&] {
     std::unique_lock<std::mutex> lock(reporting, std::try_to_lock);
-    if (lock && !stop && !progress(double(finished) / count))
+    if (progress && lock && !stop && !progress(double(done) / count))
     {
       stop = true;
+    }
+  };
+  const Breath breathe = [&] {
+    reportDone();
+    if (stop)
+    {
+      throw Aborted();
+    }
+  };
+  tbb::parallel_for(0, count, [&](int i) {
+    if (!stop)
+    {
+      body(i, breathe);
+      ++done;
+      reportDone();
     }
   });
   if (stop)
   {
     throw Aborted();
   }
+}
+
+void parallelFor(int count, const Progress& progress, const std::function<void(int)>& body)
+{
+  parallelFor(count, progress, [&](int i, const Breath&) { body(i); });
 }
 
 } // namespace sono

@@ -11,4 +11,11 @@ namespace sono {
 /// a body reaches the caller.
 void parallelFor(int count, const Progress& progress, const std::function<void(int)>& body);
 
+/// For a body that takes long: it calls this now and then, every few milliseconds, so that a stop need not wait for its
+/// end. Throws Aborted, which the body lets pass.
+using Breath = std::function<void()>;
+
+/// The same for bodies that take long.
+void parallelFor(int count, const Progress& progress, const std::function<void(int, const Breath&)>& body);
+
 } // namespace sono

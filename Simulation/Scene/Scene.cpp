@@ -117,15 +117,20 @@ void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
 
 void Scene::buildAll(const Progress& progress) const
 {
-  labelGrid();
-  report(progress, 0.1);
+  labelGrid(progress ? Progress([&](double f) { return progress(0.1 * f); }) : Progress{});
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!surfaces_.empty())
   {
     buildSurfaceAt(0, {}); // the boxes as well
   }
   const Progress rest = progress ? Progress([&](double f) { return progress(0.1 + 0.9 * f); }) : Progress{};
-  parallelFor(int(surfaces_.size()), rest, [&](int label) { buildSurfaceAt(std::size_t(label), {}); });
+  parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
+    const Progress ofLabel = [&](double) {
+      breathe();
+      return true;
+    };
+    buildSurfaceAt(std::size_t(label), ofLabel);
+  });
 }
 
 void Scene::adopt(LabelGrid labels, std::vector<SurfaceField> surfaces)

@@ -19,9 +19,13 @@ namespace sono {
 
 namespace {
 
+/// A few milliseconds' worth.
+constexpr int pathsPerBreath = 512;
+
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
-inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
+inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const Breath& breathe, LineTally& tally,
+                        TracedLines& out)
 {
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   const TraceView& view = setup.view;
@@ -49,11 +53,19 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       scrambles[b] = makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
     }
     tally.clearBins();
-    for (int path = first; path < last; ++path)
+    for (int path = first; path < last;)
     {
-      tracePath(view, space, line, start,
-                PathKey{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() },
-                tally);
+      const int pause = std::min(last, path + pathsPerBreath);
+      for (; path < pause; ++path)
+      {
+        tracePath(view, space, line, start,
+                  PathKey{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() },
+                  tally);
+      }
+      if (path < last)
+      {
+        breathe();
+      }
     }
     std::vector<float> mean = tally.bins();
     for (float& v : mean)
@@ -65,15 +77,15 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   addBatchMeans(means, index, out);
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, LineTally& tally,
-                                                         TracedLines& out)
+SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, const Breath& breathe,
+                                                         LineTally& tally, TracedLines& out)
 {
-  traceLineIn(setup.space(), setup, index, tally, out);
+  traceLineIn(setup.space(), setup, index, breathe, tally, out);
 }
 
-void traceLineByNanoVDB(const TraceSetup& setup, int index, LineTally& tally, TracedLines& out)
+void traceLineByNanoVDB(const TraceSetup& setup, int index, const Breath& breathe, LineTally& tally, TracedLines& out)
 {
-  traceLineIn(setup.nanoSpace(), setup, index, tally, out);
+  traceLineIn(setup.nanoSpace(), setup, index, breathe, tally, out);
 }
 
 } // namespace
@@ -119,14 +131,14 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     return LineTally(out.binCount, out.binMm, out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);
   });
-  parallelFor(out.lineCount, tracing, [&](int i) {
+  parallelFor(out.lineCount, tracing, [&](int i, const Breath& breathe) {
     if (settings.march == March::NanoVDB)
     {
-      traceLineByNanoVDB(setup, i, tallies.local(), out);
+      traceLineByNanoVDB(setup, i, breathe, tallies.local(), out);
     }
     else
     {
-      traceLine(setup, i, tallies.local(), out);
+      traceLine(setup, i, breathe, tallies.local(), out);
     }
   });
   for (const LineTally& tally : tallies)

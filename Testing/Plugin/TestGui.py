@@ -3,10 +3,8 @@ messages. Needs Xvfb; run by ctest -L gui."""
 import contextlib
 import csv
 import math
-import os
 import pathlib
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -15,63 +13,12 @@ import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-PLAYBACKS = pathlib.Path(__file__).resolve().parent / "gui"
+from guicase import PLAYBACKS, GuiCase, save_screen
+
 BASELINE = PLAYBACKS / "baseline"
-PLUGIN = pathlib.Path(os.environ["SONOVDB_PLUGIN"])
-VIEW = "720x520+300+205"  # the inside of the 3-D view on the screen
 
 
-def save_screen(path, xwd):
-    """A part of the frame buffer, which Xvfb keeps as an X window dump, at half the size."""
-    dump = pathlib.Path(xwd).read_bytes()
-    header = struct.unpack(">25I", dump[:100])
-    width, height, bytes_per_line, colours = header[4], header[5], header[12], header[19]
-    start = header[0] + 12 * colours
-    pixels = bytearray(3 * width * height)
-    for row in range(height):
-        line = dump[start + row * bytes_per_line:start + row * bytes_per_line + 4 * width]  # blue, green, red, nothing
-        for channel in range(3):
-            pixels[3 * width * row + channel:3 * width * (row + 1):3] = line[2 - channel::4]
-    with tempfile.NamedTemporaryFile(suffix=".ppm") as whole:
-        whole.write(b"P6 %d %d 255\n" % (width, height) + pixels)
-        whole.flush()
-        subprocess.run(["oiiotool", "--nosoftwareattrib", whole.name, "--cut", VIEW, "--resize", "50%", "-o", path],
-                       check=True)
-
-
-class TestGui(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        reading, writing = os.pipe()
-        cls.screen = tempfile.TemporaryDirectory()
-        cls.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x900x24", "-fbdir", cls.screen.name,
-             "+extension", "GLX"],
-            pass_fds=[writing], stderr=subprocess.DEVNULL)
-        os.close(writing)
-        with os.fdopen(reading) as number:
-            cls.display = ":" + number.readline().strip()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.server.terminate()
-        cls.server.wait()
-        cls.screen.cleanup()
-
-    def run_script(self, text, folder, *arguments):
-        """Runs Python with ParaView on the display."""
-        script = pathlib.Path(folder, "script.py")
-        script.write_text("from paraview.simple import *\nimport os, sys\n"
-                          "LoadPlugin(os.environ['SONOVDB_PLUGIN'], remote=False, ns=globals())\n" + text)
-        subprocess.run(["pvpython", str(script), *map(str, arguments)], check=True, timeout=200,
-                       env=dict(os.environ, DISPLAY=self.display))
-
-    def label_map(self, folder):
-        """A thorax that is quick to show, as a file that ParaView opens itself."""
-        path = str(pathlib.Path(folder, "thorax.vti"))
-        self.run_script("SaveData(sys.argv[1], proxy=ThoraxPhantom(VoxelSizemm=4))", folder, path)
-        return path
-
+class TestGui(GuiCase):
     def compare(self, picture, *tolerance):
         """With the picture of this name in baseline, by OpenImageIO; where they differ, all three are left behind."""
         baseline, left = BASELINE / picture.name, pathlib.Path.cwd() / "gui-differences"
@@ -85,16 +32,6 @@ class TestGui(unittest.TestCase):
                 if file.exists():
                     shutil.copy(file, left / f"{picture.stem}-{name}.png")
             self.fail(f"{done.stdout}\nThe image, the reference and their difference lie in {left}.")
-
-    def play(self, name, folder, *arguments):
-        """Plays one script; the lines that ParaView calls errors."""
-        environment = dict(os.environ, DISPLAY=self.display, HOME=folder, XDG_RUNTIME_DIR=folder)
-        done = subprocess.run(
-            ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
-             f"--test-directory={folder}", f"--test-script={PLAYBACKS / name}", *arguments, "--exit"],
-            env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=400)
-        self.assertEqual(done.returncode, 0, done.stdout)
-        return [line for line in done.stdout.splitlines() if "ERR|" in line]
 
     def test_chain_with_plain_apply(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -181,7 +118,7 @@ class TestGui(unittest.TestCase):
             for _ in range(3000):
                 if path.exists():
                     time.sleep(3)
-                    save_screen(seen, pathlib.Path(self.screen.name, "Xvfb_screen0"))
+                    save_screen(seen, self.frame_buffer)
                     return
                 time.sleep(0.1)
 

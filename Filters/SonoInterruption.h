@@ -1,0 +1,42 @@
+#pragma once
+
+#include "vtkSonoFiltersModule.h" // for export macro
+
+class vtkAlgorithm;
+class vtkInformationVector;
+
+namespace sono {
+
+/// Who may stop the working filters of this process: a GUI with a button. Without one they run to their end, unless
+/// VTK's AbortExecute stops them.
+class VTKSONOFILTERS_EXPORT Interrupter
+{
+public:
+  virtual ~Interrupter();
+
+  /// Asked by a working filter many times a second, on the thread that runs the pipeline.
+  virtual bool wantsStop() = 0;
+  /// Told when a filter of the pipeline was stopped. It shows what it made before and does not try again until it, or
+  /// what is upstream of it, is Modified.
+  virtual void hasStopped(vtkAlgorithm* filter) = 0;
+  /// Told when a filter of the pipeline has made its data.
+  virtual void hasFinished(vtkAlgorithm* filter) = 0;
+};
+
+/// The interrupter of this process, or none (nullptr); not owned.
+VTKSONOFILTERS_EXPORT void setInterrupter(Interrupter* interrupter);
+
+/// Whether the interrupter, if there is one, wants work to stop.
+bool stopIsWanted();
+
+/// Keeps what a filter has just made, for the case that its next run is stopped; only while there is an interrupter.
+void keepMade(vtkAlgorithm* filter, vtkInformationVector* outputs);
+
+/// After a stop: puts back what the filter made before, or marks its outputs as aborted where that is nothing, and has
+/// it stand still.
+void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs);
+
+/// Whether the filter was stopped and nothing has changed since; its outputs are put back as by standStill.
+bool standsStill(vtkAlgorithm* filter, vtkInformationVector* outputs);
+
+} // namespace sono

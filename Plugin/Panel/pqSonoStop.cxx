@@ -1,0 +1,271 @@
+#include "pqSonoStop.h"
+
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqPipelineSource.h"
+#include "pqProgressManager.h"
+#include "pqProgressWidget.h"
+#include "pqPropertiesPanel.h"
+#include "pqServerManagerModel.h"
+#include "vtkAlgorithm.h"
+#include "vtkOutputWindow.h"
+#include "vtkSMProxy.h"
+
+#include <QApplication>
+#include <QKeyEvent>
+#include <QMainWindow>
+#include <QMouseEvent>
+#include <QOpenGLWidget>
+#include <QStatusBar>
+#include <QThread>
+#include <QToolButton>
+#include <QWheelEvent>
+#include <QWindow>
+
+#include <algorithm>
+
+namespace {
+
+constexpr int firstLookMs = 150; // shorter runs are over before anybody could stop them
+constexpr int lookMs = 50;
+constexpr int sentenceMs = 15000;
+
+pqProgressManager* progressManager()
+{
+  return pqApplicationCore::instance()->getProgressManager();
+}
+
+pqPipelineSource* sourceOf(vtkAlgorithm* filter)
+{
+  for (pqPipelineSource* source :
+       pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  {
+    if (source->getProxy()->GetClientSideObject() == filter)
+    {
+      return source;
+    }
+  }
+  return nullptr;
+}
+
+/// A copy to deliver later; nothing for events that are no input.
+std::unique_ptr<QEvent> copyOf(QEvent* event)
+{
+  switch (event->type())
+  {
+    case QEvent::MouseButtonPress:
+    case QEvent::MouseButtonRelease:
+    case QEvent::MouseButtonDblClick:
+    case QEvent::MouseMove:
+      return std::make_unique<QMouseEvent>(*static_cast<QMouseEvent*>(event));
+    case QEvent::KeyPress:
+    case QEvent::KeyRelease:
+      return std::make_unique<QKeyEvent>(*static_cast<QKeyEvent*>(event));
+    case QEvent::Wheel:
+      return std::make_unique<QWheelEvent>(*static_cast<QWheelEvent*>(event));
+    default:
+      return nullptr;
+  }
+}
+
+bool isQuit(QEvent* event)
+{
+  return event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Quit);
+}
+
+} // namespace
+
+pqSonoStop::pqSonoStop(QObject* parent)
+  : QObject(parent)
+{
+  afterwards_.setSingleShot(true);
+  afterwards_.setInterval(1); // a timer, because none fires while this looks for events
+  QObject::connect(&afterwards_, &QTimer::timeout, this, &pqSonoStop::settle);
+}
+
+pqSonoStop::~pqSonoStop()
+{
+  this->shutdown();
+}
+
+void pqSonoStop::startup()
+{
+  sono::setInterrupter(this);
+  pqProgressManager* manager = progressManager();
+  QObject::connect(manager, &pqProgressManager::enableProgress, this, [this](bool on) { on ? begin() : end(); });
+  QObject::connect(manager, &pqProgressManager::abort, this, [this] { stop_ = busy_; });
+}
+
+void pqSonoStop::shutdown()
+{
+  sono::setInterrupter(nullptr);
+}
+
+void pqSonoStop::begin()
+{
+  busy_ = true;
+  sinceBegin_.start();
+  sinceLook_.start();
+}
+
+void pqSonoStop::end()
+{
+  busy_ = false;
+  progressManager()->setEnableAbort(false);
+  if (stop_ || !held_.empty())
+  {
+    afterwards_.start();
+  }
+}
+
+bool pqSonoStop::wantsStop()
+{
+  const bool canLook =
+    busy_ && !looking_ && QThread::currentThread() == this->thread() && QGuiApplication::mouseButtons() == Qt::NoButton;
+  if (canLook && !stop_ && sinceBegin_.elapsed() > firstLookMs && sinceLook_.elapsed() > lookMs)
+  {
+    this->look();
+  }
+  return stop_;
+}
+
+void pqSonoStop::look()
+{
+  looking_ = true;
+  progressManager()->setEnableAbort(true);
+  qApp->installEventFilter(this); // in front of all others
+  // Without timers: some of ParaView's render, which would update the pipeline that is running.
+  QCoreApplication::processEvents(QEventLoop::X11ExcludeTimers | QEventLoop::ExcludeSocketNotifiers);
+  qApp->removeEventFilter(this);
+  sinceLook_.start();
+  looking_ = false;
+}
+
+bool pqSonoStop::isOnButton(QEvent* event) const
+{
+  const auto* bar = pqCoreUtilities::mainWidget()->findChild<pqProgressWidget*>();
+  const QToolButton* button = bar ? bar->abortButton() : nullptr;
+  return button && button->isVisible() &&
+         button->rect().contains(button->mapFromGlobal(static_cast<QMouseEvent*>(event)->globalPos()));
+}
+
+bool pqSonoStop::eventFilter(QObject* watched, QEvent* event)
+{
+  switch (event->type())
+  {
+    case QEvent::Paint:
+      return qobject_cast<QOpenGLWidget*>(watched) != nullptr; // a view, which might render; it keeps its picture
+    case QEvent::ShortcutOverride:
+      event->accept(); // so that no shortcut acts
+      return true;
+    case QEvent::DragEnter:
+    case QEvent::Drop:
+    case QEvent::ContextMenu:
+    case QEvent::TouchBegin:
+    case QEvent::TabletPress:
+      return true;
+    default:
+      break;
+  }
+  auto* window = qobject_cast<QWindow*>(watched);
+  if (!window)
+  {
+    return false; // input comes to windows first
+  }
+  const bool isPress = event->type() == QEvent::MouseButtonPress;
+  if (event->type() == QEvent::Close || isQuit(event))
+  {
+    closing_ = event->type() == QEvent::Close ? window : pqCoreUtilities::mainWidget()->windowHandle();
+    stop_ = true;
+    event->ignore();
+    return true;
+  }
+  if ((event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) ||
+      (isPress && this->isOnButton(event)))
+  {
+    stop_ = true;
+    return true;
+  }
+  std::unique_ptr<QEvent> copy = copyOf(event);
+  if (!copy)
+  {
+    return false;
+  }
+  if (!held_.empty() && copy->type() == QEvent::MouseMove && held_.back().second->type() == QEvent::MouseMove)
+  {
+    held_.pop_back();
+  }
+  held_.emplace_back(watched, std::move(copy));
+  return true;
+}
+
+void pqSonoStop::hasStopped(vtkAlgorithm* filter)
+{
+  stopped_.push_back(filter);
+}
+
+void pqSonoStop::hasFinished(vtkAlgorithm* filter)
+{
+  const auto isIt = [&](const QPointer<pqPipelineSource>& source) {
+    return source && source->getProxy()->GetClientSideObject() == filter;
+  };
+  const auto found = std::find_if(waiting_.begin(), waiting_.end(), isIt);
+  if (found != waiting_.end())
+  {
+    (*found)->setModifiedState(pqProxy::UNMODIFIED);
+    waiting_.erase(found);
+  }
+}
+
+void pqSonoStop::settle()
+{
+  stop_ = false;
+  for (vtkAlgorithm* filter : std::exchange(stopped_, {}))
+  {
+    pqPipelineSource* source = sourceOf(filter);
+    if (!source)
+    {
+      continue;
+    }
+    if (source->modifiedState() == pqProxy::UNMODIFIED)
+    {
+      waiting_.emplace_back(source);
+      source->setModifiedState(pqProxy::MODIFIED); // so that Apply can be clicked
+    }
+    const QString sentence =
+      tr("%1 was stopped and shows what it made before; click Apply to run it again.").arg(source->getSMName());
+    vtkOutputWindowDisplayText((sentence + "\n").toUtf8().data());
+    if (auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget()))
+    {
+      window->statusBar()->showMessage(tr("Stopped; Apply runs it again."), sentenceMs); // there is little room
+    }
+  }
+  if (auto* panel = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>())
+  {
+    QObject::connect(panel, QOverload<pqProxy*>::of(&pqPropertiesPanel::applied), this, &pqSonoStop::runAgain,
+                     Qt::UniqueConnection);
+  }
+  for (auto& [receiver, event] : std::exchange(held_, {}))
+  {
+    if (receiver)
+    {
+      QCoreApplication::postEvent(receiver, event.release());
+    }
+  }
+  if (closing_)
+  {
+    std::exchange(closing_, nullptr)->close();
+  }
+}
+
+void pqSonoStop::runAgain(pqProxy* applied)
+{
+  const auto found = std::find(waiting_.begin(), waiting_.end(), qobject_cast<pqPipelineSource*>(applied));
+  if (found != waiting_.end() && *found)
+  {
+    waiting_.erase(found);
+    vtkSMProxy* proxy = applied->getProxy();
+    vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->Modified();
+    proxy->MarkModified(proxy);
+  }
+}

@@ -1,0 +1,146 @@
+"""Stops a simulation in ParaView by the abort button and by closing the window, with the events of a real mouse and
+keyboard. Needs Xvfb and python3-xlib; run by ctest -L gui."""
+import pathlib
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+from Xlib import X, XK, display
+from Xlib.ext import xtest
+from Xlib.protocol import event
+
+from guicase import PLAYBACKS, GuiCase, read_screen
+
+VIEW = (300, 205, 720, 520)  # left, top, width, height of the inside of the 3-D view
+
+
+class Person:
+    """Watches the screen and acts while ParaView plays a script."""
+
+    def __init__(self, case, folder):
+        self.frame_buffer = case.frame_buffer
+        self.folder = pathlib.Path(folder)
+        self.display = display.Display(case.display)
+
+    def await_file(self, name):
+        """When a file was written, on the clock of the files."""
+        path = self.folder / name
+        for _ in range(3000):
+            if path.exists():
+                return path.stat().st_mtime
+            time.sleep(0.1)
+        raise TimeoutError(f"{name} was not written")
+
+    def picture(self):
+        """The 3-D view's pixels."""
+        width, _, pixels = read_screen(self.frame_buffer)
+        left, top, columns, rows = VIEW
+        return [bytes(pixels[3 * (width * y + left):3 * (width * y + left + columns)]) for y in range(top, top + rows)]
+
+    def find_button(self):
+        """The abort button: the red cross below the view. It is grey when there is nothing to abort."""
+        width, height, pixels = read_screen(self.frame_buffer)
+        for y in range(VIEW[1] + VIEW[3], height):
+            for x in range(width):
+                red, green, blue = pixels[3 * (width * y + x):3 * (width * y + x) + 3]
+                if red > 180 and green < 80 and blue < 80:
+                    return x, y
+        return None
+
+    def move(self, x, y):
+        xtest.fake_input(self.display, X.MotionNotify, x=x, y=y)
+        self.display.sync()
+
+    def click(self, x, y):
+        self.move(x, y)
+        for kind in (X.ButtonPress, X.ButtonRelease):
+            xtest.fake_input(self.display, kind, 1)
+        self.display.sync()
+
+    def press_quit(self):
+        control, q = (self.display.keysym_to_keycode(XK.string_to_keysym(name)) for name in ("Control_L", "q"))
+        for kind, key in ((X.KeyPress, control), (X.KeyPress, q), (X.KeyRelease, q), (X.KeyRelease, control)):
+            xtest.fake_input(self.display, kind, key)
+        self.display.sync()
+
+    def close_window(self):
+        """As the cross in a window's frame does."""
+        atom = self.display.intern_atom
+        for window in self.display.screen().root.query_tree().children:
+            if (window.get_wm_name() or "").startswith("ParaView 5"):
+                window.send_event(event.ClientMessage(window=window, client_type=atom("WM_PROTOCOLS"),
+                                                      data=(32, [atom("WM_DELETE_WINDOW"), 0, 0, 0, 0])))
+        self.display.sync()
+
+
+class TestGuiStop(GuiCase):
+    def play_with(self, name, folder, act):
+        """Plays a script on the scene of stop.py while a person acts; what ParaView wrote, and its return code."""
+        failures = []
+
+        def act_alone():
+            try:
+                act(Person(self, folder))
+            except Exception as failure:  # to be told by the test, not by the thread
+                failures.append(failure)
+
+        person = threading.Thread(target=act_alone)
+        person.start()
+        done = self.paraview(folder, f"--script={PLAYBACKS / 'stop.py'}", f"--test-script={PLAYBACKS / name}", "--exit")
+        person.join()
+        self.assertEqual(failures, [], done.stdout)
+        return done
+
+    def test_abort_button(self):
+        seen = {}
+
+        def act(person):
+            seen["begun"] = person.await_file("begun.pvsm")
+            person.move(1390, 890)  # so that the pointer is in no picture
+            seen["before"] = person.picture()
+            self.assertIsNone(person.find_button())
+            time.sleep(1.5)
+            seen["button"] = person.find_button()
+            person.click(*seen["button"])
+            seen["stopped"] = person.await_file("stopped.pvsm")
+            time.sleep(1.5)
+            seen["kept"] = person.picture()
+            seen["again"] = person.await_file("again.pvsm")
+            seen["whole"] = person.await_file("whole.pvsm")
+            time.sleep(1.5)
+            seen["after"] = person.picture()
+
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.play_with("stop.xml", folder, act)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("ERR|", done.stdout)
+        self.assertEqual(done.stdout.count("ultrasound was stopped"), 1, done.stdout)
+        whole = seen["whole"] - seen["again"]
+        self.assertLess(seen["stopped"] - seen["begun"], 0.7 * whole)
+        self.assertEqual(seen["kept"], seen["before"])
+        self.assertNotEqual(seen["after"], seen["before"])
+
+    def test_leaving_during_a_run(self):
+        """ParaView ends at once and quietly, by its key and by the window's cross."""
+        for leave in (Person.press_quit, Person.close_window):
+            with self.subTest(leave=leave.__name__), tempfile.TemporaryDirectory() as folder:
+                left = []
+
+                def act(person):
+                    person.await_file("begun.pvsm")
+                    person.move(600, 450)  # where the keys go
+                    time.sleep(1.5)
+                    leave(person)
+                    left.append(time.time())
+
+                done = self.play_with("stop.xml", folder, act)
+                self.assertLess(time.time() - left[0], 8, done.stdout)
+                self.assertFalse(pathlib.Path(folder, "stopped.pvsm").exists())
+                self.assertGreaterEqual(done.returncode, 0, done.stdout)  # no signal
+                self.assertNotIn("ERR|", done.stdout)
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())

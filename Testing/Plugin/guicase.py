@@ -1,0 +1,87 @@
+"""ParaView with the plugin on a display of its own, for tests that play what a person does. Needs Xvfb."""
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+
+PLAYBACKS = pathlib.Path(__file__).resolve().parent / "gui"
+PLUGIN = pathlib.Path(os.environ["SONOVDB_PLUGIN"])
+VIEW = "720x520+300+205"  # the inside of the 3-D view on the screen
+
+
+def read_screen(xwd):
+    """The frame buffer, which Xvfb keeps as an X window dump: width, height and three bytes a pixel."""
+    dump = pathlib.Path(xwd).read_bytes()
+    header = struct.unpack(">25I", dump[:100])
+    width, height, bytes_per_line, colours = header[4], header[5], header[12], header[19]
+    start = header[0] + 12 * colours
+    pixels = bytearray(3 * width * height)
+    for row in range(height):
+        line = dump[start + row * bytes_per_line:start + row * bytes_per_line + 4 * width]  # blue, green, red, nothing
+        for channel in range(3):
+            pixels[3 * width * row + channel:3 * width * (row + 1):3] = line[2 - channel::4]
+    return width, height, pixels
+
+
+def save_screen(path, xwd):
+    """The 3-D view at half the size."""
+    width, height, pixels = read_screen(xwd)
+    with tempfile.NamedTemporaryFile(suffix=".ppm") as whole:
+        whole.write(b"P6 %d %d 255\n" % (width, height) + pixels)
+        whole.flush()
+        subprocess.run(["oiiotool", "--nosoftwareattrib", whole.name, "--cut", VIEW, "--resize", "50%", "-o", path],
+                       check=True)
+
+
+class GuiCase(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        reading, writing = os.pipe()
+        cls.screen = tempfile.TemporaryDirectory()
+        cls.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x900x24", "-fbdir", cls.screen.name,
+             "+extension", "GLX"],
+            pass_fds=[writing], stderr=subprocess.DEVNULL)
+        os.close(writing)
+        with os.fdopen(reading) as number:
+            cls.display = ":" + number.readline().strip()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.terminate()
+        cls.server.wait()
+        cls.screen.cleanup()
+
+    @property
+    def frame_buffer(self):
+        return pathlib.Path(self.screen.name, "Xvfb_screen0")
+
+    def run_script(self, text, folder, *arguments):
+        """Runs Python with ParaView on the display."""
+        script = pathlib.Path(folder, "script.py")
+        script.write_text("from paraview.simple import *\nimport os, sys\n"
+                          "LoadPlugin(os.environ['SONOVDB_PLUGIN'], remote=False, ns=globals())\n" + text)
+        subprocess.run(["pvpython", str(script), *map(str, arguments)], check=True, timeout=200,
+                       env=dict(os.environ, DISPLAY=self.display))
+
+    def label_map(self, folder):
+        """A thorax that is quick to show, as a file that ParaView opens itself."""
+        path = str(pathlib.Path(folder, "thorax.vti"))
+        self.run_script("SaveData(sys.argv[1], proxy=ThoraxPhantom(VoxelSizemm=4))", folder, path)
+        return path
+
+    def play(self, name, folder, *arguments):
+        """Plays one script; the lines that ParaView calls errors."""
+        done = self.paraview(folder, f"--test-script={PLAYBACKS / name}", *arguments, "--exit")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return [line for line in done.stdout.splitlines() if "ERR|" in line]
+
+    def paraview(self, folder, *arguments):
+        """Runs ParaView with the plugin until it ends by itself."""
+        environment = dict(os.environ, DISPLAY=self.display, HOME=folder, XDG_RUNTIME_DIR=folder)
+        return subprocess.run(
+            ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
+             f"--test-directory={folder}", *arguments],
+            env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=400)
