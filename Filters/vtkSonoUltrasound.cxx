@@ -4,6 +4,7 @@
 #include "SonoStage.h"
 #include "SonoStageChain.h"
 #include "vtkSonoBMode.h"
+#include "vtkSonoErrorMap.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoRayTracer.h"
@@ -86,14 +87,19 @@ public:
   void connect(vtkDataObject* input);
   /// The point array that holds the labels; null: the scalars.
   void chooseLabels(const char* name);
+  /// Whether the error map runs with the others: where it is asked for, but never behind a moving probe.
+  void chooseErrorMap(bool wanted);
   /// The stage and its port that make an output.
   vtkAlgorithmOutput* port(int outputPort) const;
+  /// Whether that stage runs.
+  bool isMade(int outputPort) const;
 
   vtkNew<vtkSonoSceneBuilder> scene;
   vtkNew<vtkSonoProbeSource> probe;
   vtkNew<vtkSonoRayTracer> tracer;
   vtkNew<vtkSonoImageFormation> formation;
   vtkNew<vtkSonoBMode> bmode;
+  vtkNew<vtkSonoErrorMap> errors;
   vtkNew<vtkSonoScanConverter> converter;
   sono::StageChain chain;
 
@@ -108,6 +114,7 @@ vtkSonoUltrasound::Stages::Stages(vtkSonoUltrasound* owner)
                    { tracer, "Tracing", 0.75 },
                    { formation, "Forming echoes", 0.95 },
                    { bmode, "Making grey", 0.97 },
+                   { errors, "Mapping the error", 0.98 },
                    { converter, "Placing the image", 1.0 } })
 {
   tracer->SetInputConnection(1, probe->GetOutputPort());
@@ -157,6 +164,17 @@ void vtkSonoUltrasound::Stages::chooseLabels(const char* name)
   }
 }
 
+void vtkSonoUltrasound::Stages::chooseErrorMap(bool wanted)
+{
+  errors->SetInputConnection(wanted && !probe->GetPreview() ? tracer->GetOutputPort(0) : nullptr);
+}
+
+bool vtkSonoUltrasound::Stages::isMade(int outputPort) const
+{
+  const bool isMap = outputPort == ERROR_MAP || outputPort == FLAT_ERROR_MAP;
+  return !isMap || errors->GetNumberOfInputConnections(0) > 0;
+}
+
 vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 {
   switch (outputPort)
@@ -175,6 +193,10 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
       return probe->GetOutputPort();
     case RAY_PATHS:
       return tracer->GetOutputPort(2);
+    case ERROR_MAP:
+      return errors->GetOutputPort(0);
+    case FLAT_ERROR_MAP:
+      return errors->GetOutputPort(1);
     default:
       return converter->GetOutputPort(1);
   }
@@ -183,7 +205,7 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 vtkSonoUltrasound::vtkSonoUltrasound()
   : Chain(new Stages(this))
 {
-  this->SetNumberOfOutputPorts(8);
+  this->SetNumberOfOutputPorts(10);
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
 }
@@ -200,6 +222,7 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << stage->GetClassName() << ":" << endl;
     stage->PrintSelf(os, indent.GetNextIndent());
   }
+  os << indent << "ErrorMap: " << this->ErrorMap << endl;
 }
 
 template<class Stage, class Change>
@@ -294,10 +317,20 @@ sonoForward(bmode, bool, AddNoise)
 sonoForward(bmode, double, NoiseDb)
 sonoForward(bmode, int, NoiseSeed)
 
-sonoForward(converter, double, PixelMm)
   // clang-format on
 
-  void vtkSonoUltrasound::SetSeed(int value)
+  void vtkSonoUltrasound::SetPixelMm(double value)
+{
+  this->ChangeStage(this->Chain->converter.Get(), [=](auto* converter) { converter->SetPixelMm(value); });
+  this->ChangeStage(this->Chain->errors.Get(), [=](auto* errors) { errors->SetPixelMm(value); });
+}
+
+double vtkSonoUltrasound::GetPixelMm()
+{
+  return this->Chain->converter->GetPixelMm();
+}
+
+void vtkSonoUltrasound::SetSeed(int value)
 {
   this->ChangeStage(this->Chain->tracer.Get(), [=](auto* tracer) { tracer->SetSeed(value); });
   this->ChangeStage(this->Chain->formation.Get(), [=](auto* formation) { formation->SetSeed(value); });
@@ -362,6 +395,18 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
       vtkAlgorithmOutput* made = this->Chain->port(port);
       announceSame(made->GetProducer()->GetOutputInformation(made->GetIndex()), output->GetInformationObject(port));
     }
+    this->Chain->chooseErrorMap(this->ErrorMap);
+    for (const auto& [port, twin] : { std::pair(ERROR_MAP, IMAGE), std::pair(FLAT_ERROR_MAP, FLAT_IMAGE) })
+    {
+      vtkInformation* map = output->GetInformationObject(port);
+      announceSame(output->GetInformationObject(twin), map);
+      vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_FLOAT, 1);
+      if (!this->Chain->isMade(port))
+      {
+        const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+        map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+      }
+    }
   });
 }
 
@@ -379,8 +424,11 @@ int vtkSonoUltrasound::RequestData(vtkInformation*, vtkInformationVector** input
     this->Chain->chain.update();
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
     {
-      vtkAlgorithmOutput* made = this->Chain->port(port);
-      vtkDataObject::GetData(output, port)->ShallowCopy(made->GetProducer()->GetOutputDataObject(made->GetIndex()));
+      if (this->Chain->isMade(port))
+      {
+        vtkAlgorithmOutput* made = this->Chain->port(port);
+        vtkDataObject::GetData(output, port)->ShallowCopy(made->GetProducer()->GetOutputDataObject(made->GetIndex()));
+      }
     }
   });
 }

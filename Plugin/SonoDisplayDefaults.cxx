@@ -62,6 +62,16 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
+/// The whole range from 0 to 100 percent, and nothing where the map is not a number, outside the scanned area.
+void showErrors(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMTransferFunctionManager> tables;
+  vtkSMProxy* colors = tables->GetColorTransferFunction("ErrorPercent", manager);
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 100.0);
+  vtkSMPropertyHelper(colors, "NanOpacity").Set(0.0);
+  colors->UpdateVTKObjects();
+}
+
 /// On its way from a server ParaView 5.11 loses how an image is turned, but not where a surface's points lie.
 void keepInPlace(vtkSMProxy* representation)
 {
@@ -156,6 +166,12 @@ public:
       hideUnscanned(registered->Proxy->GetSessionProxyManager());
       keepInPlace(registered->Proxy);
     }
+    else if (isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::ERROR_MAP) ||
+             isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::FLAT_ERROR_MAP))
+    {
+      showErrors(registered->Proxy->GetSessionProxyManager());
+      keepInPlace(registered->Proxy);
+    }
     else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {
       vtkSMPropertyHelper(registered->Proxy, "LineWidth", true).Set(3.0);
@@ -174,7 +190,9 @@ void sonoInstallDisplayDefaults()
   }
   // The colour map that an array gets when it is first shown; a person's own settings have a higher priority.
   vtkSMSettings::GetInstance()->AddCollectionFromString(
-    R"({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale"}})", 0.0);
+    R"json({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale",
+      "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"}})json",
+    0.0);
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
 }
