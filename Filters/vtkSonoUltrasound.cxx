@@ -193,6 +193,8 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
       return probe->GetOutputPort();
     case RAY_PATHS:
       return tracer->GetOutputPort(2);
+    case BOUNDARY_HITS:
+      return tracer->GetOutputPort(3);
     case ERROR_MAP:
       return errors->GetOutputPort(0);
     case FLAT_ERROR_MAP:
@@ -205,7 +207,7 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 vtkSonoUltrasound::vtkSonoUltrasound()
   : Chain(new Stages(this))
 {
-  this->SetNumberOfOutputPorts(10);
+  this->SetNumberOfOutputPorts(11);
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
 }
@@ -378,9 +380,8 @@ int vtkSonoUltrasound::FillInputPortInformation(int, vtkInformation* info)
 
 int vtkSonoUltrasound::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  const char* type = port == ANATOMY                      ? "vtkMultiBlockDataSet"
-                     : port == PROBE || port == RAY_PATHS ? "vtkPolyData"
-                                                          : "vtkImageData";
+  const bool isPolyData = port == PROBE || port == RAY_PATHS || port == BOUNDARY_HITS;
+  const char* type = port == ANATOMY ? "vtkMultiBlockDataSet" : isPolyData ? "vtkPolyData" : "vtkImageData";
   info->Set(vtkDataObject::DATA_TYPE_NAME(), type);
   return 1;
 }

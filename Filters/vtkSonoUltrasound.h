@@ -17,7 +17,8 @@
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
  * paths, 7 the image in the probe's own frame, in cm, 8 and 9 the error map (of vtkSonoErrorMap) in the world and in
- * the probe's own frame, empty unless ErrorMap is on and while the probe is being moved.
+ * the probe's own frame, empty unless ErrorMap is on and while the probe is being moved, 10 the boundaries that the ray
+ * paths met.
  *
  * Settings have the names, units, ranges and defaults of the stages, where they are described, but for these defaults,
  * which suit a chest: MaxCollisions 20, CoherenceMm 20, LobeSigmaDeg 6, TgcDbPerCm 3. Seed is that of the paths and of
@@ -41,7 +42,8 @@ public:
     RAY_PATHS = 6,
     FLAT_IMAGE = 7,
     ERROR_MAP = 8,
-    FLAT_ERROR_MAP = 9
+    FLAT_ERROR_MAP = 9,
+    BOUNDARY_HITS = 10
   };
 
   ///@{

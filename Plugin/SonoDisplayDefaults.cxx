@@ -72,6 +72,20 @@ void showErrors(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
+/// Paths and hits over the 80 dB below the transducer's intensity; what is fainter hardly sounds.
+void showIntensities(vtkSMProxy* representation)
+{
+  vtkNew<vtkSMTransferFunctionManager> tables;
+  vtkSMProxy* colors = tables->GetColorTransferFunction("IntensityDb", representation->GetSessionProxyManager());
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, -80.0, 0.0);
+  vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode").Set(-1); // never
+  colors->UpdateVTKObjects();
+  vtkSMPropertyHelper(representation, "PointSize", true).Set(6.0);
+  vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0); // the colours themselves, whatever the light
+  vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
+  representation->UpdateVTKObjects();
+}
+
 /// On its way from a server ParaView 5.11 loses how an image is turned, but not where a surface's points lie.
 void keepInPlace(vtkSMProxy* representation)
 {
@@ -171,6 +185,12 @@ public:
     {
       showErrors(registered->Proxy->GetSessionProxyManager());
       keepInPlace(registered->Proxy);
+    }
+    else if (isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::RAY_PATHS) ||
+             isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::BOUNDARY_HITS) ||
+             (equal(input->GetXMLName(), "SonoRayTracer") && port >= 2))
+    {
+      showIntensities(registered->Proxy);
     }
     else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {
