@@ -50,6 +50,15 @@ std::vector<float> betweenBins(const std::vector<float>& bins, int lineCount, in
   return samples;
 }
 
+/// The map of nothing, as large as the layout.
+template<class Converted>
+Converted unknown(Converted layout, std::size_t count)
+{
+  layout.value.assign(count, 0.0f);
+  layout.mask.assign(count, 0);
+  return layout;
+}
+
 /// A plane or a volume.
 template<class Converted>
 void fillMap(const Converted& converted, const sono::ProbePose& pose, vtkImageData* image, vtkImageData* flat)
@@ -123,22 +132,35 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
+    const auto fill = [&](const auto& converted) {
+      fillMap(converted, probe.pose, vtkImageData::GetData(output, 0), vtkImageData::GetData(output, 1));
+    };
+    const bool isVolume = probe.geometry.kind == sono::ScanKind::Matrix;
+    if (probe.preview && isVolume)
+    {
+      const sono::VolumeImage image = sono::volumeImageLayout(probe.geometry, this->PixelMm);
+      return fill(unknown(image, image.voxelCount()));
+    }
+    if (probe.preview)
+    {
+      const sono::PlaneImage image = sono::planeImageLayout(probe.geometry, this->PixelMm);
+      return fill(unknown(image, std::size_t(image.width) * image.height));
+    }
     const std::size_t count = std::size_t(layout.lineCount) * layout.sampleCount;
     const std::vector<float> samples =
       betweenBins(errorPercent(sono::lineValues("Intensity", lines->GetPointData(), count),
                                sono::lineValues("StandardError", lines->GetPointData(), count)),
                   layout.lineCount, layout.sampleCount);
-    const auto fill = [&](const auto& converted) {
-      fillMap(converted, probe.pose, vtkImageData::GetData(output, 0), vtkImageData::GetData(output, 1));
-    };
-    if (probe.geometry.kind == sono::ScanKind::Matrix)
+    const int sampleCount = 2 * layout.sampleCount;
+    const double sampleMm = layout.sampleMm / 2.0;
+    if (isVolume)
     {
-      fill(sono::scanConvertVolume(probe.geometry, samples, 2 * layout.sampleCount, layout.sampleMm / 2.0,
-                                   this->PixelMm, sono::progressOf(this)));
+      fill(
+        sono::scanConvertVolume(probe.geometry, samples, sampleCount, sampleMm, this->PixelMm, sono::progressOf(this)));
     }
     else
     {
-      fill(sono::scanConvert(probe.geometry, samples, 2 * layout.sampleCount, layout.sampleMm / 2.0, this->PixelMm));
+      fill(sono::scanConvert(probe.geometry, samples, sampleCount, sampleMm, this->PixelMm));
     }
   });
 }

@@ -14,6 +14,7 @@
  *   possible: intensities are not negative); 0 where all paths agree, as before the first boundary, 100 where none
  *   came, not a number outside the scanned area. It falls with the square root of the number of paths.
  * - "Mask": 1 inside the scanned area.
+ * While the probe is being moved nothing is known: no pixel is a number and the mask is empty.
  * Between lines and radial bins the percentage is interpolated. The speckle is no error and does not count.
  *
  * Output 1 is the same image in the probe's own frame and in centimetres, as of vtkSonoScanConverter.

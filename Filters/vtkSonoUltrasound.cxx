@@ -12,6 +12,7 @@
 #include "vtkSonoSceneBuilder.h"
 
 #include "vtkAlgorithmOutput.h"
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -87,7 +88,7 @@ public:
   void connect(vtkDataObject* input);
   /// The point array that holds the labels; null: the scalars.
   void chooseLabels(const char* name);
-  /// Whether the error map runs with the others: where it is asked for, but never behind a moving probe.
+  /// Whether the error map runs with the others.
   void chooseErrorMap(bool wanted);
   /// The stage and its port that make an output.
   vtkAlgorithmOutput* port(int outputPort) const;
@@ -166,13 +167,12 @@ void vtkSonoUltrasound::Stages::chooseLabels(const char* name)
 
 void vtkSonoUltrasound::Stages::chooseErrorMap(bool wanted)
 {
-  errors->SetInputConnection(wanted && !probe->GetPreview() ? tracer->GetOutputPort(0) : nullptr);
+  errors->SetInputConnection(wanted ? tracer->GetOutputPort(0) : nullptr);
 }
 
 bool vtkSonoUltrasound::Stages::isMade(int outputPort) const
 {
-  const bool isMap = outputPort == ERROR_MAP || outputPort == FLAT_ERROR_MAP;
-  return !isMap || errors->GetNumberOfInputConnections(0) > 0;
+  return outputPort != ERROR_MAP || errors->GetNumberOfInputConnections(0) > 0;
 }
 
 vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
@@ -197,8 +197,6 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
       return tracer->GetOutputPort(3);
     case ERROR_MAP:
       return errors->GetOutputPort(0);
-    case FLAT_ERROR_MAP:
-      return errors->GetOutputPort(1);
     default:
       return converter->GetOutputPort(1);
   }
@@ -207,7 +205,7 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 vtkSonoUltrasound::vtkSonoUltrasound()
   : Chain(new Stages(this))
 {
-  this->SetNumberOfOutputPorts(11);
+  this->SetNumberOfOutputPorts(10);
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
 }
@@ -397,16 +395,13 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
       announceSame(made->GetProducer()->GetOutputInformation(made->GetIndex()), output->GetInformationObject(port));
     }
     this->Chain->chooseErrorMap(this->ErrorMap);
-    for (const auto& [port, twin] : { std::pair(ERROR_MAP, IMAGE), std::pair(FLAT_ERROR_MAP, FLAT_IMAGE) })
+    vtkInformation* map = output->GetInformationObject(ERROR_MAP);
+    announceSame(output->GetInformationObject(IMAGE), map);
+    vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_FLOAT, 1);
+    if (!this->Chain->isMade(ERROR_MAP))
     {
-      vtkInformation* map = output->GetInformationObject(port);
-      announceSame(output->GetInformationObject(twin), map);
-      vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_FLOAT, 1);
-      if (!this->Chain->isMade(port))
-      {
-        const int empty[6] = { 0, -1, 0, -1, 0, -1 };
-        map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
-      }
+      const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+      map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
     }
   });
 }
@@ -429,6 +424,14 @@ int vtkSonoUltrasound::RequestData(vtkInformation*, vtkInformationVector** input
       {
         vtkAlgorithmOutput* made = this->Chain->port(port);
         vtkDataObject::GetData(output, port)->ShallowCopy(made->GetProducer()->GetOutputDataObject(made->GetIndex()));
+      }
+    }
+    if (this->Chain->isMade(ERROR_MAP))
+    {
+      vtkDataArray* percent = vtkImageData::GetData(output, ERROR_MAP)->GetPointData()->GetScalars();
+      for (int port : { IMAGE, FLAT_IMAGE })
+      {
+        vtkImageData::GetData(output, port)->GetPointData()->AddArray(percent);
       }
     }
   });

@@ -16,9 +16,10 @@
  *
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
- * paths, 7 the image in the probe's own frame, in cm, 8 and 9 the error map (of vtkSonoErrorMap) in the world and in
- * the probe's own frame, empty unless ErrorMap is on and while the probe is being moved, 10 the boundaries that the ray
- * paths met.
+ * paths, 7 the image in the probe's own frame, in cm, 8 the error map (of vtkSonoErrorMap),
+ * 9 the boundaries that the ray paths met. (ParaView has room for no more than ten.)
+ *
+ * The error map is empty unless ErrorMap is on. The two images have its array "ErrorPercent" then, too.
  *
  * Settings have the names, units, ranges and defaults of the stages, where they are described, but for these defaults,
  * which suit a chest: MaxCollisions 20, CoherenceMm 20, LobeSigmaDeg 6, TgcDbPerCm 3. Seed is that of the paths and of
@@ -42,8 +43,7 @@ public:
     RAY_PATHS = 6,
     FLAT_IMAGE = 7,
     ERROR_MAP = 8,
-    FLAT_ERROR_MAP = 9,
-    BOUNDARY_HITS = 10
+    BOUNDARY_HITS = 9
   };
 
   ///@{

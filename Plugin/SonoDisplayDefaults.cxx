@@ -62,12 +62,10 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
-/// The whole range from 0 to 100 percent, and nothing where the map is not a number, outside the scanned area.
-void showErrors(vtkSMSessionProxyManager* manager)
+/// Nothing where an error map is not a number, outside the scanned area; half and more of the intensity is bad alike.
+void showErrors(vtkSMProxy* colors)
 {
-  vtkNew<vtkSMTransferFunctionManager> tables;
-  vtkSMProxy* colors = tables->GetColorTransferFunction("ErrorPercent", manager);
-  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 100.0);
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 50.0);
   vtkSMPropertyHelper(colors, "NanOpacity").Set(0.0);
   colors->UpdateVTKObjects();
 }
@@ -80,7 +78,7 @@ void showIntensities(vtkSMProxy* representation)
   vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, -80.0, 0.0);
   vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode").Set(-1); // never
   colors->UpdateVTKObjects();
-  vtkSMPropertyHelper(representation, "PointSize", true).Set(6.0);
+  vtkSMPropertyHelper(representation, "PointSize", true).Set(4.0);
   vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0); // the colours themselves, whatever the light
   vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
   representation->UpdateVTKObjects();
@@ -158,6 +156,10 @@ public:
       vtkNew<HideOnce> hide;
       registered->Proxy->AddObserver(vtkCommand::PropertyModifiedEvent, hide);
     }
+    if (equal(registered->GroupName, "lookup_tables") && std::strstr(registered->ProxyName, "ErrorPercent"))
+    {
+      showErrors(registered->Proxy);
+    }
     if (!equal(registered->GroupName, "representations"))
     {
       return;
@@ -180,10 +182,8 @@ public:
       hideUnscanned(registered->Proxy->GetSessionProxyManager());
       keepInPlace(registered->Proxy);
     }
-    else if (isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::ERROR_MAP) ||
-             isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::FLAT_ERROR_MAP))
+    else if (isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::ERROR_MAP))
     {
-      showErrors(registered->Proxy->GetSessionProxyManager());
       keepInPlace(registered->Proxy);
     }
     else if (isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::RAY_PATHS) ||

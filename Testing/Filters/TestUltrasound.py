@@ -12,7 +12,7 @@ SETTINGS = {"LineCount": 12, "DepthMm": 90.0, "SectorDeg": 60.0, "PathsPerLine":
 # What the stages' own defaults differ in.
 CHEST = {"MaxCollisions": 20, "CoherenceMm": 20.0, "LobeSigmaDeg": 6.0}
 IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, ANATOMY, PROBE, RAY_PATHS, FLAT_IMAGE = range(8)
-BOUNDARY_HITS = 10
+BOUNDARY_HITS = 9
 
 
 def values(data, name):

@@ -57,11 +57,11 @@ class TestUltrasound(unittest.TestCase):
     def test_picture_and_the_other_outputs(self):
         ultrasound = make_ultrasound(NumberofShownPaths=5)
         self.assertGreater(grey(ultrasound).max(), 200)
-        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(11)],
+        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(10)],
                          4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData"]
-                         + 3 * ["vtkImageData"] + ["vtkPolyData"])
+                         + 2 * ["vtkImageData"] + ["vtkPolyData"])
         self.assertEqual(Fetch(ultrasound, idx=6).GetNumberOfCells(), 5)
-        self.assertGreater(Fetch(ultrasound, idx=10).GetNumberOfCells(), 5)
+        self.assertGreater(Fetch(ultrasound, idx=9).GetNumberOfCells(), 5)
         self.assertEqual(Fetch(ultrasound, idx=8).GetNumberOfPoints(), 0)
         ultrasound.ErrorMap = 1
         self.assertEqual(Fetch(ultrasound, idx=8).GetPointData().GetArray("ErrorPercent").GetNumberOfTuples(),
