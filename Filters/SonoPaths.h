@@ -1,7 +1,8 @@
 #pragma once
 
-#include "Trace/Trace.h"
+#include "Trace/RecordPaths.h"
 
+#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -11,5 +12,10 @@ namespace sono {
 /// One polyline a path, with the point arrays "Intensity", "IntensityDb" (20 log10, at least -400) and "Bounce", and
 /// the cell array "Line".
 void fillPaths(const std::vector<RecordedPath>& paths, vtkPolyData* polyData);
+
+/// One vertex a boundary that a path met, with the point arrays "Intensity", "IntensityDb", "Bounce", "EchoAmplitude",
+/// "IncidenceDeg", "DepthMm", "PathMm", "Line", "FromTissue" and "ToTissue" (names of the media, see BoundaryHit) and,
+/// as the normals, "Normals".
+void fillHits(const std::vector<RecordedPath>& paths, const std::vector<std::string>& media, vtkPolyData* polyData);
 
 } // namespace sono

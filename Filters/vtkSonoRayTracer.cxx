@@ -7,6 +7,7 @@
 #include "SonoStage.h"
 #include "SonoTargets.h"
 #include "Trace/FacePlace.h"
+#include "Trace/RecordPaths.h"
 #include "Trace/Trace.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -49,12 +50,27 @@ double rfSamplingMHz(double settingMHz, const sono::ProbeField& probe)
   return probe.preview ? std::min(settingMHz, previewSamplesPerPeriod * probe.centreFrequencyMHz) : settingMHz;
 }
 
+/// The tissues by the numbers that recorded paths give them.
+std::vector<std::string> mediaNames(const sono::Scene& scene, const std::vector<sono::TargetSurface>& targets)
+{
+  std::vector<std::string> names;
+  for (const sono::Tissue& tissue : scene.tissues())
+  {
+    names.push_back(tissue.name);
+  }
+  for (const sono::TargetSurface& target : targets)
+  {
+    names.push_back(target.tissue.name);
+  }
+  return names;
+}
+
 } // namespace
 
 vtkSonoRayTracer::vtkSonoRayTracer()
 {
   this->SetNumberOfInputPorts(3);
-  this->SetNumberOfOutputPorts(3);
+  this->SetNumberOfOutputPorts(4);
 }
 
 vtkSonoRayTracer::~vtkSonoRayTracer() = default;
@@ -93,7 +109,7 @@ int vtkSonoRayTracer::FillInputPortInformation(int port, vtkInformation* info)
 
 int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 2 ? "vtkPolyData" : "vtkImageData");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port >= 2 ? "vtkPolyData" : "vtkImageData");
   return 1;
 }
 
@@ -164,8 +180,9 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
     if (this->NumberOfShownPaths != 0)
     {
-      sono::fillPaths(sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets),
-                      vtkPolyData::GetData(output, 2));
+      const auto paths = sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets);
+      sono::fillPaths(paths, vtkPolyData::GetData(output, 2));
+      sono::fillHits(paths, mediaNames(*scene, targets), vtkPolyData::GetData(output, 3));
     }
 
     vtkImageData* lines = vtkImageData::GetData(output, 0);

@@ -25,6 +25,10 @@ struct TraceSettings;
  * Output 1: lines x RF samples with the complex point array "BoundaryEcho".
  * Output 2: some of the paths as polylines in the world, for display, with the point arrays "Intensity" (on arrival),
  * "IntensityDb" (20 log10 of it) and "Bounce" (boundaries met before), and the cell array "Line".
+ * Output 3: the boundaries that these paths met, as vertices on the surfaces, with the same arrays and "Normals" (into
+ * the tissue behind), "IncidenceDeg" (between path and normal), "EchoAmplitude" (of the boundary's echo, before the
+ * coherence weight), "DepthMm" (along the scan line, where the echo appears), "PathMm" (travelled since the
+ * transducer), and the names "FromTissue" and "ToTissue"; "Line" is a point array there.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoRayTracer : public vtkImageAlgorithm
 {
@@ -182,7 +186,7 @@ public:
 
   ///@{
   /**
-   * Paths on output 2, 0 to 100,000, chosen evenly from all. Default 0.
+   * Paths on output 2, whose boundaries are on output 3, 0 to 100,000, chosen evenly from all. Default 0.
    */
   vtkSetMacro(NumberOfShownPaths, int);
   vtkGetMacro(NumberOfShownPaths, int);

@@ -4,6 +4,7 @@
 #include "Image/ScanConvert.h"
 #include "Image/ScanConvertVolume.h"
 #include "Scene/Scene.h"
+#include "SonoImagePlacement.h"
 #include "SonoLabelImage.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
@@ -16,98 +17,15 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedShortArray.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 vtkStandardNewMacro(vtkSonoScanConverter);
 
 namespace {
-
-/// Where an image lies in the world.
-struct Placement
-{
-  Placement(const sono::PlaneImage& plane, const sono::ProbePose& pose)
-    : size(plane.width, plane.height, 1)
-    , pixelMm(plane.pixelMm)
-    , originMm(pose.positionMm + plane.lateralMinMm * pose.lateral + plane.axialMinMm * pose.axial)
-  {
-    setColumns(pose.lateral, pose.axial, glm::cross(pose.axial, pose.lateral));
-  }
-
-  Placement(const sono::VolumeImage& volume, const sono::ProbePose& pose)
-    : size(volume.size)
-    , pixelMm(volume.voxelMm)
-  {
-    const sono::Vec3d elevation = glm::cross(pose.axial, pose.lateral);
-    originMm =
-      pose.positionMm + volume.minMm.x * pose.lateral + volume.minMm.y * elevation + volume.minMm.z * pose.axial;
-    setColumns(pose.lateral, elevation, pose.axial);
-  }
-
-  /// The same in the probe's own frame, in cm.
-  Placement flat(const sono::ProbePose& pose) const
-  {
-    const sono::Vec3d elevation = glm::cross(pose.axial, pose.lateral);
-    const sono::Vec3d from = originMm - pose.positionMm;
-    const bool isVolume = size.z > 1;
-    const sono::Vec3d second = isVolume ? elevation : pose.axial;
-    const sono::Vec3d third = isVolume ? pose.axial : elevation;
-    Placement result = *this;
-    result.pixelMm = pixelMm / 10.0;
-    result.originMm = sono::Vec3d(glm::dot(from, pose.lateral), glm::dot(from, second), glm::dot(from, third)) / 10.0;
-    result.setColumns({ 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 });
-    return result;
-  }
-
-  void announce(vtkInformation* outInfo) const
-  {
-    const int extent[6] = { 0, size.x - 1, 0, size.y - 1, 0, size.z - 1 };
-    const double spacing[3] = { pixelMm, pixelMm, pixelMm };
-    outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    outInfo->Set(vtkDataObject::ORIGIN(), &originMm.x, 3);
-    outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
-    outInfo->Set(vtkDataObject::DIRECTION(), direction.data(), 9);
-    vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_CHAR, 1);
-  }
-
-  void place(vtkImageData* image) const
-  {
-    image->SetDimensions(size.x, size.y, size.z);
-    image->SetOrigin(&originMm.x);
-    image->SetSpacing(pixelMm, pixelMm, pixelMm);
-    image->SetDirectionMatrix(direction.data());
-  }
-
-private:
-  void setColumns(const sono::Vec3d& x, const sono::Vec3d& y, const sono::Vec3d& z)
-  {
-    for (int row = 0; row < 3; ++row)
-    {
-      direction[3 * row] = x[row];
-      direction[3 * row + 1] = y[row];
-      direction[3 * row + 2] = z[row];
-    }
-  }
-
-  sono::Vec3i size;
-  double pixelMm;
-  sono::Vec3d originMm;
-  std::array<double, 9> direction{}; // row-major
-};
-
-Placement placementOf(const sono::ProbeField& probe, double pixelMm)
-{
-  if (probe.geometry.kind == sono::ScanKind::Matrix)
-  {
-    return { sono::volumeImageLayout(probe.geometry, pixelMm), probe.pose };
-  }
-  return { sono::planeImageLayout(probe.geometry, pixelMm), probe.pose };
-}
 
 template<class Array, class Values, class Change>
 void addArray(const char* name, const Values& values, vtkPointData* arrays, const Change& change)
@@ -138,7 +56,7 @@ template<class Converted>
 void fillImage(const Converted& converted, const sono::ProbePose& pose, const sono::LabelVolume* labels,
                vtkImageData* image, vtkImageData* flat)
 {
-  const Placement placement(converted, pose);
+  const sono::ImagePlacement placement(converted, pose);
   placement.place(image);
   vtkPointData* arrays = image->GetPointData();
   // From 1 on, so that a colour map can leave out what was not scanned and still show black.
@@ -212,9 +130,9 @@ int vtkSonoScanConverter::RequestInformation(vtkInformation*, vtkInformationVect
   return sono::announceStage(this, [&] {
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
     const sono::ProbeField probe = sono::readProbe(acquisition);
-    const Placement placement = placementOf(probe, this->PixelMm);
-    placement.announce(output->GetInformationObject(0));
-    placement.flat(probe.pose).announce(output->GetInformationObject(1));
+    const sono::ImagePlacement placement = sono::placementOf(probe, this->PixelMm);
+    placement.announce(VTK_UNSIGNED_CHAR, output->GetInformationObject(0));
+    placement.flat(probe.pose).announce(VTK_UNSIGNED_CHAR, output->GetInformationObject(1));
     for (int port : { 0, 1 })
     {
       sono::announceFields(acquisition, output->GetInformationObject(port));

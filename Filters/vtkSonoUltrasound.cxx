@@ -4,6 +4,7 @@
 #include "SonoStage.h"
 #include "SonoStageChain.h"
 #include "vtkSonoBMode.h"
+#include "vtkSonoErrorMap.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoRayTracer.h"
@@ -11,6 +12,7 @@
 #include "vtkSonoSceneBuilder.h"
 
 #include "vtkAlgorithmOutput.h"
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -86,14 +88,19 @@ public:
   void connect(vtkDataObject* input);
   /// The point array that holds the labels; null: the scalars.
   void chooseLabels(const char* name);
+  /// Whether the error map runs with the others.
+  void chooseErrorMap(bool wanted);
   /// The stage and its port that make an output.
   vtkAlgorithmOutput* port(int outputPort) const;
+  /// Whether that stage runs.
+  bool isMade(int outputPort) const;
 
   vtkNew<vtkSonoSceneBuilder> scene;
   vtkNew<vtkSonoProbeSource> probe;
   vtkNew<vtkSonoRayTracer> tracer;
   vtkNew<vtkSonoImageFormation> formation;
   vtkNew<vtkSonoBMode> bmode;
+  vtkNew<vtkSonoErrorMap> errors;
   vtkNew<vtkSonoScanConverter> converter;
   sono::StageChain chain;
 
@@ -108,6 +115,7 @@ vtkSonoUltrasound::Stages::Stages(vtkSonoUltrasound* owner)
                    { tracer, "Tracing", 0.75 },
                    { formation, "Forming echoes", 0.95 },
                    { bmode, "Making grey", 0.97 },
+                   { errors, "Mapping the error", 0.98 },
                    { converter, "Placing the image", 1.0 } })
 {
   tracer->SetInputConnection(1, probe->GetOutputPort());
@@ -157,6 +165,16 @@ void vtkSonoUltrasound::Stages::chooseLabels(const char* name)
   }
 }
 
+void vtkSonoUltrasound::Stages::chooseErrorMap(bool wanted)
+{
+  errors->SetInputConnection(wanted ? tracer->GetOutputPort(0) : nullptr);
+}
+
+bool vtkSonoUltrasound::Stages::isMade(int outputPort) const
+{
+  return outputPort != ERROR_MAP || errors->GetNumberOfInputConnections(0) > 0;
+}
+
 vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 {
   switch (outputPort)
@@ -175,6 +193,10 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
       return probe->GetOutputPort();
     case RAY_PATHS:
       return tracer->GetOutputPort(2);
+    case BOUNDARY_HITS:
+      return tracer->GetOutputPort(3);
+    case ERROR_MAP:
+      return errors->GetOutputPort(0);
     default:
       return converter->GetOutputPort(1);
   }
@@ -183,7 +205,7 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 vtkSonoUltrasound::vtkSonoUltrasound()
   : Chain(new Stages(this))
 {
-  this->SetNumberOfOutputPorts(8);
+  this->SetNumberOfOutputPorts(10);
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
 }
@@ -200,6 +222,7 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << stage->GetClassName() << ":" << endl;
     stage->PrintSelf(os, indent.GetNextIndent());
   }
+  os << indent << "ErrorMap: " << this->ErrorMap << endl;
 }
 
 template<class Stage, class Change>
@@ -294,10 +317,20 @@ sonoForward(bmode, bool, AddNoise)
 sonoForward(bmode, double, NoiseDb)
 sonoForward(bmode, int, NoiseSeed)
 
-sonoForward(converter, double, PixelMm)
   // clang-format on
 
-  void vtkSonoUltrasound::SetSeed(int value)
+  void vtkSonoUltrasound::SetPixelMm(double value)
+{
+  this->ChangeStage(this->Chain->converter.Get(), [=](auto* converter) { converter->SetPixelMm(value); });
+  this->ChangeStage(this->Chain->errors.Get(), [=](auto* errors) { errors->SetPixelMm(value); });
+}
+
+double vtkSonoUltrasound::GetPixelMm()
+{
+  return this->Chain->converter->GetPixelMm();
+}
+
+void vtkSonoUltrasound::SetSeed(int value)
 {
   this->ChangeStage(this->Chain->tracer.Get(), [=](auto* tracer) { tracer->SetSeed(value); });
   this->ChangeStage(this->Chain->formation.Get(), [=](auto* formation) { formation->SetSeed(value); });
@@ -345,9 +378,8 @@ int vtkSonoUltrasound::FillInputPortInformation(int, vtkInformation* info)
 
 int vtkSonoUltrasound::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  const char* type = port == ANATOMY                      ? "vtkMultiBlockDataSet"
-                     : port == PROBE || port == RAY_PATHS ? "vtkPolyData"
-                                                          : "vtkImageData";
+  const bool isPolyData = port == PROBE || port == RAY_PATHS || port == BOUNDARY_HITS;
+  const char* type = port == ANATOMY ? "vtkMultiBlockDataSet" : isPolyData ? "vtkPolyData" : "vtkImageData";
   info->Set(vtkDataObject::DATA_TYPE_NAME(), type);
   return 1;
 }
@@ -361,6 +393,15 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
     {
       vtkAlgorithmOutput* made = this->Chain->port(port);
       announceSame(made->GetProducer()->GetOutputInformation(made->GetIndex()), output->GetInformationObject(port));
+    }
+    this->Chain->chooseErrorMap(this->ErrorMap);
+    vtkInformation* map = output->GetInformationObject(ERROR_MAP);
+    announceSame(output->GetInformationObject(IMAGE), map);
+    vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_FLOAT, 1);
+    if (!this->Chain->isMade(ERROR_MAP))
+    {
+      const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+      map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
     }
   });
 }
@@ -379,8 +420,19 @@ int vtkSonoUltrasound::RequestData(vtkInformation*, vtkInformationVector** input
     this->Chain->chain.update();
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
     {
-      vtkAlgorithmOutput* made = this->Chain->port(port);
-      vtkDataObject::GetData(output, port)->ShallowCopy(made->GetProducer()->GetOutputDataObject(made->GetIndex()));
+      if (this->Chain->isMade(port))
+      {
+        vtkAlgorithmOutput* made = this->Chain->port(port);
+        vtkDataObject::GetData(output, port)->ShallowCopy(made->GetProducer()->GetOutputDataObject(made->GetIndex()));
+      }
+    }
+    if (this->Chain->isMade(ERROR_MAP))
+    {
+      vtkDataArray* percent = vtkImageData::GetData(output, ERROR_MAP)->GetPointData()->GetScalars();
+      for (int port : { IMAGE, FLAT_IMAGE })
+      {
+        vtkImageData::GetData(output, port)->GetPointData()->AddArray(percent);
+      }
     }
   });
 }

@@ -16,7 +16,10 @@
  *
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
- * paths, 7 the image in the probe's own frame, in cm.
+ * paths, 7 the image in the probe's own frame, in cm, 8 the error map (of vtkSonoErrorMap),
+ * 9 the boundaries that the ray paths met. (ParaView has room for no more than ten.)
+ *
+ * The error map is empty unless ErrorMap is on. The two images have its array "ErrorPercent" then, too.
  *
  * Settings have the names, units, ranges and defaults of the stages, where they are described, but for these defaults,
  * which suit a chest: MaxCollisions 20, CoherenceMm 20, LobeSigmaDeg 6, TgcDbPerCm 3. Seed is that of the paths and of
@@ -38,7 +41,9 @@ public:
     ANATOMY = 4,
     PROBE = 5,
     RAY_PATHS = 6,
-    FLAT_IMAGE = 7
+    FLAT_IMAGE = 7,
+    ERROR_MAP = 8,
+    BOUNDARY_HITS = 9
   };
 
   ///@{
@@ -196,6 +201,15 @@ public:
   double GetPixelMm();
   ///@}
 
+  ///@{
+  /**
+   * Whether to make the error map, see vtkSonoErrorMap. Default off.
+   */
+  vtkSetMacro(ErrorMap, bool);
+  vtkGetMacro(ErrorMap, bool);
+  vtkBooleanMacro(ErrorMap, bool);
+  ///@}
+
 protected:
   vtkSonoUltrasound();
   ~vtkSonoUltrasound() override;
@@ -212,6 +226,7 @@ private:
 
   class Stages;
   std::unique_ptr<Stages> Chain;
+  bool ErrorMap = false;
 
   template<class Stage, class Change>
   void ChangeStage(Stage* stage, const Change& change);

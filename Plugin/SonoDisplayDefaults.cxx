@@ -62,6 +62,28 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
+/// Nothing where an error map is not a number, outside the scanned area; half and more of the intensity is bad alike.
+void showErrors(vtkSMProxy* colors)
+{
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 50.0);
+  vtkSMPropertyHelper(colors, "NanOpacity").Set(0.0);
+  colors->UpdateVTKObjects();
+}
+
+/// Paths and hits over the 80 dB below the transducer's intensity; what is fainter hardly sounds.
+void showIntensities(vtkSMProxy* representation)
+{
+  vtkNew<vtkSMTransferFunctionManager> tables;
+  vtkSMProxy* colors = tables->GetColorTransferFunction("IntensityDb", representation->GetSessionProxyManager());
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, -80.0, 0.0);
+  vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode").Set(-1); // never
+  colors->UpdateVTKObjects();
+  vtkSMPropertyHelper(representation, "PointSize", true).Set(4.0);
+  vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0); // the colours themselves, whatever the light
+  vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
+  representation->UpdateVTKObjects();
+}
+
 /// On its way from a server ParaView 5.11 loses how an image is turned, but not where a surface's points lie.
 void keepInPlace(vtkSMProxy* representation)
 {
@@ -134,6 +156,10 @@ public:
       vtkNew<HideOnce> hide;
       registered->Proxy->AddObserver(vtkCommand::PropertyModifiedEvent, hide);
     }
+    if (equal(registered->GroupName, "lookup_tables") && std::strstr(registered->ProxyName, "ErrorPercent"))
+    {
+      showErrors(registered->Proxy);
+    }
     if (!equal(registered->GroupName, "representations"))
     {
       return;
@@ -156,6 +182,16 @@ public:
       hideUnscanned(registered->Proxy->GetSessionProxyManager());
       keepInPlace(registered->Proxy);
     }
+    else if (isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::ERROR_MAP))
+    {
+      keepInPlace(registered->Proxy);
+    }
+    else if (isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::RAY_PATHS) ||
+             isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::BOUNDARY_HITS) ||
+             (equal(input->GetXMLName(), "SonoRayTracer") && port >= 2))
+    {
+      showIntensities(registered->Proxy);
+    }
     else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {
       vtkSMPropertyHelper(registered->Proxy, "LineWidth", true).Set(3.0);
@@ -174,7 +210,9 @@ void sonoInstallDisplayDefaults()
   }
   // The colour map that an array gets when it is first shown; a person's own settings have a higher priority.
   vtkSMSettings::GetInstance()->AddCollectionFromString(
-    R"({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale"}})", 0.0);
+    R"json({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale",
+      "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"}})json",
+    0.0);
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
 }

@@ -1,5 +1,6 @@
+#include "Trace/RecordPaths.h"
+
 #include "Kernel/TracePath.h"
-#include "Trace/Trace.h"
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace sono {
 
 namespace {
 
-/// A sink that keeps a path's corners.
+/// A sink that keeps a path's corners, and the boundaries that it is told of.
 class PathRecorder
 {
 public:
@@ -30,7 +31,21 @@ public:
       add(s.start + s.direction * s.length, s.intensity * std::exp(-s.decayPerMm * s.length));
     }
   }
-  void echo(const Vec3f&, float) { ++bounces_; }
+  void echo(const Vec3f&, float amplitude)
+  {
+    ++bounces_;
+    echo_ = amplitude;
+  }
+  /// After its echo.
+  void hit(const PathState& path, const PathBoundary& boundary)
+  {
+    const Vec3f point = path.ray.position + path.ray.direction * boundary.surface.t;
+    const TraceLine& line = setup_.lines[std::size_t(path_.line)];
+    path_.hits.push_back({ setup_.worldFromRegion(point), setup_.toWorld * Vec3d(boundary.surface.normal),
+                           path.intensity, echo_, boundary.cosine, glm::dot(point - line.origin, line.axis),
+                           path.length + boundary.surface.t - boundary.restart, path.collisions, boundary.before.medium,
+                           boundary.after.medium });
+  }
   const RecordedPath& path() const { return path_; }
 
 private:
@@ -44,7 +59,30 @@ private:
   const TraceSetup& setup_;
   RecordedPath path_;
   int bounces_ = 0;
+  float echo_ = 0.0f;
 };
+
+/// What tracePath does, with a word to the recorder at each boundary.
+template<class Space>
+void followPath(const TraceSetup& setup, const Space& space, const LineStart& start, const PathKey& key,
+                PathRecorder& recorder)
+{
+  const TraceView& view = setup.view;
+  PathState path = start.path;
+  PathBoundary boundary = start.boundary;
+  for (;;)
+  {
+    recorder.hit(path, boundary);
+    leaveBoundary(view, space, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
+    if (!(path.intensity > 0.0f) || !survivesRoulette(view, key, path) ||
+        !advanceToBoundary(view, space, setup.lines[key.line], path, boundary, recorder) ||
+        path.collisions >= view.maxCollisions)
+    {
+      return;
+    }
+    depositBoundary(view, path, boundary, recorder);
+  }
+}
 
 } // namespace
 
@@ -76,8 +114,8 @@ std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<Scan
     if (start.meets)
     {
       const int within = path - batchRange(setup.paths, batches, batch).first;
-      tracePath(setup.view, space, setup.lines[std::size_t(line)], start,
-                PathKey{ std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) }, recorder);
+      followPath(setup, space, start, PathKey{ std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) },
+                 recorder);
     }
     if (recorder.path().pointMm.size() > 1)
     {

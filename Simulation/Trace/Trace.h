@@ -86,19 +86,4 @@ constexpr double assumedSoundSpeedMmPerUs = 1.54;
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
 
-/// One path for display: its corners in world mm, the intensity on arrival at each and the boundaries met before it.
-struct RecordedPath
-{
-  int line = 0;
-  std::vector<Vec3d> pointMm;
-  std::vector<float> intensity;
-  std::vector<int> bounce;
-};
-
-/// The corners of `count` of the paths that trace() would follow with the same arguments (of LowDiscrepancy where it
-/// would share them), chosen evenly over lines and paths.
-std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<ScanLine>& lines,
-                                      const TraceSettings& settings, int count,
-                                      const std::vector<TargetSurface>& targets = {});
-
 } // namespace sono

@@ -12,6 +12,7 @@ SETTINGS = {"LineCount": 12, "DepthMm": 90.0, "SectorDeg": 60.0, "PathsPerLine":
 # What the stages' own defaults differ in.
 CHEST = {"MaxCollisions": 20, "CoherenceMm": 20.0, "LobeSigmaDeg": 6.0}
 IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, ANATOMY, PROBE, RAY_PATHS, FLAT_IMAGE = range(8)
+BOUNDARY_HITS = 9
 
 
 def values(data, name):
@@ -91,6 +92,32 @@ class TestOutputs(unittest.TestCase):
         self.assertEqual(self.filter.GetOutputDataObject(ANATOMY).GetNumberOfBlocks(), 1)  # the box
         self.assertEqual(self.filter.GetOutputDataObject(PROBE).GetNumberOfCells(), 2)
         self.assertEqual(self.filter.GetOutputDataObject(RAY_PATHS).GetNumberOfCells(), 7)
+
+    def test_boundary_hits_are_those_of_the_paths(self):
+        """A path changes its number of bounces where it hits; each hit names two tissues and lies on a corner's way."""
+        paths, hits = (self.filter.GetOutputDataObject(port) for port in (RAY_PATHS, BOUNDARY_HITS))
+        self.assertGreater(hits.GetNumberOfPoints(), 14)
+        self.assertEqual(hits.GetNumberOfCells(), hits.GetNumberOfPoints())
+        lines = vtk_to_numpy(paths.GetCellData().GetArray("Line"))
+        self.assertEqual(set(values(hits, "Line")), set(lines))
+        normals = vtk_to_numpy(hits.GetPointData().GetNormals())
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-5)
+        names = [hits.GetPointData().GetAbstractArray(name) for name in ("FromTissue", "ToTissue")]
+        pairs = {tuple(array.GetValue(i) for array in names) for i in range(hits.GetNumberOfPoints())}
+        self.assertIn(("skin", "fat"), pairs | {pair[::-1] for pair in pairs})
+        self.assertTrue(all(before != behind for before, behind in pairs))
+        self.assertTrue((values(hits, "IncidenceDeg") <= 90).all())
+        self.assertTrue((values(hits, "PathMm") >= 0.99 * values(hits, "DepthMm")).all())
+        np.testing.assert_allclose(values(hits, "IntensityDb"), 20 * np.log10(values(hits, "Intensity")), atol=1e-3)
+        # Where each path's first corner with another bounce lies, up to the voxel that a hit lies beside its face.
+        corners = vtk_to_numpy(paths.GetPoints().GetData())
+        hit_points = vtk_to_numpy(hits.GetPoints().GetData())
+        first = hit_points[values(hits, "Bounce") == 0]
+        for cell in range(7):
+            ids = paths.GetCell(cell).GetPointIds()
+            bounces = [values(paths, "Bounce")[ids.GetId(i)] for i in range(ids.GetNumberOfIds())]
+            corner = corners[ids.GetId(bounces.index(1) - 1)] if 1 in bounces else corners[ids.GetId(len(bounces) - 1)]
+            self.assertLess(np.linalg.norm(first - corner, axis=1).min(), 4.0)
 
     def test_every_image_is_announced_as_it_is_made(self):
         for port in (IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, FLAT_IMAGE):

@@ -57,9 +57,15 @@ class TestUltrasound(unittest.TestCase):
     def test_picture_and_the_other_outputs(self):
         ultrasound = make_ultrasound(NumberofShownPaths=5)
         self.assertGreater(grey(ultrasound).max(), 200)
-        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(8)],
-                         4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData", "vtkImageData"])
+        self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(10)],
+                         4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData"]
+                         + 2 * ["vtkImageData"] + ["vtkPolyData"])
         self.assertEqual(Fetch(ultrasound, idx=6).GetNumberOfCells(), 5)
+        self.assertGreater(Fetch(ultrasound, idx=9).GetNumberOfCells(), 5)
+        self.assertEqual(Fetch(ultrasound, idx=8).GetNumberOfPoints(), 0)
+        ultrasound.ErrorMap = 1
+        self.assertEqual(Fetch(ultrasound, idx=8).GetPointData().GetArray("ErrorPercent").GetNumberOfTuples(),
+                         Fetch(ultrasound).GetNumberOfPoints())
 
     def test_a_new_one_stands_where_the_acoustic_window_is(self):
         ultrasound = make_ultrasound()

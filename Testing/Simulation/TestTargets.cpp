@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <random>
 
 namespace {
@@ -263,47 +262,6 @@ TEST(Roulette, LeavesTheMeanUnchangedAndShortensPaths)
   // the sum.
   ASSERT_GT(bins, 20);
   EXPECT_LT(chi / bins, 2.0);
-}
-
-TEST(RecordedPaths, AreChosenEvenlyAndFollowTheTracedOnes)
-{
-  const auto scene = slabScene(true);
-  std::vector<ScanLine> lines;
-  for (int i = 0; i < 10; ++i)
-  {
-    lines.push_back(makeLine({ 10.3 + 4.0 * i, 30.2, 0.0 }, { 0, 0, 1 }));
-  }
-  TraceSettings s = plainSettings();
-  s.deterministic = true;
-  auto paths = recordPaths(*scene, lines, s, 10);
-  ASSERT_EQ(paths.size(), 10u);
-  for (int i = 0; i < 10; ++i)
-  {
-    const RecordedPath& p = paths[std::size_t(i)];
-    EXPECT_EQ(p.line, i);
-    // Face, slab in, slab out, blood, end of the depth.
-    ASSERT_EQ(p.pointMm.size(), 5u);
-    const double z[5] = { 0.0, 40.0, 46.0, 80.0, 95.0 };
-    for (std::size_t k = 0; k < 5; ++k)
-    {
-      EXPECT_NEAR(p.pointMm[k].z, z[k], 1e-3);
-      EXPECT_NEAR(p.pointMm[k].x, 10.3 + 4.0 * i, 1e-3);
-      EXPECT_EQ(p.bounce[k], k == 0 ? 0 : int(k) - 1);
-    }
-    EXPECT_FLOAT_EQ(p.intensity[0], 1.0f);
-    EXPECT_NEAR(p.intensity[1], std::pow(10.0, -0.8 * 2.0 * 4.0 / 10.0), 1e-5);
-  }
-  s.deterministic = false;
-  std::map<int, int> perLine;
-  for (const RecordedPath& p : recordPaths(*scene, lines, s, 50))
-  {
-    ++perLine[p.line];
-  }
-  for (const auto& [line, count] : perLine)
-  {
-    EXPECT_EQ(count, 5) << line;
-  }
-  EXPECT_THROW(recordPaths(*scene, lines, s, 0), Error);
 }
 
 } // namespace

@@ -1,0 +1,79 @@
+#include "SonoImagePlacement.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+namespace sono {
+
+ImagePlacement::ImagePlacement(const PlaneImage& plane, const ProbePose& pose)
+  : size_(plane.width, plane.height, 1)
+  , pixel_(plane.pixelMm)
+  , origin_(pose.positionMm + plane.lateralMinMm * pose.lateral + plane.axialMinMm * pose.axial)
+{
+  setColumns(pose.lateral, pose.axial, glm::cross(pose.axial, pose.lateral));
+}
+
+ImagePlacement::ImagePlacement(const VolumeImage& volume, const ProbePose& pose)
+  : size_(volume.size)
+  , pixel_(volume.voxelMm)
+{
+  const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
+  origin_ = pose.positionMm + volume.minMm.x * pose.lateral + volume.minMm.y * elevation + volume.minMm.z * pose.axial;
+  setColumns(pose.lateral, elevation, pose.axial);
+}
+
+ImagePlacement ImagePlacement::flat(const ProbePose& pose) const
+{
+  const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
+  const Vec3d from = origin_ - pose.positionMm;
+  const bool isVolume = size_.z > 1;
+  const Vec3d second = isVolume ? elevation : pose.axial;
+  const Vec3d third = isVolume ? pose.axial : elevation;
+  ImagePlacement result = *this;
+  result.pixel_ = pixel_ / 10.0;
+  result.origin_ = Vec3d(glm::dot(from, pose.lateral), glm::dot(from, second), glm::dot(from, third)) / 10.0;
+  result.setColumns({ 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 });
+  return result;
+}
+
+void ImagePlacement::announce(int scalarType, vtkInformation* outInfo) const
+{
+  const int extent[6] = { 0, size_.x - 1, 0, size_.y - 1, 0, size_.z - 1 };
+  const double spacing[3] = { pixel_, pixel_, pixel_ };
+  outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  outInfo->Set(vtkDataObject::ORIGIN(), &origin_.x, 3);
+  outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
+  outInfo->Set(vtkDataObject::DIRECTION(), direction_.data(), 9);
+  vtkDataObject::SetPointDataActiveScalarInfo(outInfo, scalarType, 1);
+}
+
+void ImagePlacement::place(vtkImageData* image) const
+{
+  image->SetDimensions(size_.x, size_.y, size_.z);
+  image->SetOrigin(&origin_.x);
+  image->SetSpacing(pixel_, pixel_, pixel_);
+  image->SetDirectionMatrix(direction_.data());
+}
+
+void ImagePlacement::setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z)
+{
+  for (int row = 0; row < 3; ++row)
+  {
+    direction_[3 * row] = x[row];
+    direction_[3 * row + 1] = y[row];
+    direction_[3 * row + 2] = z[row];
+  }
+}
+
+ImagePlacement placementOf(const ProbeField& probe, double pixelMm)
+{
+  if (probe.geometry.kind == ScanKind::Matrix)
+  {
+    return { volumeImageLayout(probe.geometry, pixelMm), probe.pose };
+  }
+  return { planeImageLayout(probe.geometry, pixelMm), probe.pose };
+}
+
+} // namespace sono

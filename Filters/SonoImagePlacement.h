@@ -1,0 +1,41 @@
+#pragma once
+
+#include "Image/ScanConvert.h"
+#include "Image/ScanConvertVolume.h"
+#include "SonoProbeField.h"
+
+#include <array>
+
+class vtkImageData;
+class vtkInformation;
+
+namespace sono {
+
+/// Where a scan-converted image lies: in the world, LPS mm, or flat in the probe's own frame, in cm.
+class ImagePlacement
+{
+public:
+  /// In the world: x lateral, y axial, z = axial x lateral; a volume x lateral, y elevation, z axial.
+  ImagePlacement(const PlaneImage& plane, const ProbePose& pose);
+  ImagePlacement(const VolumeImage& volume, const ProbePose& pose);
+
+  /// The same in the frame of the pose, in cm: x lateral, y depth; of a volume y elevation, z depth.
+  ImagePlacement flat(const ProbePose& pose) const;
+
+  /// Size, place and scalar type (VTK_FLOAT, ...) of the image, before it is made.
+  void announce(int scalarType, vtkInformation* outInfo) const;
+  void place(vtkImageData* image) const;
+
+private:
+  void setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z);
+
+  Vec3i size_;
+  double pixel_;
+  Vec3d origin_;
+  std::array<double, 9> direction_{}; // row-major
+};
+
+/// Of the image of a probe with pixels or voxels of this edge in mm. Throws Error as planeImageLayout().
+ImagePlacement placementOf(const ProbeField& probe, double pixelMm);
+
+} // namespace sono
