@@ -247,7 +247,7 @@ void traceShared(const Space& space, const TraceSetup& setup, TracedLines& out, 
   out.segments = segments;
 }
 
-template void traceShared(const CellSpace<EmbreeTargets>&, const TraceSetup&, TracedLines&, const Progress&);
+template void traceShared(const CellSpace<EmbreeTargets, CellsOnDemand>&, const TraceSetup&, TracedLines&, const Progress&);
 template void traceShared(const NanoSpace<EmbreeTargets>&, const TraceSetup&, TracedLines&, const Progress&);
 
 } // namespace sono
