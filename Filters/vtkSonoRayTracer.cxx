@@ -42,7 +42,6 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
 
 constexpr int previewPaths = 60;
 constexpr double previewSamplesPerPeriod = 6.0;
-constexpr double previewTravelMm = 40.0;
 
 /// Of the RF of this probe.
 double rfSamplingMHz(double settingMHz, const sono::ProbeField& probe)
@@ -120,7 +119,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.model = static_cast<sono::InterfaceModel>(this->InterfaceModel);
   settings.sampling = static_cast<sono::Sampling>(this->Sampling);
   settings.pathsPerLine = probe.preview ? std::min(this->PathsPerLine, previewPaths) : this->PathsPerLine;
-  settings.travelMm = probe.preview ? previewTravelMm : 0.0;
+  settings.onTheWay = probe.preview;
   settings.maxCollisions = this->MaxCollisions;
   settings.coherenceMm = this->CoherenceMm;
   settings.deterministic = this->Deterministic;
@@ -178,6 +177,10 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
       vtkWarningMacro(<< warning);
     }
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
+    if (!probe.preview)
+    {
+      sono::prepareForTheWay(*scene, scanLines, settings);
+    }
     if (this->NumberOfShownPaths != 0)
     {
       const auto paths = sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets);

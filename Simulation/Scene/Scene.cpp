@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <map>
+#include <new>
 
 namespace sono {
 
 namespace {
+
+constexpr int edgeOnTheWay = 512; // voxels: their words take 270 MB
 
 std::uint64_t nextId()
 {
@@ -156,31 +160,65 @@ VoxelBox Scene::clipped(const VoxelBox& box) const
   return inside;
 }
 
-std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
+std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box, const Progress& progress) const
 {
   const VoxelBox wanted = clipped(box);
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!region_ || !(region_->box == wanted))
+  if (!region_ || !(region_->region().box == wanted))
   {
-    region_ = std::make_shared<TraceRegion>(
-      buildTraceRegion(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted, progress));
+    const bool isThere = onTheWay_.valid() && onTheWay_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
+                                               progress, isThere ? onTheWay_.get() : nullptr);
   }
   return region_;
 }
 
-std::shared_ptr<const TraceRegion> Scene::traceRegionAround(const VoxelBox& box, double marginMm,
-                                                            const Progress& progress) const
+std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
 {
-  const VoxelBox wanted = clipped(box);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!wideRegion_ || !wideRegion_->box.contains(wanted))
+  const SharedRegion region = regionOnDemand(box);
+  region->bakeAll(progress);
+  return { region, &region->region() };
+}
+
+std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box) const
+{
+  const auto region = futureOnTheWay(box);
+  if (!region.get())
   {
-    const Vec3i margin(glm::ceil(marginMm / placement().spacingMm));
-    wideRegion_ = std::make_shared<TraceRegion>(
-      buildTraceRegion(tissueVoxels_.data(), placement().size, placement().spacingMm,
-                       clipped({ wanted.first - margin, wanted.last + margin }), progress));
+    const std::lock_guard<std::mutex> lock(mutex_);
+    onTheWay_ = {}; // there may be more memory next time
+    throw std::bad_alloc();
   }
-  return wideRegion_;
+  return region.get();
+}
+
+void Scene::beginRegionOnTheWay(const VoxelBox& box) const
+{
+  futureOnTheWay(box);
+}
+
+std::shared_future<std::shared_ptr<const RegionOnDemand>> Scene::futureOnTheWay(const VoxelBox& box) const
+{
+  const VoxelBox inside = clipped(box);
+  const VoxelBox wanted = clipped(
+    { inside.first / edgeOnTheWay * edgeOnTheWay, (inside.last + (edgeOnTheWay - 1)) / edgeOnTheWay * edgeOnTheWay });
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!onTheWay_.valid() || !(boxOnTheWay_ == wanted))
+  {
+    boxOnTheWay_ = wanted;
+    onTheWay_ = std::async(std::launch::async, [this, wanted, known = std::weak_ptr(region_)]() -> SharedRegion {
+      try
+      {
+        return std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
+                                                Progress(), known);
+      }
+      catch (const std::bad_alloc&)
+      {
+        return nullptr;
+      }
+    });
+  }
+  return onTheWay_;
 }
 
 } // namespace sono

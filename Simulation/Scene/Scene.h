@@ -2,12 +2,13 @@
 
 #include "Labels/LabelVolume.h"
 #include "Progress.h"
+#include "Scene/RegionOnDemand.h"
 #include "Scene/SurfaceField.h"
 #include "Scene/TissueTable.h"
-#include "Scene/TraceRegion.h"
 #include "Scene/VoxelBox.h"
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -58,15 +59,22 @@ public:
   void adopt(LabelGrid labels, std::vector<SurfaceField> surfaces);
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
+  std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
+  /// The same with all of its records.
   std::shared_ptr<const TraceRegion> traceRegion(const VoxelBox& box, const Progress& progress = {}) const;
 
-  /// The same for a probe on its way: any box that holds this one, if it was made here before; else one that reaches
-  /// `marginMm` further on all sides. Kept beside the other.
-  std::shared_ptr<const TraceRegion> traceRegionAround(const VoxelBox& box, double marginMm,
-                                                       const Progress& progress = {}) const;
+  /// For a probe on its way: the cache of a box around this one whose faces lie at multiples of 512 voxels or at the
+  /// volume's end. A volume up to that size is one box, so that all poses share it; of a longer one it takes what is
+  /// near. Kept beside the other.
+  std::shared_ptr<const RegionOnDemand> regionOnTheWay(const VoxelBox& box) const;
+  /// Begins to make that, in the background, where it is not there yet.
+  void beginRegionOnTheWay(const VoxelBox& box) const;
 
 private:
+  using SharedRegion = std::shared_ptr<const RegionOnDemand>;
+
   VoxelBox clipped(const VoxelBox& box) const;
+  std::shared_future<SharedRegion> futureOnTheWay(const VoxelBox& box) const;
   void buildSurfaceAt(std::size_t label, const Progress& progress) const;
 
   std::uint64_t id_;
@@ -80,8 +88,9 @@ private:
   mutable std::unique_ptr<LabelGrid> labelGrid_;
   mutable std::vector<VoxelBox> boxes_;                         // parallel to volume_.labels, empty until needed
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
-  mutable std::shared_ptr<const TraceRegion> region_;
-  mutable std::shared_ptr<const TraceRegion> wideRegion_;
+  mutable SharedRegion region_;
+  mutable VoxelBox boxOnTheWay_;
+  mutable std::shared_future<SharedRegion> onTheWay_; // the last, since its making is waited for and needs the rest
 };
 
 } // namespace sono

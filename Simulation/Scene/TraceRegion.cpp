@@ -1,13 +1,11 @@
 #include "Scene/TraceRegion.h"
 
 #include "ParallelFor.h"
-#include "Scene/RecordBaker.h"
+#include "Scene/RegionOnDemand.h"
 #include "Simd.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
-#include <array>
+#include <utility>
 
 namespace sono {
 
@@ -98,10 +96,9 @@ void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n)
 class RegionBuilder
 {
 public:
-  RegionBuilder(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, TraceRegion& region)
+  RegionBuilder(const std::uint8_t* tissues, const Vec3i& size, TraceRegion& region)
     : tissues_(tissues)
     , size_(size)
-    , spacingMm_(spacingMm)
     , region_(region)
     , n_(region.box.size())
     , boundary_(std::size_t(n_.x) * n_.y * n_.z)
@@ -176,42 +173,7 @@ public:
     region_.record.assign(total, 0u);
   }
 
-  void bakeRecords(const Progress& progress)
-  {
-    const TissueCells layout = region_.view();
-    tbb::enumerable_thread_specific<Worker> workers([&] {
-      return Worker{ RecordBaker(tissues_, size_, spacingMm_), {}, {} };
-    });
-    const Vec3i blocks = (n_ + (recordBlock - 1)) / recordBlock;
-    parallelFor(blocks.y * blocks.z, progress, [&](int row) {
-      Worker& worker = workers.local();
-      for (int x = 0; x < blocks.x; ++x)
-      {
-        const Vec3i corner = Vec3i(x, row % blocks.y, row / blocks.y) * recordBlock;
-        collect(corner, worker);
-        for (const std::uint8_t tissue : worker.tissues)
-        {
-          worker.baker.bake(tissue, region_.box.first + corner, worker.voxels[tissue],
-                            [&](const Vec3i& v, std::uint32_t bits) {
-                              const std::size_t offset = layout.offset(corner + v);
-                              const std::uint32_t rank = (region_.cell[offset] >> 8) & 31u;
-                              region_.record[region_.firstRecord[offset >> 5] + rank] = bits;
-                            });
-          worker.voxels[tissue].clear();
-        }
-        worker.tissues.clear();
-      }
-    });
-  }
-
 private:
-  struct Worker
-  {
-    RecordBaker baker;
-    std::vector<std::uint8_t> tissues; // that have boundary voxels in the block
-    std::array<std::vector<Vec3i>, 256> voxels;
-  };
-
   /// Row of the volume at (j, k) of the box; beyond the volume its border goes on.
   const std::uint8_t* source(int j, int k) const
   {
@@ -224,34 +186,8 @@ private:
     return std::size_t(i) + std::size_t(n_.x) * (std::size_t(j) + std::size_t(n_.y) * k);
   }
 
-  /// The boundary voxels of a block by tissue, relative to its corner.
-  void collect(const Vec3i& corner, Worker& worker) const
-  {
-    const Vec3i end = glm::min(corner + recordBlock, n_);
-    for (int k = corner.z; k < end.z; ++k)
-    {
-      for (int j = corner.y; j < end.y; ++j)
-      {
-        const std::uint8_t* row = source(j, k) + region_.box.first.x;
-        for (int i = corner.x; i < end.x; ++i)
-        {
-          if (boundary_[linear(i, j, k)])
-          {
-            std::vector<Vec3i>& voxels = worker.voxels[row[i]];
-            if (voxels.empty())
-            {
-              worker.tissues.push_back(row[i]);
-            }
-            voxels.push_back(Vec3i(i, j, k) - corner);
-          }
-        }
-      }
-    }
-  }
-
   const std::uint8_t* tissues_;
   Vec3i size_;
-  Vec3d spacingMm_;
   TraceRegion& region_;
   Vec3i n_;
   std::vector<std::uint8_t> boundary_; // 1 where a voxel touches another tissue
@@ -259,19 +195,29 @@ private:
 
 } // namespace
 
-TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
-                             const VoxelBox& box, const Progress& progress)
+TraceRegion layOutRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const VoxelBox& box,
+                         const Progress& progress)
 {
   TraceRegion region;
   region.box = box;
   region.spacing = Vec3f(spacingMm);
-  RegionBuilder builder(tissues, size, spacingMm, region);
+  RegionBuilder builder(tissues, size, region);
   builder.markBoundaries();
-  report(progress, 0.1);
+  report(progress, 0.4);
   builder.writeWords(builder.distances());
-  report(progress, 0.25);
-  builder.bakeRecords(progress ? Progress([&](double f) { return progress(0.25 + 0.75 * f); }) : Progress{});
+  report(progress, 1.0);
   return region;
+}
+
+TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
+                             const VoxelBox& box, const Progress& progress)
+{
+  const auto part = [&](double from, double share) {
+    return progress ? Progress([&progress, from, share](double f) { return progress(from + share * f); }) : Progress{};
+  };
+  RegionOnDemand region(tissues, size, spacingMm, box, part(0.0, 0.25));
+  region.bakeAll(part(0.25, 0.75));
+  return std::move(region).take();
 }
 
 } // namespace sono

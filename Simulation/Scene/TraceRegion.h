@@ -12,8 +12,9 @@ namespace sono {
 
 /// The tracer's cache of a box of the scene (what a probe's fan can reach): see TissueCells. Boundary records come from
 /// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic in mm
-/// (a voxel being the cube root of its volume), at voxels that touch another tissue with a face. In voxels that are long
-/// along one axis the normal's Gaussian is 1.35 of that length, up to three voxels: slices' terraces are wide there.
+/// (a voxel being the cube root of its volume), at voxels that touch another tissue with a face. In voxels that are
+/// long along one axis the normal's Gaussian is 1.35 of that length, up to three voxels: slices' terraces are wide
+/// there.
 struct TraceRegion
 {
   VoxelBox box;
@@ -41,7 +42,13 @@ struct TraceRegion
   }
 };
 
-/// `tissues` are the tissue indices of the whole volume of `size` voxels, i fastest; `box` lies inside it.
+/// The region's words, and places for its records, which are 0 until they are baked (see RegionOnDemand). Arguments as
+/// below.
+TraceRegion layOutRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const VoxelBox& box,
+                         const Progress& progress = {});
+
+/// The region with all of its records. `tissues` are the tissue indices of the whole volume of `size` voxels, i
+/// fastest; `box` lies inside it.
 TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
                              const VoxelBox& box, const Progress& progress = {});
 

@@ -94,7 +94,7 @@ std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<Scan
   {
     throw Error("the number of recorded paths is " + std::to_string(count) + ": it must be 1 to 100,000");
   }
-  const TraceSetup setup(scene, lines, settings, targets, {});
+  const TraceSetup setup(scene, lines, settings, targets, {}, Records::OnDemand);
   const auto space = setup.space();
   const int batches = std::min(batchCount, setup.paths);
   const std::int64_t all = std::int64_t(setup.lines.size()) * setup.paths;

@@ -94,7 +94,8 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
                   const Progress& progress, const std::vector<TargetSurface>& targets)
 {
   const Progress preparing = progress ? Progress([&](double f) { return progress(0.3 * f); }) : Progress{};
-  const TraceSetup setup(scene, lines, settings, targets, preparing);
+  const TraceSetup setup(scene, lines, settings, targets, preparing,
+                         runsOnDevice(settings) ? Records::All : Records::OnDemand);
   const Progress tracing = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
   TracedLines out;
   out.lineCount = int(lines.size());
@@ -146,6 +147,11 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     out.segments += tally.segments();
   }
   return out;
+}
+
+void prepareForTheWay(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
+{
+  scene.beginRegionOnTheWay(fanBox(scene, lines, settings.depthMm));
 }
 
 } // namespace sono

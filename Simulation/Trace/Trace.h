@@ -51,8 +51,8 @@ struct TraceSettings
   double echoSampleMm = 0.0154;   ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   double rouletteDb = -100.0;     ///< paths fainter than this (20 log10 of the intensity) play Russian roulette, <= 0
   std::uint64_t seed = 1;
-  double travelMm = 0.0; ///< 0 to 1000; for a probe on its way: what is prepared of the scene reaches so much further
-                         ///< that the next poses need nothing new. The last digits then depend on the way there
+  bool onTheWay = false; ///< for a probe that moves: what is prepared of the scene serves the next poses as well. The
+                         ///< image is the same but for rounding, and does not depend on the way there
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
@@ -85,5 +85,8 @@ constexpr double assumedSoundSpeedMmPerUs = 1.54;
 /// Throws Error when no line meets the volume or a target is not closed, Aborted when asked to stop.
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
+
+/// Begins to prepare, in the background, what trace() wants of the scene for a probe that goes on its way from here.
+void prepareForTheWay(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
 
 } // namespace sono

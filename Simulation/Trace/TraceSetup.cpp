@@ -12,29 +12,6 @@ namespace sono {
 
 namespace {
 
-/// What the fan can reach: the half balls of radius `depthMm` in front of each line's origin, in voxels.
-VoxelBox reach(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm)
-{
-  const Mat3d toLocal = scene.rotationToLocal();
-  Vec3d low(1e30);
-  Vec3d high(-1e30);
-  for (const ScanLine& line : lines)
-  {
-    const Vec3d origin = scene.localFromWorld(line.originMm);
-    const Vec3d axis = toLocal * line.axis;
-    for (int a = 0; a < 3; ++a)
-    {
-      const double across = std::sqrt(std::max(0.0, 1.0 - axis[a] * axis[a]));
-      high[a] = std::max(high[a], origin[a] + depthMm * (axis[a] >= 0.0 ? 1.0 : across));
-      low[a] = std::min(low[a], origin[a] - depthMm * (axis[a] <= 0.0 ? 1.0 : across));
-    }
-  }
-  const Vec3d spacing = scene.placement().spacingMm;
-  const Vec3d size(scene.placement().size);
-  return { Vec3i(glm::clamp(glm::floor(low / spacing), Vec3d(0.0), size)),
-           Vec3i(glm::clamp(glm::ceil(high / spacing) + 1.0, Vec3d(0.0), size)) };
-}
-
 TraceMedium makeMedium(const Tissue& tissue, double frequencyMHz)
 {
   TraceMedium m;
@@ -67,6 +44,29 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
 
 } // namespace
 
+VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm)
+{
+  const Mat3d toLocal = scene.rotationToLocal();
+  // The half balls of radius depthMm in front of each line's origin.
+  Vec3d low(1e30);
+  Vec3d high(-1e30);
+  for (const ScanLine& line : lines)
+  {
+    const Vec3d origin = scene.localFromWorld(line.originMm);
+    const Vec3d axis = toLocal * line.axis;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double across = std::sqrt(std::max(0.0, 1.0 - axis[a] * axis[a]));
+      high[a] = std::max(high[a], origin[a] + depthMm * (axis[a] >= 0.0 ? 1.0 : across));
+      low[a] = std::min(low[a], origin[a] - depthMm * (axis[a] <= 0.0 ? 1.0 : across));
+    }
+  }
+  const Vec3d spacing = scene.placement().spacingMm;
+  const Vec3d size(scene.placement().size);
+  return { Vec3i(glm::clamp(glm::floor(low / spacing), Vec3d(0.0), size)),
+           Vec3i(glm::clamp(glm::ceil(high / spacing) + 1.0, Vec3d(0.0), size)) };
+}
+
 void TraceSettings::validate() const
 {
   requireInRange(pathsPerLine >= 1 && pathsPerLine <= 10000000, "paths per line", pathsPerLine, "1 to 10,000,000");
@@ -84,7 +84,6 @@ void TraceSettings::validate() const
   requireInRange(depthMm / radialBinMm <= 1e5, "radial bin (mm)", radialBinMm, "at least 1/100,000 of the depth");
   requireInRange(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
                  "more than 0 and at least a millionth of the depth");
-  requireInRange(travelMm >= 0.0 && travelMm <= 1000.0, "travel (mm)", travelMm, "0 to 1000");
   requireInRange(rouletteDb <= 0.0 && rouletteDb >= -1000.0, "roulette threshold (dB)", rouletteDb, "-1000 to 0");
 }
 
@@ -99,16 +98,20 @@ int TraceSettings::echoCount() const
 }
 
 TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,
-                       const std::vector<TargetSurface>& targetSurfaces, const Progress& progress)
+                       const std::vector<TargetSurface>& targetSurfaces, const Progress& progress, Records records)
 {
   settings.validate();
   if (worldLines.empty())
   {
     throw Error("the probe has no scan lines: set the number of lines to 1 or more");
   }
-  const VoxelBox box = reach(scene, worldLines, settings.depthMm);
-  region = settings.travelMm > 0.0 ? scene.traceRegionAround(box, settings.travelMm, progress)
-                                   : scene.traceRegion(box, progress);
+  const VoxelBox box = fanBox(scene, worldLines, settings.depthMm);
+  cells = settings.onTheWay ? scene.regionOnTheWay(box) : scene.regionOnDemand(box);
+  region = { cells, &cells->region() };
+  if (records == Records::All || settings.march == March::NanoVDB)
+  {
+    cells->bakeAll(progress);
+  }
   const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
   cornerWorldMm = scene.worldFromLocal(corner);
   const Mat3d toLocal = scene.rotationToLocal();
@@ -134,10 +137,10 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   {
     lines.push_back({ Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) });
   }
-  const CellSpace<NoTargets> cells{ region->view(), {} };
+  const CellSpace<NoTargets> empty{ region->view(), {} };
   PathState path;
   if (std::none_of(lines.begin(), lines.end(),
-                   [&](const TraceLine& line) { return enterSpace(cells, line, view.depthMm, path); }))
+                   [&](const TraceLine& line) { return enterSpace(empty, line, view.depthMm, path); }))
   {
     throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
   }

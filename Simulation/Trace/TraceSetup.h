@@ -13,17 +13,31 @@ namespace sono {
 template<class Targets>
 struct NanoSpace;
 
+/// Which of the region's records are baked beforehand.
+enum class Records
+{
+  All,     ///< for whoever takes the region elsewhere
+  OnDemand ///< none: space() bakes those that paths meet
+};
+
+/// What the lines' fan can reach of the scene, in voxels.
+VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm);
+
 /// Everything that tracing needs, made once from the scene and the settings and held while paths run.
 struct TraceSetup
 {
   TraceSetup(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-             const std::vector<TargetSurface>& targets, const Progress& progress);
+             const std::vector<TargetSurface>& targets, const Progress& progress, Records records = Records::All);
 
-  CellSpace<EmbreeTargets> space() const { return { region->view(), { targets.get(), !targets->empty() } }; }
+  CellSpace<EmbreeTargets, CellsOnDemand> space() const
+  {
+    return { cells->view(), { targets.get(), !targets->empty() } };
+  }
   NanoSpace<EmbreeTargets> nanoSpace() const;
   Vec3d worldFromRegion(const Vec3f& p) const { return toWorld * Vec3d(p) + cornerWorldMm; }
 
-  std::shared_ptr<const TraceRegion> region;
+  std::shared_ptr<const RegionOnDemand> cells;
+  std::shared_ptr<const TraceRegion> region; ///< of the cells
   std::unique_ptr<TargetScene> targets;
   const LabelGrid* labels = nullptr; ///< for the NanoVDB march only
   const std::uint8_t* tissueOfLabel = nullptr;

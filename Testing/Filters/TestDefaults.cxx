@@ -36,7 +36,7 @@ TEST(FilterDefaults, RayTracerEqualsTraceSettings)
 {
   const auto [device, march, model, sampling, pathsPerLine, maxCollisions, coherenceMm, deterministic, lobeMeanRad,
               lobeSigmaRad, lobeMinRad, lobeMaxRad, frequencyMHz, depthMm, radialBinMm, echoSampleMm, rouletteDb,
-              seed, travelMm] = sono::TraceSettings();
+              seed, onTheWay] = sono::TraceSettings();
   vtkNew<vtkSonoRayTracer> tracer;
   EXPECT_EQ(tracer->GetDevice(), static_cast<int>(device));
   EXPECT_EQ(tracer->GetInterfaceModel(), static_cast<int>(model));
@@ -57,7 +57,7 @@ TEST(FilterDefaults, RayTracerEqualsTraceSettings)
   // The probe sets these two.
   EXPECT_EQ(vtkNew<vtkSonoProbeSource>()->GetCentreFrequencyMHz(), frequencyMHz);
   EXPECT_EQ(vtkNew<vtkSonoProbeSource>()->GetDepthMm(), depthMm);
-  EXPECT_EQ(travelMm, 0.0); // the probe says when it is on its way
+  EXPECT_FALSE(onTheWay); // the probe says when it is on its way
   // The filter offers no choice of the march: both give the same image, and this is the fast one.
   EXPECT_EQ(march, sono::March::RegionCache);
 }

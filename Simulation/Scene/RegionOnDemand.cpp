@@ -1,0 +1,161 @@
+#include "Scene/RegionOnDemand.h"
+
+#include "ParallelFor.h"
+#include "Scene/RecordBaker.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <utility>
+#include <vector>
+
+namespace sono {
+
+namespace {
+
+/// What a thread needs for a block.
+struct Worker
+{
+  RecordBaker baker;
+  std::vector<std::uint8_t> tissues; // that have boundary voxels in the block
+  std::array<std::vector<Vec3i>, 256> voxels;
+};
+
+std::size_t recordIndex(const TissueCells& cells, const Vec3i& voxel)
+{
+  const std::size_t offset = cells.offset(voxel);
+  return cells.firstRecord[offset >> 5] + ((cells.cell[offset] >> 8) & 31u);
+}
+
+} // namespace
+
+struct RegionOnDemand::Baking
+{
+  Baking(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const Vec3i& boxSize)
+    : workers([=] {
+      return Worker{ RecordBaker(tissues, size, spacingMm), {}, {} };
+    })
+    , blocks((boxSize + (recordBlock - 1)) / recordBlock)
+    , baked(std::size_t(blocks.x) * blocks.y * blocks.z)
+  {
+  }
+
+  std::atomic<bool>& flag(const Vec3i& block)
+  {
+    return baked[std::size_t(block.x) +
+                 std::size_t(blocks.x) * (std::size_t(block.y) + std::size_t(blocks.y) * block.z)];
+  }
+
+  tbb::enumerable_thread_specific<Worker> workers;
+  Vec3i blocks;
+  std::vector<std::atomic<bool>> baked;
+};
+
+RegionOnDemand::RegionOnDemand(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
+                               const VoxelBox& box, const Progress& progress, std::weak_ptr<const RegionOnDemand> other)
+  : region_(layOutRegion(tissues, size, spacingMm, box, progress))
+  , baking_(std::make_unique<Baking>(tissues, size, spacingMm, box.size()))
+  , other_(std::move(other))
+{
+}
+
+RegionOnDemand::~RegionOnDemand() = default;
+
+void RegionOnDemand::bakeBlock(const Vec3i& block) const
+{
+  const TissueCells cells = region_.view();
+  Worker& worker = baking_->workers.local();
+  const Vec3i corner = block * recordBlock;
+  const Vec3i end = glm::min(corner + recordBlock, cells.size);
+  for (int k = corner.z; k < end.z; ++k)
+  {
+    for (int j = corner.y; j < end.y; ++j)
+    {
+      for (int i = corner.x; i < end.x; ++i)
+      {
+        const std::uint32_t word = cells.wordAt(i, j, k);
+        if ((word & 0x8000u) != 0u)
+        {
+          std::vector<Vec3i>& voxels = worker.voxels[word & 255u];
+          if (voxels.empty())
+          {
+            worker.tissues.push_back(std::uint8_t(word & 255u));
+          }
+          voxels.push_back(Vec3i(i, j, k) - corner);
+        }
+      }
+    }
+  }
+  // Two threads that bake the same block at a time write the same.
+  const auto store = [&](const Vec3i& v, std::uint32_t bits) {
+    __atomic_store_n(&region_.record[recordIndex(cells, corner + v)], bits, __ATOMIC_RELAXED);
+  };
+  const auto other = other_.lock();
+  for (const std::uint8_t tissue : worker.tissues)
+  {
+    std::vector<Vec3i>& voxels = worker.voxels[tissue];
+    const bool known = other && std::all_of(voxels.begin(), voxels.end(), [&](const Vec3i& v) {
+                         const std::uint32_t bits = other->knownAt(region_.box.first + corner + v);
+                         if (bits != 0u)
+                         {
+                           store(v, bits);
+                         }
+                         return bits != 0u;
+                       });
+    if (!known)
+    {
+      worker.baker.bake(tissue, region_.box.first + corner, voxels, store);
+    }
+    voxels.clear();
+  }
+  worker.tissues.clear();
+  baking_->flag(block).store(true, std::memory_order_release);
+}
+
+std::uint32_t RegionOnDemand::bakeAt(const Vec3i& voxel) const
+{
+  const Vec3i block = voxel / recordBlock;
+  if (!baking_->flag(block).load(std::memory_order_acquire))
+  {
+    bakeBlock(block);
+  }
+  const TissueCells cells = region_.view();
+  return __atomic_load_n(cells.record + recordIndex(cells, voxel), __ATOMIC_RELAXED);
+}
+
+/// Of a voxel that has a record; 0 where it is not in the box or not baked.
+std::uint32_t RegionOnDemand::knownAt(const Vec3i& volumeVoxel) const
+{
+  const TissueCells cells = region_.view();
+  const Vec3i voxel = volumeVoxel - region_.box.first;
+  return cells.contains(voxel) ? __atomic_load_n(cells.record + recordIndex(cells, voxel), __ATOMIC_RELAXED) : 0u;
+}
+
+void RegionOnDemand::bakeAll(const Progress& progress) const
+{
+  const Vec3i blocks = baking_->blocks;
+  parallelFor(blocks.y * blocks.z, progress, [&](int row) {
+    for (int x = 0; x < blocks.x; ++x)
+    {
+      const Vec3i block(x, row % blocks.y, row / blocks.y);
+      if (!baking_->flag(block).load(std::memory_order_acquire))
+      {
+        bakeBlock(block);
+      }
+    }
+  });
+}
+
+int RegionOnDemand::bakedBlocks() const
+{
+  int count = 0;
+  for (const std::atomic<bool>& baked : baking_->baked)
+  {
+    count += baked.load(std::memory_order_relaxed) ? 1 : 0;
+  }
+  return count;
+}
+
+} // namespace sono

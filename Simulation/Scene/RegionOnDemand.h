@@ -1,0 +1,73 @@
+#pragma once
+
+#include "Kernel/TissueCells.h"
+#include "Progress.h"
+#include "Scene/TraceRegion.h"
+#include "Scene/VoxelBox.h"
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace sono {
+
+class RegionOnDemand;
+
+/// A region's cells whose records are baked when they are first asked for.
+struct CellsOnDemand : TissueCells
+{
+  const RegionOnDemand* region = nullptr;
+
+  std::uint32_t recordOf(int x, int y, int z, std::uint32_t word) const;
+};
+
+/// A region of which only those records are baked that somebody asks for: laying out the words takes a tenth of the
+/// time, and the paths of a fan meet a small part of the records. What is asked for is what buildTraceRegion gives, to
+/// the bit, whoever asks first; several threads may ask.
+class RegionOnDemand
+{
+public:
+  /// As buildTraceRegion. The voxels must outlive this. What `other`, a region of the same voxels, has baked is copied
+  /// for as long as somebody keeps that.
+  RegionOnDemand(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const VoxelBox& box,
+                 const Progress& progress = {}, std::weak_ptr<const RegionOnDemand> other = {});
+  ~RegionOnDemand();
+  RegionOnDemand(const RegionOnDemand&) = delete;
+  RegionOnDemand& operator=(const RegionOnDemand&) = delete;
+
+  /// Records that were not baked yet are 0.
+  const TraceRegion& region() const { return region_; }
+  CellsOnDemand view() const { return { region_.view(), this }; }
+
+  void bakeAll(const Progress& progress = {}) const;
+  /// Bakes the block around a voxel of the box that has a record, and gives that record.
+  [[gnu::cold]] std::uint32_t bakeAt(const Vec3i& voxel) const;
+  /// Blocks that were baked so far.
+  int bakedBlocks() const;
+
+  /// The region itself, of which nobody asks any more.
+  TraceRegion take() && { return std::move(region_); }
+
+private:
+  struct Baking;
+  void bakeBlock(const Vec3i& block) const;
+  std::uint32_t knownAt(const Vec3i& volumeVoxel) const;
+
+  mutable TraceRegion region_; ///< of which the records change
+  std::unique_ptr<Baking> baking_;
+  std::weak_ptr<const RegionOnDemand> other_;
+};
+
+inline std::uint32_t CellsOnDemand::recordOf(int x, int y, int z, std::uint32_t word) const
+{
+  if ((word & 0x8000u) == 0u)
+  {
+    return 0u;
+  }
+  // A record says all in one word, so that it is there or not, whatever another thread does meanwhile.
+  const std::uint32_t* at = record + firstRecord[offset(x, y, z) >> 5] + ((word >> 8) & 31u);
+  const std::uint32_t bits = __atomic_load_n(at, __ATOMIC_RELAXED);
+  return __builtin_expect(bits != 0u, 1) ? bits : region->bakeAt(Vec3i(x, y, z));
+}
+
+} // namespace sono
