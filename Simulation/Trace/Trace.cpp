@@ -26,14 +26,15 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
-  tally.start(line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount));
-  tally.clearBins();
+  std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
+  tally.start(line, view.coherenceMm);
   tally.setEchoWeight(1.0f);
   const LineStart start = startLine(view, space, line, tally);
-  const std::vector<float> shared = tally.bins();
+  const std::vector<float> shared = tally.takeBins(1);
   std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
   if (!start.meets)
   {
+    tally.takeEchoes(echoes);
     return;
   }
 
@@ -48,20 +49,19 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     {
       scrambles[b] = makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
     }
-    tally.clearBins();
     for (int path = first; path < last; ++path)
     {
+      if ((path - first) % LineTally::pathsPerFold == 0)
+      {
+        tally.fold();
+      }
       tracePath(view, space, line, start,
                 PathKey{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() },
                 tally);
     }
-    std::vector<float> mean = tally.bins();
-    for (float& v : mean)
-    {
-      v /= float(last - first);
-    }
-    means.push_back(std::move(mean));
+    means.push_back(tally.takeBins(last - first));
   }
+  tally.takeEchoes(echoes);
   addBatchMeans(means, index, out);
 }
 

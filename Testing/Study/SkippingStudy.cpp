@@ -58,13 +58,12 @@ double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, con
   const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
   const int bins = int(tracing.depthMm / tracing.radialBinMm);
   const int echoes = int(tracing.depthMm / tracing.echoSampleMm) + 1;
-  std::vector<std::complex<float>> echo(std::size_t(echoes), 0.0f);
   LineTally tally(bins, tracing.radialBinMm, echoes, tracing.echoSampleMm,
                   tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
   const std::clock_t begin = std::clock();
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
-    tally.start(setup.lines[i], setup.view.coherenceMm, echo.data());
+    tally.start(setup.lines[i], setup.view.coherenceMm);
     LineStart start = startLine(setup.view, setup.space(), setup.lines[i], tally);
     for (int path = 0; path < setup.paths && start.meets; ++path)
     {
