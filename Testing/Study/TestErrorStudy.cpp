@@ -1,7 +1,9 @@
 #include "BenchImage.h"
 #include "EchoSkips.h"
 #include "ErrorCurves.h"
+#include "HardScenes.h"
 #include "PhantomImaging.h"
+#include "Progress.h"
 #include "RegionSwitches.h"
 #include "RelativeRms.h"
 #include "SamplingName.h"
@@ -110,6 +112,34 @@ TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
       EXPECT_GT(d.of.rf, 0.0) << name;
     }
   }
+}
+
+TEST(StabilityStudy, EveryHazardEndsInAnImageOrASentence)
+{
+  int refused = 0;
+  for (const HardScene& hard : hardScenes())
+  {
+    if (hard.hazard == "none")
+    {
+      continue;
+    }
+    try
+    {
+      const BenchScene bench = hard.make();
+      TraceSettings tracing = bench.tracing;
+      tracing.pathsPerLine = std::min(tracing.pathsPerLine, 20);
+      const Difference d = singleAgainstDouble(bench, tracing);
+      EXPECT_TRUE(d.finite) << hard.name;
+      // What a rounded number decides otherwise at a hit takes that path elsewhere, one of twenty.
+      EXPECT_LT(d.of.intensity, 0.05) << hard.hazard << ", " << hard.name;
+    }
+    catch (const Error& error)
+    {
+      ++refused;
+      EXPECT_GT(std::string(error.what()).size(), 20u) << hard.name;
+    }
+  }
+  EXPECT_EQ(refused, 5); // no impedance, no speed, NaN, no voxels, no depth
 }
 
 TEST(RegionSwitches, WithoutSkipsTheImageIsTheSame)
