@@ -30,23 +30,51 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int fi
 
 LineTally::LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm)
   : bins_(std::size_t(binCount), 0.0f)
+  , binSums_(std::size_t(binCount), 0.0)
+  , echoes_(std::size_t(echoCount))
+  , firstEcho_(echoCount)
   , binMm_(float(binMm))
-  , echoCount_(echoCount)
   , echoSampleMm_(float(echoSampleMm))
   , radPerMm_(float(4.0 * 3.14159265358979323846 * wavesPerMm))
 {
 }
 
-void LineTally::start(const TraceLine& line, float coherenceMm, std::complex<float>* echo)
+void LineTally::start(const TraceLine& line, float coherenceMm)
 {
   line_ = line;
   coherenceMm_ = coherenceMm;
-  echo_ = echo;
 }
 
-void LineTally::clearBins()
+void LineTally::fold()
 {
-  std::fill(bins_.begin(), bins_.end(), 0.0f);
+  for (std::size_t b = 0; b < bins_.size(); ++b)
+  {
+    binSums_[b] += double(bins_[b]);
+    bins_[b] = 0.0f;
+  }
+}
+
+std::vector<float> LineTally::takeBins(int paths)
+{
+  fold();
+  std::vector<float> means(bins_.size());
+  for (std::size_t b = 0; b < means.size(); ++b)
+  {
+    means[b] = float(binSums_[b] / paths);
+    binSums_[b] = 0.0;
+  }
+  return means;
+}
+
+void LineTally::takeEchoes(std::complex<float>* samples)
+{
+  for (int s = firstEcho_; s <= lastEcho_; ++s)
+  {
+    samples[s] += std::complex<float>(echoes_[std::size_t(s)]);
+    echoes_[std::size_t(s)] = 0.0;
+  }
+  firstEcho_ = int(echoes_.size());
+  lastEcho_ = -1;
 }
 
 SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
@@ -78,11 +106,13 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
 void LineTally::echo(const Vec3f& point, float amplitude)
 {
   const EchoSplit split =
-    splitEcho(line_, point, amplitude * echoWeight_, coherenceMm_, echoSampleMm_, echoCount_, radPerMm_);
+    splitEcho(line_, point, amplitude * echoWeight_, coherenceMm_, echoSampleMm_, int(echoes_.size()), radPerMm_);
   if (split.sample >= 0)
   {
-    echo_[split.sample] += std::complex<float>(split.amplitude[0], split.amplitude[1]);
-    echo_[split.sample + 1] += std::complex<float>(split.amplitude[2], split.amplitude[3]);
+    echoes_[std::size_t(split.sample)] += std::complex<double>(split.amplitude[0], split.amplitude[1]);
+    echoes_[std::size_t(split.sample) + 1] += std::complex<double>(split.amplitude[2], split.amplitude[3]);
+    firstEcho_ = std::min(firstEcho_, split.sample);
+    lastEcho_ = std::max(lastEcho_, split.sample + 1);
   }
 }
 

@@ -14,9 +14,8 @@ class LineTally
 public:
   LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm);
 
-  void start(const TraceLine& line, float coherenceMm, std::complex<float>* echo);
-  void clearBins();
-  const std::vector<float>& bins() const { return bins_; }
+  /// What was left so far must have been taken.
+  void start(const TraceLine& line, float coherenceMm);
 
   /// Deposits of echoes are multiplied by this (1 for what all paths share, 1 / N for each path).
   void setEchoWeight(float weight) { echoWeight_ = weight; }
@@ -25,15 +24,27 @@ public:
   void echo(const Vec3f& point, float amplitude);
   std::uint64_t segments() const { return segments_; }
 
+  /// To be called after `pathsPerFold` paths: a long sum of floats loses its last digits, all the more where every path
+  /// adds the same, and always the same way.
+  void fold();
+  static constexpr int pathsPerFold = 512;
+
+  /// What was left in each bin, of each of `paths` paths, and forgets it.
+  std::vector<float> takeBins(int paths);
+  /// Adds the boundary echoes to a line's samples and forgets them.
+  void takeEchoes(std::complex<float>* samples);
+
 private:
-  std::vector<float> bins_;
+  std::vector<float> bins_;     ///< of the paths since the last fold
+  std::vector<double> binSums_; ///< of those before
+  std::vector<std::complex<double>> echoes_;
+  int firstEcho_; ///< of the samples that are not zero
+  int lastEcho_ = -1;
   float binMm_;
-  int echoCount_;
   float echoSampleMm_;
   float radPerMm_; ///< of the round trip: 2 k
   TraceLine line_{};
   float coherenceMm_ = 0.0f;
-  std::complex<float>* echo_ = nullptr;
   float echoWeight_ = 1.0f;
   std::uint64_t segments_ = 0;
 };

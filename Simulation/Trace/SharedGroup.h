@@ -152,6 +152,10 @@ public:
     {
       for (int i = 0; i < paths; ++i)
       {
+        if (key.path % LineTally::pathsPerFold == 0)
+        {
+          fold();
+        }
         key.path = std::uint32_t(owner) * std::uint32_t(paths) + std::uint32_t(i);
         path_.owner = owner;
         segments += follow(key);
@@ -175,6 +179,17 @@ public:
   }
 
 private:
+  void fold()
+  {
+    for (const GroupLine& line : lines_)
+    {
+      for (LineTally* tally : line.tally)
+      {
+        tally->fold();
+      }
+    }
+  }
+
   /// The owner's path, as tracePath follows it.
   std::uint64_t follow(const PathKey& key)
   {

@@ -110,8 +110,7 @@ inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, cons
     for (int branch = 0; branch < FirstBranches; ++branch)
     {
       LineTally& tally = worker.tallies[std::size_t((i - group.first) * FirstBranches + branch)];
-      tally.start(*line.line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(i) * std::size_t(out.echoCount));
-      tally.clearBins();
+      tally.start(*line.line, view.coherenceMm);
       tally.setEchoWeight(1.0f / float(run.paths));
       line.tally[std::size_t(branch)] = &tally;
     }
@@ -129,11 +128,8 @@ inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, cons
     BatchTally& tally = batchTallies[std::size_t(i - first)];
     for (std::size_t branch = 0; branch < FirstBranches; ++branch)
     {
-      tally.mean[branch] = line.tally[branch]->bins();
-      for (float& v : tally.mean[branch])
-      {
-        v /= float(paths);
-      }
+      tally.mean[branch] = line.tally[branch]->takeBins(paths);
+      line.tally[branch]->takeEchoes(out.boundaryEcho.data() + std::size_t(i) * std::size_t(out.echoCount));
       tally.weight[branch] = line.weight[branch] / paths;
     }
   }
@@ -208,12 +204,12 @@ void traceSharedLines(const Space& space, const SharedRun& run, TracedLines& out
     parallelFor(lines.last - lines.first, {}, [&](int i) {
       LineTally& tally = workers.local().tallies.front();
       const std::size_t row = std::size_t(first + i);
-      tally.start(run.lines[row], view.coherenceMm, out.boundaryEcho.data() + row * std::size_t(out.echoCount));
-      tally.clearBins();
+      tally.start(run.lines[row], view.coherenceMm);
       tally.setEchoWeight(1.0f);
       starts[std::size_t(i)] = startLine(view, space, run.lines[row], tally);
-      std::copy(tally.bins().begin(), tally.bins().end(),
-                out.intensity.begin() + std::ptrdiff_t(row * std::size_t(out.binCount)));
+      const std::vector<float> bins = tally.takeBins(1);
+      std::copy(bins.begin(), bins.end(), out.intensity.begin() + std::ptrdiff_t(row * std::size_t(out.binCount)));
+      tally.takeEchoes(out.boundaryEcho.data() + row * std::size_t(out.echoCount));
     });
     std::vector<std::vector<BatchTally>> tallies(std::size_t(batches), std::vector<BatchTally>(starts.size()));
     for (int batch = 0; batch < batches; ++batch)

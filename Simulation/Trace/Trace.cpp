@@ -19,9 +19,6 @@ namespace sono {
 
 namespace {
 
-/// A few milliseconds' worth.
-constexpr int pathsPerBreath = 512;
-
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
 inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const Breath& breathe, LineTally& tally,
@@ -30,14 +27,15 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
-  tally.start(line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount));
-  tally.clearBins();
+  std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
+  tally.start(line, view.coherenceMm);
   tally.setEchoWeight(1.0f);
   const LineStart start = startLine(view, space, line, tally);
-  const std::vector<float> shared = tally.bins();
+  const std::vector<float> shared = tally.takeBins(1);
   std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
   if (!start.meets)
   {
+    tally.takeEchoes(echoes);
     return;
   }
 
@@ -52,10 +50,9 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     {
       scrambles[b] = makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
     }
-    tally.clearBins();
     for (int path = first; path < last;)
     {
-      const int pause = std::min(last, path + pathsPerBreath);
+      const int pause = std::min(last, path + LineTally::pathsPerFold); // a few milliseconds' worth
       for (; path < pause; ++path)
       {
         tracePath(view, space, line, start,
@@ -64,16 +61,13 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       }
       if (path < last)
       {
+        tally.fold();
         breathe();
       }
     }
-    std::vector<float> mean = tally.bins();
-    for (float& v : mean)
-    {
-      v /= float(last - first);
-    }
-    means.push_back(std::move(mean));
+    means.push_back(tally.takeBins(last - first));
   }
+  tally.takeEchoes(echoes);
   addBatchMeans(means, index, out);
 }
 

@@ -1,5 +1,6 @@
 #include "BusyScene.h"
 
+#include "Trace/Deposit.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
@@ -120,6 +121,42 @@ TEST(TraceDeterminism, ALineDependsOnItselfAndItsIndexAlone)
                            together.standardError.begin() + begin));
     EXPECT_TRUE(std::equal(alone.boundaryEcho.begin() + echo, alone.boundaryEcho.begin() + echo + alone.echoCount,
                            together.boundaryEcho.begin() + echo));
+  }
+}
+
+TEST(TraceError, ManyLikePathsAddUpToOne)
+{
+  // Where all paths leave the same, a plain sum of floats drifts: the RF of planar layers by 0.8 % at a million paths.
+  constexpr int paths = 300000;
+  const TraceLine line{ Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f) };
+  const PathSegment segment{ Vec3f(0.1f, 0.0f, 1.3f), Vec3f(0.0f, 0.0f, 1.0f), 20.0f, 0.3f, 0.01f };
+  const auto leave = [&](int count, std::vector<std::complex<float>>& echoes) {
+    LineTally tally(30, 1.0, 2000, 0.0154, 1.6);
+    tally.start(line, 100.0f);
+    tally.setEchoWeight(1.0f / float(count));
+    for (int i = 0; i < count; ++i)
+    {
+      if (i % LineTally::pathsPerFold == 0)
+      {
+        tally.fold();
+      }
+      tally.segment(segment);
+      tally.echo(Vec3f(0.1f, 0.0f, 21.3f), 0.07f);
+    }
+    tally.takeEchoes(echoes.data());
+    return tally.takeBins(count);
+  };
+  std::vector<std::complex<float>> oneEcho(2000);
+  std::vector<std::complex<float>> manyEchoes(2000);
+  const std::vector<float> one = leave(1, oneEcho);
+  const std::vector<float> many = leave(paths, manyEchoes);
+  for (std::size_t b = 0; b < one.size(); ++b)
+  {
+    EXPECT_NEAR(many[b], one[b], 1e-5f * one[b]) << b;
+  }
+  for (std::size_t s = 0; s < oneEcho.size(); ++s)
+  {
+    EXPECT_LE(std::abs(manyEchoes[s] - oneEcho[s]), 1e-6f * std::abs(oneEcho[s]) + 1e-12f) << s;
   }
 }
 

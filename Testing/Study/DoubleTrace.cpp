@@ -2,61 +2,11 @@
 // Apart, since that one redefines the types of the kernels.
 #include "DoubleTrace.h"
 
-namespace sonoInDouble {
-
-// The deposit on the CPU, Trace/Deposit.cpp, without its vector loops.
-
-LineTally::LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm)
-  : bins_(std::size_t(binCount), 0.0)
-  , binMm_(binMm)
-  , echoCount_(echoCount)
-  , echoSampleMm_(echoSampleMm)
-  , radPerMm_(4.0 * M_PI * wavesPerMm)
-{
-}
-
-void LineTally::start(const TraceLine& line, double coherenceMm, std::complex<double>* echo)
-{
-  line_ = line;
-  coherenceMm_ = coherenceMm;
-  echo_ = echo;
-}
-
-void LineTally::clearBins()
-{
-  std::fill(bins_.begin(), bins_.end(), 0.0);
-}
-
-void LineTally::segment(const PathSegment& s)
-{
-  ++segments_;
-  const BeamSegment g = beamSegment(line_, s, coherenceMm_);
-  const DepthSpan span = depthSpan(g, s.length, binMm_ * double(bins_.size()));
-  if (!(span.high > span.low))
-  {
-    return;
-  }
-  const int last = int(bins_.size()) - 1;
-  for (int b = std::min(last, int(span.low / binMm_)); b <= std::min(last, int(span.high / binMm_)); ++b)
-  {
-    const double from = std::max(span.low, b * binMm_);
-    const double to = std::min(span.high, (b + 1) * binMm_);
-    bins_[std::size_t(b)] += meanOver(g, from, to, 1.0 / g.mu) * (to - from) / binMm_;
-  }
-}
-
-void LineTally::echo(const Vec3d& point, double amplitude)
-{
-  const EchoSplit split =
-    splitEcho(line_, point, amplitude * echoWeight_, coherenceMm_, echoSampleMm_, echoCount_, radPerMm_);
-  if (split.sample >= 0)
-  {
-    echo_[split.sample] += std::complex<double>(split.amplitude[0], split.amplitude[1]);
-    echo_[split.sample + 1] += std::complex<double>(split.amplitude[2], split.amplitude[3]);
-  }
-}
-
-} // namespace sonoInDouble
+#define float double
+#define sono sonoInDouble
+#include "Trace/Deposit.cpp"
+#undef float
+#undef sono
 
 namespace sono::study {
 
@@ -110,12 +60,14 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
 {
   kernel::LineTally tally(input.binCount, input.binMm, input.echoCount, input.echoSampleMm,
                           input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
-  tally.start(line, view.coherenceMm, out.boundaryEcho.data() + std::size_t(index) * std::size_t(input.echoCount));
+  tally.start(line, view.coherenceMm);
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
-  std::copy(tally.bins().begin(), tally.bins().end(),
-            out.intensity.begin() + std::ptrdiff_t(index) * std::ptrdiff_t(input.binCount));
+  std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;
+  const std::vector<double> shared = tally.takeBins(1);
+  std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(index) * input.binCount);
   if (!start.meets)
   {
+    tally.takeEchoes(echoes);
     return;
   }
   tally.setEchoWeight(1.0 / input.paths);
@@ -130,19 +82,15 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
       scrambles[b] =
         kernel::makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
     }
-    tally.clearBins();
     for (int path = range.first; path < range.last; ++path)
     {
       kernel::tracePath(
         view, space, line, start,
         { std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - range.first), scrambles.data() }, tally);
     }
-    means.push_back(tally.bins());
-    for (double& v : means.back())
-    {
-      v /= range.last - range.first;
-    }
+    means.push_back(tally.takeBins(range.last - range.first));
   }
+  tally.takeEchoes(echoes);
   kernel::addBatchMeans(means, index, out);
 }
 

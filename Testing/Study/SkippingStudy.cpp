@@ -1,4 +1,6 @@
 // What each skip buys: time and memory of a scene with one of them switched off at a time.
+#include "EchoSkips.h"
+#include "PhantomImaging.h"
 #include "RegionSwitches.h"
 #include "Study.h"
 
@@ -25,6 +27,8 @@ inline float remainingLength(const TraceView&, const EndlessBeam&, const PathSta
 
 namespace sono::study {
 namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
 
 /// Which of the tracer's own short cuts a run takes.
 struct ShortCuts
@@ -58,13 +62,12 @@ double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, con
   const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
   const int bins = int(tracing.depthMm / tracing.radialBinMm);
   const int echoes = int(tracing.depthMm / tracing.echoSampleMm) + 1;
-  std::vector<std::complex<float>> echo(std::size_t(echoes), 0.0f);
   LineTally tally(bins, tracing.radialBinMm, echoes, tracing.echoSampleMm,
                   tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
   const std::clock_t begin = std::clock();
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
-    tally.start(setup.lines[i], setup.view.coherenceMm, echo.data());
+    tally.start(setup.lines[i], setup.view.coherenceMm);
     LineStart start = startLine(setup.view, setup.space(), setup.lines[i], tally);
     for (int path = 0; path < setup.paths && start.meets; ++path)
     {
@@ -111,7 +114,7 @@ double secondsToBuild(const Scene& scene, const VoxelBox& box)
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-void measureScene(const std::string& name, bool quick, std::vector<std::vector<std::string>>& rows)
+void measureScene(const std::string& name, bool quick, Rows& rows)
 {
   const auto make = [&] { return makeBenchScene(name, quick ? 2.0 : 0.0); };
   const BenchScene bench = make();
@@ -158,12 +161,55 @@ void measureScene(const std::string& name, bool quick, std::vector<std::vector<s
       full / held);
 }
 
+double secondsToForm(const BenchScene& bench, const TracedLines& traced, const EchoSkips& skips)
+{
+  const std::clock_t begin = std::clock();
+  formRfBySkipping(bench, traced, skips);
+  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+/// The side of the scatterers, for one group of lines.
+void measureEcho(const std::string& name, bool quick, Rows& rows)
+{
+  BenchScene bench = makeBenchScene(name, quick ? 2.0 : 0.0, 8);
+  TraceSettings tracing = bench.tracing;
+  tracing.pathsPerLine = 100;
+  tracing.device = Device::Cpu;
+  const TracedLines traced = trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
+  const auto ratio = [&](bool EchoSkips::*skip) {
+    EchoSkips without;
+    without.*skip = false;
+    return medianRatio([&] { return secondsToForm(bench, traced, {}); },
+                       [&] { return secondsToForm(bench, traced, without); });
+  };
+  const auto add = [&](const std::string& skip, const std::string& what, double time, double memory) {
+    rows.push_back({ name, skip, what, number(time), number(memory) });
+  };
+  add("bricks that two lines see, made once", "RF", ratio(&EchoSkips::madeTwice), 1.0);
+  add("cells without a scatterer", "RF", ratio(&EchoSkips::absent), 1.0);
+  add("depths without intensity", "RF", ratio(&EchoSkips::dark), 1.0);
+  // Minutes where it is switched off: once.
+  EchoSkips everywhere;
+  everywhere.unseenBricks = false;
+  add("bricks that no beam sees", "RF",
+      quick ? 1.0 : secondsToForm(bench, traced, everywhere) / secondsToForm(bench, traced, {}), 1.0);
+  const double voxels = double(bench.scene->tissueVoxels().size());
+  add("scatterers made where they are seen, not stored", "memory of the scene's tissues", 1.0,
+      quick ? 1.0 : 1.0 + scattererCount(bench) * 4.0 * sizeof(float) / voxels);
+
+  const PhantomImaging imaging = phantomImaging(128);
+  bench.echo.field = imaging.echo.field;
+  bench.echo.depthMm = std::min(bench.echo.depthMm, imaging.echo.depthMm);
+  add("faint parts of a computed field", "RF with that field", ratio(&EchoSkips::faint), 1.0);
+}
+
 void measureSkipping(Output& output)
 {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const std::string name : { "stack", "cyst", "rib", "a4c", "phantom" })
   {
     measureScene(name, output.quick(), rows);
+    measureEcho(name, output.quick(), rows);
   }
   output.table("skipping.csv",
                { "scene", "skip switched off", "of", "time without it (times)", "memory without it (times)" }, rows);

@@ -14,6 +14,7 @@ struct Difference
   double segmentsPerPath = 0.0;
 };
 
+/// With a computed field, for which image formation has no twin, only what single precision gives.
 Difference singleAgainstDouble(const BenchScene& bench, TraceSettings tracing);
 
 } // namespace sono::study

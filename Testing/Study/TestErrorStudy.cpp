@@ -1,6 +1,11 @@
 #include "BenchImage.h"
+#include "EchoSkips.h"
 #include "ErrorCurves.h"
+#include "HardScenes.h"
+#include "PhantomImaging.h"
+#include "Progress.h"
 #include "RegionSwitches.h"
+#include "RelativeRms.h"
 #include "SamplingName.h"
 #include "StabilityStudy.h"
 
@@ -109,6 +114,34 @@ TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
   }
 }
 
+TEST(StabilityStudy, EveryHazardEndsInAnImageOrASentence)
+{
+  int refused = 0;
+  for (const HardScene& hard : hardScenes())
+  {
+    if (hard.hazard == "none")
+    {
+      continue;
+    }
+    try
+    {
+      const BenchScene bench = hard.make();
+      TraceSettings tracing = bench.tracing;
+      tracing.pathsPerLine = std::min(tracing.pathsPerLine, 20);
+      const Difference d = singleAgainstDouble(bench, tracing);
+      EXPECT_TRUE(d.finite) << hard.name;
+      // What a rounded number decides otherwise at a hit takes that path elsewhere, one of twenty.
+      EXPECT_LT(d.of.intensity, 0.05) << hard.hazard << ", " << hard.name;
+    }
+    catch (const Error& error)
+    {
+      ++refused;
+      EXPECT_GT(std::string(error.what()).size(), 20u) << hard.name;
+    }
+  }
+  EXPECT_EQ(refused, 5); // no impedance, no speed, NaN, no voxels, no depth
+}
+
 TEST(RegionSwitches, WithoutSkipsTheImageIsTheSame)
 {
   const BenchScene bench = makeBenchScene("cyst", 2.0);
@@ -126,6 +159,38 @@ TEST(RegionSwitches, WithoutSkipsTheImageIsTheSame)
   EXPECT_LT(worst, 1e-4);
   removeSurfaces(slow);
   EXPECT_NE(trace(*slow.scene, slow.lines, tracing).intensity, two.intensity);
+}
+
+TEST(EchoSkips, WithoutSkipsTheImageIsTheSame)
+{
+  BenchScene bench = makeBenchScene("cyst", 2.0, 10);
+  TraceSettings tracing = bench.tracing;
+  tracing.pathsPerLine = 20;
+  tracing.device = Device::Cpu;
+  const TracedLines traced = trace(*bench.scene, bench.lines, tracing);
+  bench.echo.device = Device::Cpu;
+  for (const bool computed : { false, true })
+  {
+    if (computed)
+    {
+      bench.echo.field = phantomImaging(128).echo.field;
+    }
+    const RfLines usual = formRf(*bench.scene, bench.lines, traced, bench.echo);
+    EXPECT_EQ(test::relativeRms(formRfBySkipping(bench, traced, {}).iq, usual.iq), 0.0);
+    for (const auto skip :
+         { &EchoSkips::unseenBricks, &EchoSkips::madeTwice, &EchoSkips::absent, &EchoSkips::dark, &EchoSkips::faint })
+    {
+      EchoSkips without;
+      without.*skip = false;
+      if (computed && skip == &EchoSkips::unseenBricks)
+      {
+        continue; // sees the faint parts, too
+      }
+      // The order of the sums changes, and the faintest parts of a field are let go.
+      EXPECT_LT(test::relativeRms(formRfBySkipping(bench, traced, without).iq, usual.iq),
+                computed && skip == &EchoSkips::faint ? 1e-3 : 2e-5);
+    }
+  }
 }
 
 } // namespace
