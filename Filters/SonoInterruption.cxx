@@ -33,7 +33,7 @@ vtkInformationUnsignedLongKey* stoppedAtKey()
   return key;
 }
 
-/// Grows when the filter, anything upstream or the input's data change.
+/// As of this update's beginning; grows when the filter, anything upstream or the input's data change.
 unsigned long stateOf(vtkAlgorithm* filter)
 {
   auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(filter->GetExecutive());
@@ -63,6 +63,13 @@ void showMade(vtkAlgorithm* filter, vtkInformationVector* outputs)
   {
     vtkDataObject::GetData(outputs, port)->ShallowCopy(made->GetItem(port));
   }
+}
+
+void rememberStop(vtkAlgorithm* filter)
+{
+  // Marking the outputs as aborted counts as a change of the filter.
+  const unsigned long state = std::max<unsigned long>(stateOf(filter), filter->GetMTime());
+  filter->GetInformation()->Set(stoppedAtKey(), state);
 }
 
 } // namespace
@@ -102,7 +109,7 @@ void keepMade(vtkAlgorithm* filter, vtkInformationVector* outputs)
 void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   showMade(filter, outputs);
-  filter->GetInformation()->Set(stoppedAtKey(), stateOf(filter));
+  rememberStop(filter);
   if (Interrupter* const interrupter = current)
   {
     interrupter->hasStopped(filter);
@@ -122,6 +129,7 @@ bool standsStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
     return false;
   }
   showMade(filter, outputs);
+  rememberStop(filter);
   return true;
 }
 

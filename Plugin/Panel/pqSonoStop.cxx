@@ -220,20 +220,24 @@ void pqSonoStop::hasFinished(vtkAlgorithm* filter)
 void pqSonoStop::settle()
 {
   stop_ = false;
+  QStringList names;
   for (vtkAlgorithm* filter : std::exchange(stopped_, {}))
   {
     pqPipelineSource* source = sourceOf(filter);
-    if (!source)
+    if (source && !names.contains(source->getSMName()))
     {
-      continue;
+      names << source->getSMName();
+      if (source->modifiedState() == pqProxy::UNMODIFIED)
+      {
+        waiting_.emplace_back(source);
+        source->setModifiedState(pqProxy::MODIFIED); // so that Apply can be clicked
+      }
     }
-    if (source->modifiedState() == pqProxy::UNMODIFIED)
-    {
-      waiting_.emplace_back(source);
-      source->setModifiedState(pqProxy::MODIFIED); // so that Apply can be clicked
-    }
+  }
+  if (!names.isEmpty())
+  {
     const QString sentence =
-      tr("%1 was stopped and shows what it made before; click Apply to run it again.").arg(source->getSMName());
+      tr("Stopped: %1. What was there before is shown; click Apply to run it again.").arg(names.join(", "));
     vtkOutputWindowDisplayText((sentence + "\n").toUtf8().data());
     if (auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget()))
     {

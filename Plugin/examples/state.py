@@ -9,7 +9,13 @@ ultrasound = SimulateUltrasound(
     Positionmm=[87.8, -86.5, -44.9], AxialDirection=[-0.53, 0.65, 0.545], LateralDirection=[0.843, 0.333, 0.423])
 image, anatomy, probe, paths, flat = (OutputPort(ultrasound, port) for port in (0, 4, 5, 6, 7))
 
+# Views come into a layout before anything is shown in them: one that appears on the screen is drawn at once.
 body = CreateView("RenderView", registrationName="In the body")
+picture = CreateView("RenderView", registrationName="Flat")
+layout = CreateLayout("Ultrasound")
+AssignViewToLayout(body, layout)
+AssignViewToLayout(picture, layout, hint=0)
+
 for port in (anatomy, probe, image):
     Show(port, body)
 shown = Show(paths, body)
@@ -19,16 +25,13 @@ colors.RescaleTransferFunction(-60, 0)
 shown.SetScalarBarVisibility(body, True)
 body.CameraPosition, body.CameraFocalPoint, body.CameraViewUp = [250, -500, 175], [0, 0, 0], [0, 0, 1]
 
-picture = CreateView("RenderView", registrationName="Flat")
 picture.UseColorPaletteForBackground = 0
 picture.Background = [0, 0, 0]
 picture.InteractionMode = "2D"
 picture.OrientationAxesVisibility = 0
 Show(flat, picture)
 picture.CameraPosition, picture.CameraFocalPoint, picture.CameraViewUp = [0, 8, -30], [0, 8, 0], [0, -1, 0]
-picture.CameraParallelScale = 12
+picture.CameraParallelScale = 15
 
-layout = CreateLayout("Ultrasound")
-AssignViewToLayout(body, layout)
-AssignViewToLayout(picture, layout, hint=0)
+SetActiveView(body)
 SetActiveSource(ultrasound)

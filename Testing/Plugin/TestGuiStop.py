@@ -116,7 +116,7 @@ class TestGuiStop(GuiCase):
             done = self.play_with("stop.xml", folder, act)
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertNotIn("ERR|", done.stdout)
-        self.assertEqual(done.stdout.count("ultrasound was stopped"), 1, done.stdout)
+        self.assertEqual(done.stdout.count("Stopped: ultrasound."), 1, done.stdout)
         whole = seen["whole"] - seen["again"]
         self.assertLess(seen["stopped"] - seen["begun"], 0.7 * whole)
         self.assertEqual(seen["kept"], seen["before"])

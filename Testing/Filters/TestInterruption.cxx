@@ -1,0 +1,239 @@
+// What a stop by the interrupter, a GUI's button, leaves behind.
+#include "SonoInterruption.h"
+
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkExecutive.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSonoBMode.h"
+#include "vtkSonoImageFormation.h"
+#include "vtkSonoProbeSource.h"
+#include "vtkSonoRayTracer.h"
+#include "vtkSonoScanConverter.h"
+#include "vtkSonoSceneBuilder.h"
+#include "vtkSonoThoraxSource.h"
+#include "vtkSonoUltrasound.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <vector>
+
+namespace {
+
+/// Presses the button when it was asked so many times.
+class Button : public sono::Interrupter
+{
+public:
+  Button() { sono::setInterrupter(this); }
+  ~Button() override { sono::setInterrupter(nullptr); }
+  bool wantsStop() override { return ++asked > allowed; }
+  void hasStopped(vtkAlgorithm* filter) override { stopped.push_back(filter); }
+  void hasFinished(vtkAlgorithm* filter) override { finished.push_back(filter); }
+  void pressAfter(int times)
+  {
+    asked = 0;
+    allowed = times;
+  }
+  void leaveAlone() { allowed = 1 << 30; }
+
+  std::vector<vtkAlgorithm*> stopped;
+  std::vector<vtkAlgorithm*> finished;
+
+private:
+  int asked = 0;
+  int allowed = 1 << 30;
+};
+
+class Counter : public vtkCommand
+{
+public:
+  static Counter* New() { return new Counter; }
+  void Execute(vtkObject*, unsigned long, void*) override { ++count; }
+  int count = 0;
+};
+
+std::vector<double> greys(vtkImageData* image)
+{
+  vtkDataArray* array = image->GetPointData()->GetArray("BMode");
+  std::vector<double> values;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    values.push_back(array->GetTuple1(i));
+  }
+  return values;
+}
+
+/// All stages from a coarse thorax on.
+struct Chain
+{
+  vtkNew<vtkSonoThoraxSource> thorax;
+  vtkNew<vtkSonoSceneBuilder> scene;
+  vtkNew<vtkSonoProbeSource> probe;
+  vtkNew<vtkSonoRayTracer> tracer;
+  vtkNew<vtkSonoImageFormation> formation;
+  vtkNew<vtkSonoBMode> bmode;
+  vtkNew<vtkSonoScanConverter> converter;
+  vtkNew<Counter> errors;
+
+  Chain()
+  {
+    thorax->SetSpacingMm(4.0);
+    scene->SetInputConnection(thorax->GetOutputPort());
+    scene->SetBuildSurfaces(false);
+    probe->SetLineCount(24);
+    tracer->SetInputConnection(0, scene->GetOutputPort());
+    tracer->SetInputConnection(1, probe->GetOutputPort());
+    tracer->SetPathsPerLine(20);
+    formation->SetInputConnection(tracer->GetOutputPort());
+    bmode->SetInputConnection(formation->GetOutputPort());
+    converter->SetInputConnection(bmode->GetOutputPort());
+    for (vtkAlgorithm* stage :
+         std::initializer_list<vtkAlgorithm*>{ thorax, scene, probe, tracer, formation, bmode, converter })
+    {
+      stage->AddObserver(vtkCommand::ErrorEvent, errors);
+      stage->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors);
+    }
+  }
+
+  std::vector<double> picture()
+  {
+    converter->Update();
+    return greys(converter->GetOutput());
+  }
+};
+
+TEST(Interruption, TheDataOfBeforeStayUntilSomethingChanges)
+{
+  Button button;
+  Chain chain;
+  const std::vector<double> before = chain.picture();
+  ASSERT_FALSE(before.empty());
+
+  chain.tracer->SetPathsPerLine(40);
+  button.pressAfter(3);
+  EXPECT_EQ(chain.picture(), before);
+  // The button stays pressed for what would run on the data of before.
+  EXPECT_EQ(button.stopped, (std::vector<vtkAlgorithm*>{ chain.tracer, chain.formation }));
+
+  button.leaveAlone();
+  EXPECT_EQ(chain.picture(), before); // no second try by itself
+  chain.tracer->Modified();
+  const std::vector<double> after = chain.picture();
+  EXPECT_NE(after, before);
+  EXPECT_EQ(chain.errors->count, 0);
+
+  Chain fresh;
+  fresh.tracer->SetPathsPerLine(40);
+  EXPECT_EQ(fresh.picture(), after);
+}
+
+TEST(Interruption, AFirstRunLeavesNothingAndIsQuiet)
+{
+  Button button;
+  for (vtkAlgorithm* (*which)(Chain&) : { +[](Chain& chain) -> vtkAlgorithm* { return chain.tracer; },
+                                          +[](Chain& chain) -> vtkAlgorithm* { return chain.scene; } })
+  {
+    Chain chain;
+    button.stopped.clear();
+    vtkAlgorithm* stage = which(chain);
+    for (int port = 0; port < stage->GetNumberOfInputPorts(); ++port)
+    {
+      if (stage->GetNumberOfInputConnections(port) > 0)
+      {
+        stage->GetInputAlgorithm(port, 0)->Update();
+      }
+    }
+    button.pressAfter(0);
+    EXPECT_TRUE(chain.picture().empty());
+    EXPECT_EQ(button.stopped, std::vector<vtkAlgorithm*>{ stage });
+    button.leaveAlone();
+    for (int update = 0; update < 3; ++update)
+    {
+      EXPECT_TRUE(chain.picture().empty());
+    }
+    EXPECT_EQ(button.stopped.size(), 1u);
+    stage->Modified();
+    EXPECT_FALSE(chain.picture().empty());
+    EXPECT_EQ(chain.errors->count, 0);
+  }
+}
+
+TEST(Interruption, ADeeperImageThatWasStoppedIsNotTriedAgain)
+{
+  Button button;
+  Chain chain;
+  const std::vector<double> before = chain.picture();
+  chain.probe->SetDepthMm(200.0); // another extent
+  button.pressAfter(3);
+  chain.picture();
+  button.leaveAlone();
+  button.stopped.clear();
+  button.finished.clear();
+  chain.picture();
+  EXPECT_TRUE(button.stopped.empty());
+  for (vtkAlgorithm* filter : button.finished)
+  {
+    EXPECT_NE(filter, chain.tracer);
+  }
+  chain.tracer->Modified();
+  EXPECT_NE(chain.picture(), before);
+  EXPECT_EQ(chain.errors->count, 0);
+}
+
+TEST(Interruption, TheOneFilterStopsInAnyOfItsStages)
+{
+  Button button;
+  vtkNew<vtkSonoThoraxSource> thorax;
+  thorax->SetSpacingMm(4.0);
+  vtkNew<vtkSonoUltrasound> ultrasound;
+  ultrasound->SetInputConnection(thorax->GetOutputPort());
+  ultrasound->SetLineCount(24);
+  ultrasound->SetPathsPerLine(20);
+  const auto picture = [&] {
+    ultrasound->Update();
+    return greys(ultrasound->GetOutput());
+  };
+  const std::vector<double> before = picture();
+  ASSERT_FALSE(before.empty());
+  for (const bool inTheScene : { false, true })
+  {
+    button.stopped.clear();
+    ultrasound->SetPathsPerLine(40);
+    ultrasound->SetFillBody(inTheScene);
+    button.pressAfter(2);
+    EXPECT_EQ(picture(), before);
+    EXPECT_EQ(button.stopped, std::vector<vtkAlgorithm*>{ ultrasound });
+    button.leaveAlone();
+    EXPECT_EQ(picture(), before);
+    ultrasound->Modified();
+    EXPECT_NE(picture(), before);
+    ultrasound->SetPathsPerLine(20);
+    ultrasound->SetFillBody(false);
+    EXPECT_EQ(picture(), before);
+  }
+}
+
+TEST(Interruption, ALongLineStopsInItsMiddle)
+{
+  using Clock = std::chrono::steady_clock;
+  Button button;
+  Chain chain;
+  chain.probe->SetLineCount(1);
+  chain.tracer->SetPathsPerLine(100000);
+  chain.scene->Update();
+  auto start = Clock::now();
+  chain.tracer->Update();
+  const auto whole = Clock::now() - start;
+  chain.tracer->Modified();
+  button.pressAfter(20);
+  start = Clock::now();
+  chain.tracer->Update();
+  EXPECT_LT(Clock::now() - start, whole / 3);
+  EXPECT_EQ(button.stopped.size(), 1u);
+}
+
+} // namespace
