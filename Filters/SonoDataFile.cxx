@@ -2,6 +2,7 @@
 
 #include "Progress.h"
 
+#include <algorithm>
 #include <dlfcn.h>
 #include <filesystem>
 
@@ -26,6 +27,20 @@ std::string dataFile(const std::string& name)
   }
   throw Error("The bundled file share/sonovdb/" + name +
               " is not installed above the SonoVDB library; install SonoVDB again or name a file of your own.");
+}
+
+std::vector<std::string> dataFiles(const std::string& folder, const std::string& extension)
+{
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(dataFile(folder)))
+  {
+    if (entry.path().extension() == extension)
+    {
+      names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 std::string chosenOrBundled(const std::string& chosen, const std::string& bundledName)

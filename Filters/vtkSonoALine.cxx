@@ -1,10 +1,13 @@
 #include "vtkSonoALine.h"
 
+#include "Progress.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 
+#include "vtkCellArray.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -12,6 +15,8 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -35,9 +40,36 @@ void addColumn(const char* name, int rows, const std::function<double(int)>& val
   table->AddColumn(column);
 }
 
+void drawLine(int line, const sono::Vec3d& from, const sono::Vec3d& to, vtkPolyData* polyData)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  cells->InsertNextCell({ points->InsertNextPoint(&from.x), points->InsertNextPoint(&to.x) });
+  polyData->SetPoints(points);
+  polyData->SetLines(cells);
+  sono::writeNumber("Line", line, polyData->GetFieldData());
+}
+
+/// A place in the world as the flat image has it.
+sono::Vec3d flatFromWorld(const sono::Vec3d& world, const sono::ProbeField& probe)
+{
+  constexpr double inFrontCm = -0.01;
+  const sono::ProbePose& pose = probe.pose;
+  const sono::Vec3d from = (world - pose.positionMm) / 10.0;
+  const double elevation = glm::dot(from, glm::cross(pose.axial, pose.lateral));
+  const double axial = glm::dot(from, pose.axial);
+  const bool isVolume = probe.geometry.kind == sono::ScanKind::Matrix;
+  return { glm::dot(from, pose.lateral), isVolume ? elevation : axial, isVolume ? axial : elevation + inFrontCm };
+}
+
 } // namespace
 
-vtkSonoALine::vtkSonoALine() = default;
+vtkSonoALine::vtkSonoALine()
+{
+  this->SetNumberOfOutputPorts(3);
+}
+
 vtkSonoALine::~vtkSonoALine() = default;
 
 void vtkSonoALine::PrintSelf(ostream& os, vtkIndent indent)
@@ -50,6 +82,30 @@ int vtkSonoALine::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   return 1;
+}
+
+int vtkSonoALine::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkTable" : "vtkPolyData");
+  return 1;
+}
+
+int vtkSonoALine::LineAt(vtkFieldData* field, double lateralMm, double axialMm)
+{
+  try
+  {
+    const sono::ScanGeometry geometry = sono::readProbe(field).geometry;
+    if (geometry.kind == sono::ScanKind::Matrix)
+    {
+      return -1;
+    }
+    const float line = sono::beamFromPlane(geometry, lateralMm, axialMm).x;
+    return std::isnan(line) ? -1 : static_cast<int>(std::lround(line)) % geometry.lineCount;
+  }
+  catch (const sono::Error&)
+  {
+    return -1;
+  }
 }
 
 int vtkSonoALine::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
@@ -68,7 +124,8 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
     const int rows = layout.sampleCount;
-    const vtkIdType first = vtkIdType(std::min(this->Line, layout.lineCount - 1)) * rows;
+    const int line = std::min(this->Line, layout.lineCount - 1);
+    const vtkIdType first = vtkIdType(line) * rows;
 
     vtkTable* table = vtkTable::GetData(output);
     addColumn(
@@ -94,5 +151,10 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
         },
         table);
     }
+
+    const sono::ScanLine place = sono::makeScanLines(probe.geometry, probe.pose)[std::size_t(line)];
+    const sono::Vec3d end = place.originMm + probe.geometry.depthMm * place.axis;
+    drawLine(line, flatFromWorld(place.originMm, probe), flatFromWorld(end, probe), vtkPolyData::GetData(output, 1));
+    drawLine(line, place.originMm, end, vtkPolyData::GetData(output, 2));
   });
 }

@@ -1,6 +1,7 @@
 #include "vtkSonoProbeSource.h"
 
 #include "Progress.h"
+#include "SonoDataFile.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 
@@ -14,6 +15,29 @@
 #include "vtkPolyData.h"
 
 vtkStandardNewMacro(vtkSonoProbeSource);
+
+namespace {
+
+/// A plain word is the name of a bundled preset.
+std::string presetPath(const std::string& preset)
+{
+  if (preset.find_first_of("./\\") != std::string::npos)
+  {
+    return preset;
+  }
+  std::string names;
+  for (const std::string& name : sono::dataFiles("probes", ".json"))
+  {
+    if (name == preset)
+    {
+      return sono::dataFile("probes/" + name + ".json");
+    }
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  throw sono::Error("There is no probe preset '" + preset + "'; choose one of " + names + ", or name a JSON file.");
+}
+
+} // namespace
 
 vtkSonoProbeSource::vtkSonoProbeSource()
 {
@@ -68,7 +92,7 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   }
   else
   {
-    const sono::ProbePreset preset = sono::readProbePreset(this->PresetFile);
+    const sono::ProbePreset preset = sono::readProbePreset(presetPath(this->PresetFile));
     probe.geometry = preset.geometry;
     probe.centreFrequencyMHz = preset.centreFrequencyMHz;
     probe.fractionalBandwidth = preset.fractionalBandwidth;

@@ -27,7 +27,8 @@ public:
 
   ///@{
   /**
-   * A preset (JSON) that gives layout and pulse; where it is empty, the numbers below do. Default empty.
+   * A preset that gives layout and pulse: the name of a bundled one, see vtkSonoProbePresets, or a JSON file; where it
+   * is empty, the numbers below do. Default empty.
    */
   vtkSetStdStringFromCharMacro(PresetFile);
   vtkGetCharFromStdStringMacro(PresetFile);

@@ -12,8 +12,10 @@
 #include "vtkSmartPointer.h"
 #include "vtkSonoUltrasound.h"
 
+#include <array>
 #include <cstring>
 #include <initializer_list>
+#include <string>
 #include <utility>
 
 namespace {
@@ -59,54 +61,40 @@ void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controlle
   setCamera(view, { 0.5, -1.0, 0.35 }, { 0.0, 0.0, 1.0 });
 }
 
-/// Grey on black, the transducer on top, a grid's ticks as the scale.
-void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
+/// Shows lines or letters in a colour of their own, whatever the light.
+void showPlainly(vtkSMSourceProxy* source, unsigned int port, std::initializer_list<double> color, double width,
+                 vtkSMViewProxy* view, Controller* controller)
+{
+  vtkSMProxy* representation = controller->Show(source, static_cast<int>(port), view);
+  vtkSMPVRepresentationProxy::SetScalarColoring(representation, nullptr, 0);
+  for (const char* name : { "AmbientColor", "DiffuseColor" })
+  {
+    vtkSMPropertyHelper(representation, name, true).Set(color.begin(), 3);
+  }
+  vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0);
+  vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
+  vtkSMPropertyHelper(representation, "LineWidth", true).Set(width);
+  representation->UpdateVTKObjects();
+}
+
+/// Grey on black, the transducer on top, with the depth scale and the probe's marker.
+void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, vtkSMSourceProxy* scale, Controller* controller)
 {
   const double black[3] = { 0.0, 0.0, 0.0 };
   vtkSMPropertyHelper(view, "UseColorPaletteForBackground", true).Set(0);
   vtkSMPropertyHelper(view, "Background", true).Set(black, 3);
   vtkSMPropertyHelper(view, "OrientationAxesVisibility", true).Set(0);
   vtkSMPropertyHelper(view, "InteractionMode", true).Set(1); // 2D
-  if (vtkSMProxy* grid = vtkSMPropertyHelper(view, "AxesGrid", true).GetAsProxy())
-  {
-    vtkSMPropertyHelper(grid, "Visibility", true).Set(1);
-    vtkSMPropertyHelper(grid, "XTitle", true).Set("Lateral (cm)");
-    vtkSMPropertyHelper(grid, "YTitle", true).Set("Depth (cm)");
-    vtkSMPropertyHelper(grid, "ZTitle", true).Set("");
-    for (const char* size : { "XTitleFontSize", "YTitleFontSize", "XLabelFontSize", "YLabelFontSize" })
-    {
-      vtkSMPropertyHelper(grid, size, true).Set(14);
-    }
-    grid->UpdateVTKObjects();
-  }
   view->UpdateVTKObjects();
   showQuietly(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, view, controller);
+  showPlainly(scale, 0, { 0.85, 0.85, 0.85 }, 1.0, view, controller);
   // From the side where x, lateral, runs to the right and y, depth, down.
   setCamera(view, { 0.0, 0.0, -1.0 }, { 0.0, -1.0, 0.0 });
-  const double scale = vtkSMPropertyHelper(view, "CameraParallelScale").GetAsDouble();
-  vtkSMPropertyHelper(view, "CameraParallelScale").Set(1.15 * scale); // room for the numbers
-  view->UpdateVTKObjects();
 }
 
-/// The marker of the probe's lateral side, at the upper right as on a scanner set for hearts.
-void addMarker(vtkSMViewProxy* view, Controller* controller, vtkSMSessionProxyManager* manager)
-{
-  auto text =
-    vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy("sources", "TextSource")));
-  controller->PreInitializeProxy(text);
-  vtkSMPropertyHelper(text, "Text").Set("S");
-  controller->PostInitializeProxy(text);
-  controller->RegisterPipelineProxy(text, "ProbeMarker");
-  vtkSMProxy* representation = controller->Show(text, 0, view);
-  vtkSMPropertyHelper(representation, "WindowLocation", true).Set(5); // upper right
-  vtkSMPropertyHelper(representation, "FontSize", true).Set(28);
-  vtkSMPropertyHelper(representation, "Bold", true).Set(1);
-  representation->UpdateVTKObjects();
-}
-
-/// The A-Line that the RF lines have already, or a new one.
-vtkSmartPointer<vtkSMSourceProxy> lineOf(vtkSMSourceProxy* ultrasound, Controller* controller,
-                                         vtkSMSessionProxyManager* manager)
+/// The filter of this kind that an output of the ultrasound has already, or a new one.
+vtkSmartPointer<vtkSMSourceProxy> filterOf(vtkSMSourceProxy* ultrasound, unsigned int port, const char* kind,
+                                           Controller* controller, vtkSMSessionProxyManager* manager)
 {
   vtkNew<vtkSMProxyIterator> sources;
   sources->SetSessionProxyManager(manager);
@@ -114,22 +102,27 @@ vtkSmartPointer<vtkSMSourceProxy> lineOf(vtkSMSourceProxy* ultrasound, Controlle
   for (sources->Begin("sources"); !sources->IsAtEnd(); sources->Next())
   {
     vtkSMProxy* source = sources->GetProxy();
-    if (std::strcmp(source->GetXMLName(), "SonoALine") == 0 &&
-        vtkSMPropertyHelper(source, "Input").GetAsProxy() == ultrasound)
+    if (std::strcmp(source->GetXMLName(), kind) == 0 && vtkSMPropertyHelper(source, "Input").GetAsProxy() == ultrasound)
     {
       return vtkSMSourceProxy::SafeDownCast(source);
     }
   }
-  auto line =
-    vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy("filters", "SonoALine")));
-  controller->PreInitializeProxy(line);
-  vtkSMPropertyHelper(line, "Input").Set(ultrasound, vtkSonoUltrasound::RF_LINES);
-  vtkSMPropertyHelper(line, "Line").Set(vtkSMPropertyHelper(ultrasound, "LineCount").GetAsInt() / 2);
-  controller->PostInitializeProxy(line);
-  controller->RegisterPipelineProxy(line);
-  line->UpdatePipeline();
-  return line;
+  auto made =
+    vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy("filters", kind)));
+  controller->PreInitializeProxy(made);
+  vtkSMPropertyHelper(made, "Input").Set(ultrasound, port);
+  if (made->GetProperty("Line"))
+  {
+    vtkSMPropertyHelper(made, "Line").Set(vtkSMPropertyHelper(ultrasound, "LineCount").GetAsInt() / 2);
+  }
+  controller->PostInitializeProxy(made);
+  controller->RegisterPipelineProxy(made);
+  made->UpdatePipeline();
+  return made;
 }
+
+std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
+std::array<double, 3> envelopeColor{ 0.15, 0.4, 0.7 };
 
 /// Over the depth, RF to the left axis and the envelope in dB to the right one.
 void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* controller)
@@ -138,6 +131,17 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
   vtkSMPropertyHelper(view, "BottomAxisTitle", true).Set("Depth (cm)");
   vtkSMPropertyHelper(view, "LeftAxisTitle", true).Set("RF");
   vtkSMPropertyHelper(view, "RightAxisTitle", true).Set("Envelope (dB)");
+  for (const char* axis : { "Left", "Bottom", "Right" })
+  {
+    vtkSMPropertyHelper(view, (std::string(axis) + "AxisTitleFontSize").c_str(), true).Set(12);
+    vtkSMPropertyHelper(view, (std::string(axis) + "AxisLabelFontSize").c_str(), true).Set(10);
+  }
+  vtkSMPropertyHelper(view, "ShowLegend", true).Set(0); // the axes' titles have the curves' colours
+  vtkSMPropertyHelper(view, "LeftAxisTitleColor", true).Set(rfColor.begin(), 3);
+  vtkSMPropertyHelper(view, "RightAxisTitleColor", true).Set(envelopeColor.begin(), 3);
+  vtkSMPropertyHelper(view, "RightAxisUseCustomRange", true).Set(1);
+  vtkSMPropertyHelper(view, "RightAxisRangeMinimum", true).Set(-100.0);
+  vtkSMPropertyHelper(view, "RightAxisRangeMaximum", true).Set(0.0);
   view->UpdateVTKObjects();
   vtkSMProxy* plot = controller->Show(line, 0, view);
   vtkSMPropertyHelper(plot, "UseIndexForXAxis", true).Set(0);
@@ -149,6 +153,9 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
     shown.SetStatus(name, visible);
   }
   vtkSMPropertyHelper(plot, "SeriesPlotCorner", true).SetStatus("Envelope (dB)", 1);
+  vtkSMPropertyHelper colors(plot, "SeriesColor", true);
+  colors.SetStatus("RF", rfColor.begin(), 3);
+  colors.SetStatus("Envelope (dB)", envelopeColor.begin(), 3);
   plot->UpdateVTKObjects();
 }
 
@@ -165,7 +172,7 @@ void sonoShowLayout(vtkSMSourceProxy* ultrasound)
   controller->InitializeProxy(layout);
   controller->RegisterLayoutProxy(layout, "Ultrasound");
   const int right = layout->SplitHorizontal(0, 0.5) + 1;
-  const int upper = layout->SplitVertical(right, 0.7);
+  const int upper = layout->SplitVertical(right, 0.62);
   const auto solid = makeView("RenderView", controller, manager);
   const auto flat = makeView("RenderView", controller, manager);
   const auto chart = makeView("XYChartView", controller, manager);
@@ -173,10 +180,14 @@ void sonoShowLayout(vtkSMSourceProxy* ultrasound)
   layout->AssignView(upper, flat);
   layout->AssignView(upper + 1, chart);
 
+  const auto line = filterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine", controller, manager);
+  const auto scale = filterOf(ultrasound, vtkSonoUltrasound::PROBE, "SonoFlatScale", controller, manager);
   fillSolidView(solid, ultrasound, controller);
-  fillFlatView(flat, ultrasound, controller);
-  addMarker(flat, controller, manager);
-  fillChart(chart, lineOf(ultrasound, controller, manager), controller);
+  fillFlatView(flat, ultrasound, scale, controller);
+  const std::initializer_list<double> yellow{ 1.0, 0.85, 0.2 };
+  showPlainly(line, 1, yellow, 1.0, flat, controller);
+  showPlainly(line, 2, yellow, 2.0, solid, controller);
+  fillChart(chart, line, controller);
   for (const auto& view : { solid, flat, chart })
   {
     view->StillRender();

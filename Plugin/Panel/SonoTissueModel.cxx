@@ -1,6 +1,7 @@
 #include "SonoTissueModel.h"
 
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSmartPointer.h"
@@ -8,7 +9,6 @@
 
 #include <QColor>
 #include <QLocale>
-#include <QSaveFile>
 
 namespace {
 
@@ -34,14 +34,15 @@ QString csvRow(const QStringList& fields)
   return quoted.join(',') + '\n';
 }
 
-QString writeFile(const QString& path, const QString& text)
+QString writeFile(vtkSMSessionProxyManager* manager, const QString& path, const QString& text)
 {
-  QSaveFile file(path);
-  if (!file.open(QIODevice::WriteOnly) || file.write(text.toUtf8()) < 0 || !file.commit())
-  {
-    return QObject::tr("Cannot write %1: %2.").arg(path, file.errorString());
-  }
-  return {};
+  auto file = vtkSmartPointer<vtkSMProxy>::Take(manager->NewProxy("misc", "SonoTextFile"));
+  vtkSMPropertyHelper(file, "FileName").Set(path.toUtf8().data());
+  vtkSMPropertyHelper(file, "Text").Set(text.toUtf8().data());
+  file->UpdateVTKObjects();
+  file->InvokeCommand("Write");
+  file->UpdatePropertyInformation();
+  return QString::fromUtf8(vtkSMPropertyHelper(file, "Refusal").GetAsString());
 }
 
 } // namespace
@@ -50,8 +51,9 @@ bool SonoTissueModel::load(vtkSMSourceProxy* scene, unsigned int port)
 {
   labels_.clear();
   tissues_.clear();
+  manager_ = scene->GetSessionProxyManager();
   auto table = vtkSmartPointer<vtkSMSourceProxy>::Take(
-    vtkSMSourceProxy::SafeDownCast(scene->GetSessionProxyManager()->NewProxy("filters", "SonoLabelTable")));
+    vtkSMSourceProxy::SafeDownCast(manager_->NewProxy("filters", "SonoLabelTable")));
   vtkSMPropertyHelper(table, "Input").Set(scene, port);
   table->UpdateVTKObjects();
   table->UpdatePipeline();
@@ -74,6 +76,16 @@ bool SonoTissueModel::load(vtkSMSourceProxy* scene, unsigned int port)
 QStringList SonoTissueModel::columns() const
 {
   return QStringList{ "id", "name", "colour", "tissue" } + tissueColumns_.mid(1, tissueColumns_.size() - 2);
+}
+
+QStringList SonoTissueModel::tissueNames() const
+{
+  QStringList names;
+  for (const QStringList& tissue : tissues_)
+  {
+    names << tissue[0];
+  }
+  return names;
 }
 
 const QStringList* SonoTissueModel::tissueNamed(const QString& name) const
@@ -160,12 +172,7 @@ QString SonoTissueModel::setValue(int row, int column, const QString& text)
   {
     if (!tissueNamed(field))
     {
-      QStringList names;
-      for (const QStringList& tissue : tissues_)
-      {
-        names << tissue[0];
-      }
-      return QObject::tr("There is no tissue '%1'; choose one of %2.").arg(field, names.join(", "));
+      return QObject::tr("There is no tissue '%1'; choose one of %2.").arg(field, tissueNames().join(", "));
     }
     label.tissue = field;
   }
@@ -186,6 +193,10 @@ QString SonoTissueModel::save(const QString& labelFile, const QString& tissueFil
   {
     tissues += csvRow(tissue);
   }
-  const QString refusal = writeFile(labelFile, labels);
-  return refusal.isEmpty() ? writeFile(tissueFile, tissues) : refusal;
+  if (!manager_)
+  {
+    return QObject::tr("The server that these tissues come from is gone; load them again.");
+  }
+  const QString refusal = writeFile(manager_, labelFile, labels);
+  return refusal.isEmpty() ? writeFile(manager_, tissueFile, tissues) : refusal;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "vtkSMSessionProxyManager.h"
+#include "vtkWeakPointer.h"
+
 #include <QString>
 #include <QStringList>
 #include <QVector>
@@ -25,13 +28,15 @@ public:
 
   int rowCount() const { return labels_.size(); }
   QStringList columns() const;
+  QStringList tissueNames() const;
   QString value(int row, int column) const;
 
   /// Changes a field; a number changes for all labels of that tissue. Returns what is wrong, one sentence, and changes
   /// nothing then.
   QString setValue(int row, int column, const QString& text);
 
-  /// Writes the two tables, in the format of the bundled ones. Returns what is wrong, one sentence.
+  /// Writes the two tables, in the format of the bundled ones, where the scene is: of a remote server, there. Returns
+  /// what is wrong, one sentence.
   QString save(const QString& labelFile, const QString& tissueFile) const;
 
 private:
@@ -45,6 +50,7 @@ private:
     QString color;
     QString tissue;
   };
+  vtkWeakPointer<vtkSMSessionProxyManager> manager_; ///< of the scene
   QVector<Label> labels_;
   QStringList tissueColumns_;    ///< tissue, the numbers, source
   QVector<QStringList> tissues_; ///< fields of these columns

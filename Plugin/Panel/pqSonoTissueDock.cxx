@@ -5,17 +5,20 @@
 #include "vtkSonoUltrasound.h"
 
 #include "pqActiveObjects.h"
+#include "pqColorChooserButton.h"
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 #include "pqPipelineSource.h"
 
 #include <QAction>
 #include <QColor>
+#include <QComboBox>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
 #include <QPushButton>
 #include <QTableWidget>
+#include <QToolTip>
 #include <QVBoxLayout>
 
 #include <cstring>
@@ -60,7 +63,8 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   say(tr("Select an Ultrasound Scene or a Simulate Ultrasound in the pipeline browser and load it."));
   QObject::connect(loadButton, &QPushButton::clicked, this, [this] { load(); });
   QObject::connect(saveButton_, &QPushButton::clicked, this, [this] { save(); });
-  QObject::connect(table_, &QTableWidget::cellChanged, this, [this](int row, int column) { change(row, column); });
+  QObject::connect(table_, &QTableWidget::cellChanged, this,
+                   [this](int row, int column) { change(row, column, table_->item(row, column)->text()); });
   this->toggleViewAction()->setObjectName("actionSonoTissues");
   this->hide(); // until it is asked for in the menu View
 }
@@ -81,7 +85,8 @@ void pqSonoTissueDock::load()
   const unsigned int port = isAll ? static_cast<unsigned int>(vtkSonoUltrasound::ANATOMY) : 0;
   const bool loaded = model_.load(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), port);
   saveButton_->setEnabled(loaded);
-  say(loaded ? tr("Type into a field to change it. Numbers belong to the tissue: all its labels have them.")
+  say(loaded ? tr("Choose colours and tissues, type into the other fields. Numbers belong to the tissue: all its "
+                  "labels have them.")
              : tr("%1 has no labels yet; apply it and load it again.").arg(source_->getSMName()));
   fill();
 }
@@ -90,6 +95,8 @@ void pqSonoTissueDock::fill()
 {
   filling_ = true;
   const QStringList columns = model_.columns();
+  const QStringList tissues = model_.tissueNames();
+  table_->clear();
   table_->setRowCount(model_.rowCount());
   table_->setColumnCount(columns.size());
   table_->setHorizontalHeaderLabels(columns);
@@ -98,39 +105,80 @@ void pqSonoTissueDock::fill()
   {
     for (int column = 0; column < columns.size(); ++column)
     {
-      const QString text = model_.value(row, column);
-      auto* item = new QTableWidgetItem(text);
-      if (column == SonoTissueModel::ID)
-      {
-        item->setFlags(item->flags() & ~Qt::ItemIsEditable);
-      }
-      else if (column == SonoTissueModel::COLOR)
-      {
-        item->setBackground(QColor(text));
-        item->setForeground(QColor(text).lightness() > 128 ? Qt::black : Qt::white);
-      }
+      auto* item = new QTableWidgetItem;
+      const bool isTyped = column == SonoTissueModel::NAME || column >= SonoTissueModel::FIRST_NUMBER;
+      item->setFlags(isTyped ? item->flags() | Qt::ItemIsEditable : item->flags() & ~Qt::ItemIsEditable);
       table_->setItem(row, column, item);
     }
+    auto* color = new pqColorChooserButton(table_);
+    color->setObjectName(QString("SonoColor_%1").arg(row));
+    color->setToolTip(tr("The label's colour"));
+    QObject::connect(color, &pqColorChooserButton::chosenColorChanged, this,
+                     [this, row](const QColor& chosen) { change(row, SonoTissueModel::COLOR, chosen.name()); });
+    table_->setCellWidget(row, SonoTissueModel::COLOR, color);
+    auto* tissue = new QComboBox(table_);
+    tissue->setObjectName(QString("SonoTissue_%1").arg(row));
+    tissue->setToolTip(tr("The tissue that the label is made of"));
+    tissue->addItems(tissues);
+    QObject::connect(tissue, &QComboBox::currentTextChanged, this,
+                     [this, row](const QString& chosen) { change(row, SonoTissueModel::TISSUE, chosen); });
+    table_->setCellWidget(row, SonoTissueModel::TISSUE, tissue);
   }
+  showValues();
   table_->resizeColumnsToContents();
+}
+
+void pqSonoTissueDock::showValues()
+{
+  filling_ = true;
+  for (int row = 0; row < table_->rowCount(); ++row)
+  {
+    for (int column = 0; column < table_->columnCount(); ++column)
+    {
+      const QString text = model_.value(row, column);
+      if (column == SonoTissueModel::COLOR)
+      {
+        qobject_cast<pqColorChooserButton*>(table_->cellWidget(row, column))->setChosenColor(QColor(text));
+      }
+      else if (column == SonoTissueModel::TISSUE)
+      {
+        qobject_cast<QComboBox*>(table_->cellWidget(row, column))->setCurrentText(text);
+      }
+      else
+      {
+        table_->item(row, column)->setText(text);
+      }
+    }
+  }
   filling_ = false;
 }
 
-void pqSonoTissueDock::change(int row, int column)
+void pqSonoTissueDock::change(int row, int column, const QString& text)
 {
   if (filling_)
   {
     return;
   }
-  const QString refusal = model_.setValue(row, column, table_->item(row, column)->text());
+  const QString refusal = model_.setValue(row, column, text);
   message_->setStyleSheet(refusal.isEmpty() ? "" : "color: #c0392b");
   say(refusal.isEmpty() ? tr("Changed; save to use it.") : refusal);
-  fill(); // the old text where it was refused, other labels of the tissue where it was not
+  if (!refusal.isEmpty())
+  {
+    const QRect cell = table_->visualItemRect(table_->item(row, column));
+    QToolTip::showText(table_->viewport()->mapToGlobal(cell.bottomLeft()), refusal, table_);
+  }
+  showValues(); // the old text where it was refused, other labels of the tissue where it was not
 }
 
 void pqSonoTissueDock::save()
 {
-  pqFileDialog dialog(nullptr, pqCoreUtilities::mainWidget(), tr("Save the tissues"), QString(), tr("Tables (*.csv)"));
+  if (!source_)
+  {
+    return say(tr("What these tissues belong to was deleted; select another one and load it."));
+  }
+  // Where the filter reads them: of a remote server, its files.
+  pqFileDialog dialog(source_->getServer(), pqCoreUtilities::mainWidget(), tr("Save the tissues"), QString(),
+                      tr("Tables (*.csv)"));
   dialog.setObjectName("SonoTissueSaveDialog");
   dialog.setFileMode(pqFileDialog::AnyFile);
   if (dialog.exec() != QDialog::Accepted || dialog.getSelectedFiles().isEmpty())
@@ -142,7 +190,8 @@ void pqSonoTissueDock::save()
   const QString labels = stem + "_labels.csv";
   const QString tissues = stem + "_tissues.csv";
   const QString refusal = model_.save(labels, tissues);
-  if (!refusal.isEmpty() || !source_)
+  message_->setStyleSheet(refusal.isEmpty() ? "" : "color: #c0392b");
+  if (!refusal.isEmpty())
   {
     return say(refusal);
   }

@@ -11,8 +11,8 @@ class QTableWidget;
 class pqPipelineSource;
 
 /// The tissue editor: the labels of the selected Ultrasound Scene or Simulate Ultrasound with name, colour, tissue and
-/// the tissue's numbers. What is typed is refused in place where it will not do; saved, it becomes the filter's label
-/// table and tissue table.
+/// the tissue's numbers. What is typed is refused in place where it will not do; saved, on the server where there is
+/// one, it becomes the filter's label table and tissue table.
 class pqSonoTissueDock : public QDockWidget
 {
   Q_OBJECT
@@ -23,7 +23,8 @@ public:
 private:
   void load();
   void fill();
-  void change(int row, int column);
+  void showValues();
+  void change(int row, int column, const QString& text);
   void save();
   void say(const QString& sentence);
 

@@ -79,6 +79,40 @@ class TestGui(GuiCase):
             # Fonts and triangles are drawn a little differently from driver to driver.
             self.compare(picture, "-fail", "0.1", "-failpercent", "1")
 
+    def test_a_click_in_the_flat_image_picks_its_scan_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("pick_line.xml", folder, f"--data={self.label_map(folder)}"), [])
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("picked", "undone", "dragged")]
+            picked, undone, dragged = ([self.values_of(state, "SonoALine", "Line") for state in states])
+            x_cm, y_cm = self.place_in_flat_view(states[0], 0.4, 0.6)
+        # 128 lines over 90 degrees.
+        expected = round((math.degrees(math.atan2(x_cm, y_cm)) + 45) / 90 * 127)
+        self.assertEqual(picked, [expected])
+        self.assertNotEqual(expected, 64)
+        self.assertEqual(undone, [64])
+        self.assertEqual(dragged, picked)
+
+    def place_in_flat_view(self, state, across, down):
+        """Where a part of the flat view's width and height is in its image: lateral and depth in cm."""
+        for view in ElementTree.parse(state).iter("Proxy"):
+            if view.get("type") == "RenderView" and self.values(view, "InteractionMode") == [1] and \
+                    self.values(view, "OrientationAxesVisibility") == [0]:
+                width, height = self.values(view, "ViewSize")
+                centre = self.values(view, "CameraFocalPoint")
+                (scale,) = self.values(view, "CameraParallelScale")
+                return (centre[0] + (across - 0.5) * 2 * scale * width / height,
+                        centre[1] + (down - 0.5) * 2 * scale)
+        return self.fail("There is no flat view.")
+
+    @staticmethod
+    def values(proxy, name):
+        return [float(e.get("value")) for e in proxy.findall(f"Property[@name='{name}']/Element")]
+
+    def values_of(self, state, kind, name):
+        """A property of the only proxy of a kind in a state file."""
+        (proxy,) = (p for p in ElementTree.parse(state).iter("Proxy") if p.get("type") == kind)
+        return self.values(proxy, name)
+
     def test_tissue_editor(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("tissues.xml", folder, f"--data={self.label_map(folder)}"), [])
@@ -90,6 +124,7 @@ class TestGui(GuiCase):
         self.assertEqual(tissues["skin"]["impedance_MRayl"], "1.95")
         self.assertEqual(tissues["fat"]["impedance_MRayl"], "1.38")  # as it was
         self.assertEqual([label["tissue"] for label in labels[:3]], ["air", "skin", "muscle"])
+        self.assertEqual([labels[2][column] for column in ("name", "r", "g", "b")], ["belly fat", "10", "200", "30"])
         for file in ("mine_labels.csv", "mine_tissues.csv"):
             self.assertIn(file, state)
 
@@ -131,7 +166,7 @@ class TestGui(GuiCase):
     def probe_of(path):
         """The pose in a state file."""
         (probe,) = (p for p in ElementTree.parse(path).iter("Proxy") if p.get("type") == "SonoProbeSource")
-        return {name: [float(e.get("value")) for e in probe.findall(f"Property[@name='{name}']/Element")]
+        return {name: TestGui.values(probe, name)
                 for name in ("PositionMm", "Axial", "Lateral", "Preview")}
 
     def test_bad_input_gives_one_sentence(self):

@@ -16,9 +16,9 @@ VECTOR_PROPERTIES = ("IntVectorProperty", "DoubleVectorProperty", "StringVectorP
 
 
 def described(class_name):
-    """The <SourceProxy> or <WriterProxy> of a class and its group."""
+    """The <SourceProxy>, <WriterProxy> or plain <Proxy> of a class and its group."""
     group = ElementTree.parse(XML_FOLDER / f"{class_name}.xml").getroot().find("ProxyGroup")
-    return group.get("name"), next(e for e in group if e.tag in ("SourceProxy", "WriterProxy"))
+    return group.get("name"), next(e for e in group if e.tag in ("SourceProxy", "WriterProxy", "Proxy"))
 
 
 def values(value):
@@ -32,7 +32,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 17)
+        self.assertEqual(len(CLASSES), 20)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()
@@ -68,10 +68,42 @@ class TestProxies(unittest.TestCase):
 
     def test_every_property_is_documented_and_has_its_number_of_elements(self):
         for _, _, description in self.each():
-            for element in (e for e in description if e.tag.endswith("Property")):
+            for element in (e for e in description if e.tag.endswith("Property") and e.tag != "Property"):
                 with self.subTest(property=element.get("name")):
                     self.assertTrue(element.findtext("Documentation", "").strip())
                     self.assertTrue(element.tag == "InputProperty" or element.get("number_of_elements"))
+
+    def shown(self):
+        """The properties that a panel shows, with their tooltips."""
+        for _, _, description in self.each():
+            for element in (e for e in description if e.tag in VECTOR_PROPERTIES + ("InputProperty",)):
+                if not element.get("information_only") and element.get("panel_visibility") != "never":
+                    with self.subTest(property=element.get("name")):
+                        yield element, " ".join(element.findtext("Documentation", "").split())
+
+    def test_every_tooltip_is_a_sentence(self):
+        for _, tooltip in self.shown():
+            self.assertRegex(tooltip, r"^[A-Z].*\w+ \w+ \w+.*\.$")
+
+    def test_every_number_has_a_unit_and_a_range(self):
+        """In its tooltip, and a domain that the panel keeps to."""
+        numbers = 0
+        for element, tooltip in self.shown():
+            domains = {child.tag for child in element}
+            if element.tag in ("IntVectorProperty", "DoubleVectorProperty") and \
+                    not domains & {"EnumerationDomain", "BooleanDomain"}:
+                numbers += 1
+                self.assertTrue(domains & {"IntRangeDomain", "DoubleRangeDomain"})
+                self.assertRegex(tooltip, r"\b(mm|cm|dB|MHz|degrees|no unit)\b")
+                self.assertRegex(tooltip, r"\d|any place")
+        self.assertGreater(numbers, 80)
+
+    def test_simple_panels_are_short(self):
+        """What few people touch is advanced: of Simulate Ultrasound's settings the most."""
+        element = described("vtkSonoUltrasound")[1]
+        own = [e for e in element if e.tag in VECTOR_PROPERTIES]
+        simple_ones = [e for e in own if not e.get("panel_visibility")]
+        self.assertLess(len(simple_ones), 0.5 * len(own))
 
     def test_simulate_ultrasound_describes_settings_as_the_stages_do(self):
         """Labels, ranges and tooltips are those of the stage whose setting it is; some defaults differ."""

@@ -1,0 +1,172 @@
+#include "vtkSonoFlatScale.h"
+
+#include "SonoProbeField.h"
+#include "SonoStage.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkIdList.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkVectorText.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+vtkStandardNewMacro(vtkSonoFlatScale);
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+enum Part
+{
+  RULER = 0,
+  MARKER = 1
+};
+
+/// Strokes, discs and letters in the plane of the image, y down.
+class Drawing
+{
+public:
+  void stroke(double x0, double y0, double x1, double y1)
+  {
+    lines_->InsertNextCell({ point(x0, y0), point(x1, y1) });
+    lineParts_->InsertNextValue(RULER);
+  }
+
+  void disc(double x, double y, double radius)
+  {
+    constexpr int corners = 32;
+    polygons_->InsertNextCell(corners);
+    for (int i = 0; i < corners; ++i)
+    {
+      const double angle = 2.0 * pi * i / corners;
+      polygons_->InsertCellPoint(point(x + radius * std::cos(angle), y + radius * std::sin(angle)));
+    }
+    polygonParts_->InsertNextValue(MARKER);
+  }
+
+  /// Its middle at `y`, and its left or right end at `x`.
+  void text(const std::string& content, double x, double y, double height, bool endsAtX, Part part)
+  {
+    vtkNew<vtkVectorText> letters;
+    letters->SetText(content.c_str());
+    letters->Update();
+    vtkPolyData* shape = letters->GetOutput();
+    const double* box = shape->GetBounds();
+    const double scale = height / (box[3] - box[2]);
+    const double left = endsAtX ? x - scale * (box[1] - box[0]) : x;
+    vtkNew<vtkIdList> corners;
+    for (vtkIdType cell = 0; cell < shape->GetNumberOfCells(); ++cell)
+    {
+      shape->GetCellPoints(cell, corners);
+      polygons_->InsertNextCell(static_cast<int>(corners->GetNumberOfIds()));
+      for (const vtkIdType id : *corners)
+      {
+        const double* at = shape->GetPoint(id);
+        polygons_->InsertCellPoint(
+          point(left + scale * (at[0] - box[0]), y - scale * (at[1] - (box[2] + box[3]) / 2.0)));
+      }
+      polygonParts_->InsertNextValue(part);
+    }
+  }
+
+  void finish(vtkPolyData* polyData)
+  {
+    vtkNew<vtkIntArray> parts;
+    parts->SetName("Part");
+    for (vtkIntArray* some : { lineParts_.Get(), polygonParts_.Get() }) // lines come first in poly data
+    {
+      parts->InsertTuples(parts->GetNumberOfTuples(), some->GetNumberOfTuples(), 0, some);
+    }
+    polyData->SetPoints(points_);
+    polyData->SetLines(lines_);
+    polyData->SetPolys(polygons_);
+    polyData->GetCellData()->AddArray(parts);
+  }
+
+private:
+  vtkIdType point(double x, double y)
+  {
+    constexpr double inFrontCm = -0.01;
+    return points_->InsertNextPoint(x, y, inFrontCm);
+  }
+
+  vtkNew<vtkPoints> points_;
+  vtkNew<vtkCellArray> lines_;
+  vtkNew<vtkCellArray> polygons_;
+  vtkNew<vtkIntArray> lineParts_;
+  vtkNew<vtkIntArray> polygonParts_;
+};
+
+/// Half the lateral width of a polyline of the outline, in cm.
+double halfWidthCm(const std::vector<sono::Vec3d>& polyline)
+{
+  double widest = 0.0;
+  for (const sono::Vec3d& p : polyline)
+  {
+    widest = std::max(widest, std::abs(p.x) / 10.0);
+  }
+  return widest;
+}
+
+void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
+{
+  const auto outline = sono::scanOutline(geometry);
+  const double depthCm = geometry.depthMm / 10.0;
+  const double faceCm = geometry.kind == sono::ScanKind::Radial ? geometry.radiusMm / 10.0 : 0.0;
+  const int numbered = depthCm < 8.0 ? 1 : 5;
+  const double rulerCm = -halfWidthCm(outline[0]) - 0.03 * depthCm;
+  drawing.stroke(rulerCm, faceCm, rulerCm, faceCm + depthCm);
+  for (int cm = 0; cm <= std::floor(depthCm + 1e-9); ++cm)
+  {
+    const bool isNumbered = cm % numbered == 0;
+    const double tickCm = rulerCm - (isNumbered ? 0.03 : 0.015) * depthCm;
+    drawing.stroke(rulerCm, faceCm + cm, tickCm, faceCm + cm);
+    if (isNumbered)
+    {
+      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickCm - 0.015 * depthCm, faceCm + cm, 0.035 * depthCm,
+                   true, RULER);
+    }
+  }
+  const double markerCm = halfWidthCm(outline[1]) + 0.07 * depthCm;
+  drawing.disc(markerCm, 0.0, 0.02 * depthCm);
+  drawing.text("S", markerCm + 0.04 * depthCm, 0.0, 0.055 * depthCm, false, MARKER);
+}
+
+} // namespace
+
+vtkSonoFlatScale::vtkSonoFlatScale() = default;
+vtkSonoFlatScale::~vtkSonoFlatScale() = default;
+
+void vtkSonoFlatScale::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}
+
+int vtkSonoFlatScale::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+int vtkSonoFlatScale::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  return sono::runStage(this, output, [&] {
+    const sono::ScanGeometry geometry = sono::readProbe(vtkDataSet::GetData(input[0])->GetFieldData()).geometry;
+    if (geometry.kind != sono::ScanKind::Matrix)
+    {
+      Drawing drawing;
+      draw(geometry, drawing);
+      drawing.finish(vtkPolyData::GetData(output));
+    }
+  });
+}

@@ -1,0 +1,37 @@
+#ifndef vtkSonoFlatScale_h
+#define vtkSonoFlatScale_h
+
+#include "vtkPolyDataAlgorithm.h"
+#include "vtkSonoFiltersModule.h" // for export macro
+
+/**
+ * @class vtkSonoFlatScale
+ * @brief What a scanner draws beside its image: a depth scale and the probe's marker
+ *
+ * Takes whatever carries a probe in its field data: the output of vtkSonoProbeSource, lines or images. The output lies
+ * in the frame of the flat image of vtkSonoScanConverter, in cm, a hair in front of it as seen with the transducer on
+ * top: left of the scanned area a ruler of the depth from the transducer's face, a tick each centimetre, a longer one
+ * with its number each five (each centimetre where there are fewer than eight); right of the face a dot with the letter
+ * S, on the side of the probe's marker, to which the lateral direction points. The cell array "Part" is 0 on the ruler
+ * and 1 on the marker. For a matrix, whose image is a volume, the output is empty.
+ */
+class VTKSONOFILTERS_EXPORT vtkSonoFlatScale : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkSonoFlatScale* New();
+  vtkTypeMacro(vtkSonoFlatScale, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+protected:
+  vtkSonoFlatScale();
+  ~vtkSonoFlatScale() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkSonoFlatScale(const vtkSonoFlatScale&) = delete;
+  void operator=(const vtkSonoFlatScale&) = delete;
+};
+
+#endif
