@@ -67,6 +67,11 @@ void ImagePlacement::setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z)
   }
 }
 
+double pixelMmOf(const ProbeField& probe, double settingMm)
+{
+  return probe.preview ? 2.0 * settingMm : settingMm;
+}
+
 ImagePlacement placementOf(const ProbeField& probe, double pixelMm)
 {
   if (probe.geometry.kind == ScanKind::Matrix)

@@ -25,6 +25,26 @@ vtkDataArray* findArray(const char* name, vtkFieldData* arrays, int components)
   return array;
 }
 
+/// All components one after the other.
+std::vector<float> floatsOf(vtkDataArray* array)
+{
+  std::vector<float> values(static_cast<std::size_t>(array->GetNumberOfValues()));
+  // The stages' own arrays are copied as they are; a user's may be of any type.
+  if (auto* floats = vtkFloatArray::SafeDownCast(array))
+  {
+    std::copy_n(floats->GetPointer(0), values.size(), values.begin());
+    return values;
+  }
+  const int components = array->GetNumberOfComponents();
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const auto tuple = static_cast<vtkIdType>(i) / components;
+    values[i] =
+      static_cast<float>(array->GetComponent(tuple, static_cast<int>(static_cast<vtkIdType>(i) % components)));
+  }
+  return values;
+}
+
 } // namespace
 
 void announceLineImage(const LineImageLayout& layout, int components, vtkInformation* outInfo)
@@ -87,22 +107,17 @@ std::vector<float> lineValues(const char* name, vtkFieldData* arrays, std::size_
     throw Error(std::string("The array '") + name +
                 "' does not fit its image; connect the output of the stage before.");
   }
-  std::vector<float> values(count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    values[i] = static_cast<float>(array->GetTuple1(static_cast<vtkIdType>(i)));
-  }
-  return values;
+  return floatsOf(array);
 }
 
 std::vector<std::complex<float>> complexLineValues(const char* name, vtkFieldData* arrays)
 {
   vtkDataArray* array = findArray(name, arrays, 2);
-  std::vector<std::complex<float>> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  const std::vector<float> parts = floatsOf(array);
+  std::vector<std::complex<float>> values(parts.size() / 2);
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    const double* parts = array->GetTuple2(static_cast<vtkIdType>(i));
-    values[i] = { static_cast<float>(parts[0]), static_cast<float>(parts[1]) };
+    values[i] = { parts[2 * i], parts[2 * i + 1] };
   }
   return values;
 }

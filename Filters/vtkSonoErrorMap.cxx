@@ -111,7 +111,7 @@ int vtkSonoErrorMap::RequestInformation(vtkInformation*, vtkInformationVector** 
   return sono::announceStage(this, [&] {
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
     const sono::ProbeField probe = sono::readProbe(acquisition);
-    const sono::ImagePlacement placement = sono::placementOf(probe, this->PixelMm);
+    const sono::ImagePlacement placement = sono::placementOf(probe, sono::pixelMmOf(probe, this->PixelMm));
     placement.announce(VTK_FLOAT, output->GetInformationObject(0));
     placement.flat(probe.pose).announce(VTK_FLOAT, output->GetInformationObject(1));
     for (int port : { 0, 1 })
@@ -132,18 +132,19 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
+    const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
     const auto fill = [&](const auto& converted) {
       fillMap(converted, probe.pose, vtkImageData::GetData(output, 0), vtkImageData::GetData(output, 1));
     };
     const bool isVolume = probe.geometry.kind == sono::ScanKind::Matrix;
     if (probe.preview && isVolume)
     {
-      const sono::VolumeImage image = sono::volumeImageLayout(probe.geometry, this->PixelMm);
+      const sono::VolumeImage image = sono::volumeImageLayout(probe.geometry, pixelMm);
       return fill(unknown(image, image.voxelCount()));
     }
     if (probe.preview)
     {
-      const sono::PlaneImage image = sono::planeImageLayout(probe.geometry, this->PixelMm);
+      const sono::PlaneImage image = sono::planeImageLayout(probe.geometry, pixelMm);
       return fill(unknown(image, std::size_t(image.width) * image.height));
     }
     const std::size_t count = std::size_t(layout.lineCount) * layout.sampleCount;
@@ -155,12 +156,11 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     const double sampleMm = layout.sampleMm / 2.0;
     if (isVolume)
     {
-      fill(
-        sono::scanConvertVolume(probe.geometry, samples, sampleCount, sampleMm, this->PixelMm, sono::progressOf(this)));
+      fill(sono::scanConvertVolume(probe.geometry, samples, sampleCount, sampleMm, pixelMm, sono::progressOf(this)));
     }
     else
     {
-      fill(sono::scanConvert(probe.geometry, samples, sampleCount, sampleMm, this->PixelMm));
+      fill(sono::scanConvert(probe.geometry, samples, sampleCount, sampleMm, pixelMm));
     }
   });
 }

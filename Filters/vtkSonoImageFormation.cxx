@@ -23,7 +23,7 @@ vtkStandardNewMacro(vtkSonoImageFormation);
 
 namespace {
 
-constexpr double previewCell = 1.5; // of the cell's edge that is set
+constexpr double previewCell = 2.0; // of the cell's edge that is set
 constexpr double widestCellMm = 10.0;
 
 sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe, double echoSampleMm)

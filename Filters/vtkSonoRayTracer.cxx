@@ -40,8 +40,8 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
   return grid;
 }
 
-constexpr int previewPaths = 60;
-constexpr double previewSamplesPerPeriod = 6.0;
+constexpr int previewPaths = 120;
+constexpr double previewSamplesPerPeriod = 4.0;
 
 /// Of the RF of this probe.
 double rfSamplingMHz(double settingMHz, const sono::ProbeField& probe)

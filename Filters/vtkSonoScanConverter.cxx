@@ -130,7 +130,7 @@ int vtkSonoScanConverter::RequestInformation(vtkInformation*, vtkInformationVect
   return sono::announceStage(this, [&] {
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
     const sono::ProbeField probe = sono::readProbe(acquisition);
-    const sono::ImagePlacement placement = sono::placementOf(probe, this->PixelMm);
+    const sono::ImagePlacement placement = sono::placementOf(probe, sono::pixelMmOf(probe, this->PixelMm));
     placement.announce(VTK_UNSIGNED_CHAR, output->GetInformationObject(0));
     placement.flat(probe.pose).announce(VTK_UNSIGNED_CHAR, output->GetInformationObject(1));
     for (int port : { 0, 1 })
@@ -159,18 +159,19 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     {
       labels = sceneLabels(lines->GetFieldData());
     }
+    const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
     const auto fill = [&](const auto& converted) {
       fillImage(converted, probe.pose, labels.get(), vtkImageData::GetData(output, 0),
                 vtkImageData::GetData(output, 1));
     };
     if (probe.geometry.kind == sono::ScanKind::Matrix)
     {
-      fill(sono::scanConvertVolume(probe.geometry, grey, layout.sampleCount, layout.sampleMm, this->PixelMm,
+      fill(sono::scanConvertVolume(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm,
                                    sono::progressOf(this)));
     }
     else
     {
-      fill(sono::scanConvert(probe.geometry, grey, layout.sampleCount, layout.sampleMm, this->PixelMm));
+      fill(sono::scanConvert(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm));
     }
   });
 }

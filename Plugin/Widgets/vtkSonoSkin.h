@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+class SonoSkinSurface;
 class vtkDataObject;
 
 /**
@@ -25,10 +26,20 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Takes the polygons of a dataset, or of all leaves of a composite one, instead of those before; null: none. Search
-   * structures are built on first need and kept for surfaces that stay.
+   * Takes the polygons of a dataset, or of all leaves of a composite one, instead of those before; null: none. A
+   * surface is sorted for searching when it is first asked, and stays so while it is among them.
    */
   void SetSurfaces(vtkDataObject* surfaces);
+
+  /**
+   * Sorts all surfaces now, so that the first question need not wait for it.
+   */
+  void Prepare();
+
+  /**
+   * How many surfaces have been sorted so far.
+   */
+  vtkGetMacro(NumberOfSorts, int);
 
   /**
    * Whether there is no polygon at all.
@@ -68,8 +79,10 @@ private:
   vtkSonoSkin(const vtkSonoSkin&) = delete;
   void operator=(const vtkSonoSkin&) = delete;
 
-  class Surface;
-  std::vector<std::shared_ptr<Surface>> Surfaces;
+  void Sort(SonoSkinSurface& surface);
+
+  std::vector<std::shared_ptr<SonoSkinSurface>> Surfaces;
+  int NumberOfSorts = 0;
   double SmoothingMm = 10.0;
 };
 

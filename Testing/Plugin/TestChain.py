@@ -201,11 +201,13 @@ class TestChain(unittest.TestCase):
 
     def test_moving_probe_has_a_coarse_picture_of_the_same_size(self):
         fine = grey(make_chain())
+        size = Fetch(simple.FindSource("picture")).GetBounds()
         probe = simple.FindSource("probe")
         probe.Preview = 1
         coarse = grey(simple.FindSource("picture"))
-        self.assertEqual(coarse.shape, fine.shape)
-        self.assertFalse((coarse == fine).all())
+        self.assertLess(coarse.size, fine.size / 3)
+        for one, other in zip(Fetch(simple.FindSource("picture")).GetBounds(), size):
+            self.assertAlmostEqual(one, other, delta=0.5)
         self.assertGreater(coarse.max(), 200)
         probe.Preview = 0
         self.assertTrue((grey(simple.FindSource("picture")) == fine).all())  # nothing of the movement stays

@@ -8,7 +8,8 @@ import numpy as np
 from sonovdb.vtkSonoFilters import vtkSonoProbeSource
 from sonovdb.vtkSonoWidgets import vtkSonoProbeRepresentation, vtkSonoProbeWidget, vtkSonoSkin
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData, vtkStaticCellLocator
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor
 
@@ -180,6 +181,58 @@ class TestSkin(unittest.TestCase):
         self.assertLess(angle(normal, (0, 0, 1)), 0.5)
         self.assertTrue(skin.FindNearest((0, 30, 0), place, normal))
         np.testing.assert_allclose(place, (0, 20, 0), atol=0.05)
+
+    def test_it_finds_what_a_locator_finds(self):
+        rng = np.random.default_rng(7)
+        mesh = sphere(60, steps=90, noise=3)
+        skin, locator = vtkSonoSkin(), vtkStaticCellLocator()
+        skin.SetSurfaces(mesh)
+        skin.SetSmoothingMm(0)
+        locator.SetDataSet(mesh)
+        locator.BuildLocator()
+        place, normal, expected, inside = ([0.0] * 3 for _ in range(4))
+        share, distance2, cell, part = reference(0.0), reference(0.0), reference(0), reference(0)
+        met = 0
+        for start, end in zip(*rng.uniform(-90, 90, (2, 300, 3))):
+            hits = locator.IntersectWithLine(start, end, 1e-6, share, expected, inside, part, cell)
+            self.assertEqual(skin.Meet(start, end, place, normal), bool(hits))
+            if hits:
+                met += 1
+                np.testing.assert_allclose(place, expected, atol=1e-6)
+            locator.FindClosestPoint(start, expected, cell, part, distance2)
+            self.assertTrue(skin.FindNearest(start, place, normal))
+            self.assertAlmostEqual(np.linalg.norm(start - place), np.sqrt(distance2.get()), places=6)
+        self.assertGreater(met, 100)
+
+    def test_large_and_small_polygons_together(self):
+        plane = vtkPlaneSource()
+        plane.SetOrigin(-50, -50, 0)
+        plane.SetPoint1(50, -50, 0)
+        plane.SetPoint2(-50, 50, 0)
+        plane.Update()
+        skin = vtkSonoSkin()
+        skin.SetSurfaces(blocks(plane.GetOutput(), sphere(3)))
+        place, normal = [0.0] * 3, [0.0] * 3
+        for x, y, height in ((0, 0, 3), (1, 40, 0), (-49, -49, 0)):
+            self.assertTrue(skin.Meet((x, y, 20), (x, y, -20), place, normal))
+            np.testing.assert_allclose(place, (x, y, height), atol=0.05)
+
+    def test_a_surface_is_sorted_once(self):
+        skin = vtkSonoSkin()
+        outer, inner = sphere(100), sphere(20)
+        place, normal = [0.0] * 3, [0.0] * 3
+        for step in range(50):
+            surfaces = blocks(outer, inner)  # as a pipeline makes them again each time
+            skin.SetSurfaces(surfaces)
+            skin.Meet(turned(np.array((150.0, 0, 0)), (0, 0, 1), step), (90, 0, 0), place, normal)
+        self.assertEqual(skin.GetNumberOfSorts(), 1)  # the outer one hides the other
+        skin.Prepare()
+        self.assertEqual(skin.GetNumberOfSorts(), 2)
+        skin.FindNearest((0, 0, 50), place, normal)
+        self.assertEqual(skin.GetNumberOfSorts(), 2)
+        skin.SetSurfaces(blocks(sphere(100), inner))
+        skin.Prepare()
+        self.assertEqual(skin.GetNumberOfSorts(), 3)
 
     def test_what_is_no_surface_is_left_out(self):
         skin = vtkSonoSkin()

@@ -1,0 +1,139 @@
+"""A probe on its way: each step runs the stages behind the probe once and prepares nothing again, the picture does not depend
+on the way, and it looks like the final one."""
+import unittest
+
+import numpy as np
+from chain import Chain, count_runs, make
+from sonovdb.vtkSonoFilters import vtkSonoThoraxSource, vtkSonoUltrasound
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+
+def array(image, name="BMode"):
+    width, height, _ = image.GetDimensions()
+    return vtk_to_numpy(image.GetPointData().GetArray(name)).reshape(height, width).copy()
+
+
+def ultrasound_on(thorax, **settings):
+    """The one filter at the thorax' own pose."""
+    ultrasound = make(vtkSonoUltrasound, BuildSurfaces=False, **settings)
+    ultrasound.SetInputConnection(thorax.GetOutputPort())
+    field = thorax.GetOutput().GetFieldData()
+    for part in ("PositionMm", "Axial", "Lateral"):
+        getattr(ultrasound, "Set" + part)(*field.GetArray("A4C" + part).GetTuple3(0))
+    return ultrasound
+
+
+def moved(position, steps):
+    return [p + 0.6 * steps * direction for p, direction in zip(position, (0.3, 0.2, 1.0))]
+
+
+class TestDrag(unittest.TestCase):
+    def test_a_step_runs_each_stage_once_and_the_scene_never(self):
+        chain = Chain()
+        chain.converter.Update()
+        runs = {name: count_runs(stage) for name, stage in chain.stages().items()}
+        position = chain.probe.GetPositionMm()
+        chain.probe.SetPreview(True)
+        for step in range(1, 11):
+            chain.probe.SetPositionMm(moved(position, step))
+            chain.converter.Update()
+        counts = {name: len(times) for name, times in runs.items()}
+        self.assertEqual(counts.pop("scene", 0), 0)
+        self.assertEqual(counts.pop("thorax", 0), 0)
+        self.assertEqual(set(counts.values()), {10})
+
+    def test_the_one_filter_builds_its_anatomy_once(self):
+        thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
+        thorax.Update()
+        ultrasound = ultrasound_on(thorax, LineCount=12, PathsPerLine=20)
+        position = ultrasound.GetPositionMm()
+        texts = []
+        ultrasound.AddObserver("ProgressEvent", lambda *_: texts.append(ultrasound.GetProgressText()))
+        ultrasound.Update()
+        self.assertIn("Building the anatomy", texts)
+        texts.clear()
+        ultrasound.SetPreview(True)
+        for step in range(1, 6):
+            ultrasound.SetPositionMm(*moved(position, step))
+            ultrasound.Update()
+        self.assertIn("Tracing", texts)
+        self.assertNotIn("Building the anatomy", texts)
+
+    def test_picture_does_not_depend_on_the_way(self):
+        thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
+        thorax.Update()
+        dragged = ultrasound_on(thorax, LineCount=24)
+        fresh = ultrasound_on(thorax, LineCount=24)
+        position = dragged.GetPositionMm()
+        dragged.Update()
+        for preview in (True, False):  # on the way, and when it rests
+            dragged.SetPreview(True)
+            for step in range(1, 13):
+                dragged.SetPositionMm(*moved(position, step))
+                dragged.Update()
+            for ultrasound in (dragged, fresh):
+                ultrasound.SetPositionMm(*moved(position, 12))
+                ultrasound.SetPreview(preview)
+                ultrasound.Update()
+            for port in range(dragged.GetNumberOfOutputPorts()):
+                made, expected = dragged.GetOutputDataObject(port), fresh.GetOutputDataObject(port)
+                if made.IsA("vtkImageData"):
+                    with self.subTest(preview=preview, port=port):
+                        for i in range(expected.GetPointData().GetNumberOfArrays()):
+                            np.testing.assert_array_equal(vtk_to_numpy(made.GetPointData().GetArray(i)),
+                                                          vtk_to_numpy(expected.GetPointData().GetArray(i)))
+
+
+class TestPreview(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        thorax = make(vtkSonoThoraxSource, SpacingMm=2.0)
+        thorax.Update()
+        ultrasound = ultrasound_on(thorax, LineCount=64)
+        cls.images = {}
+        for name, preview in (("fine", False), ("coarse", True)):
+            ultrasound.SetPreview(preview)
+            ultrasound.Update()
+            image = ultrasound.GetOutputDataObject(0).NewInstance()
+            image.DeepCopy(ultrasound.GetOutputDataObject(0))
+            cls.images[name] = image
+        cls.db_per_grey = ultrasound.GetDynamicRangeDb() / 255
+
+    def squares(self, name, edge):
+        """Mean levels in dB of squares of pixels, and the part of each that lies in the sector."""
+        image = self.images[name]
+        inside = array(image, "Mask") > 0
+        level = array(image) * self.db_per_grey * inside
+        rows, columns = (n // edge for n in level.shape)
+
+        def summed(values):
+            return values[:rows * edge, :columns * edge].reshape(rows, edge, columns, edge).sum(axis=(1, 3))
+
+        count = summed(inside.astype(float))
+        return summed(level) / np.maximum(count, 1), count / edge**2
+
+    def test_it_lies_in_the_same_place(self):
+        fine, coarse = self.images["fine"], self.images["coarse"]
+        pixel = coarse.GetSpacing()[0]
+        np.testing.assert_allclose(coarse.GetBounds(), fine.GetBounds(), atol=pixel)
+        self.assertEqual(pixel, 2 * fine.GetSpacing()[0])
+        self.assertLess(coarse.GetNumberOfPoints(), fine.GetNumberOfPoints() / 3.9)
+
+    def test_it_is_as_bright(self):
+        mean = {name: array(image)[array(image, "Mask") > 0].mean() * self.db_per_grey
+                for name, image in self.images.items()}
+        # Fewer paths leave noise in what is dark.
+        self.assertLess(abs(mean["coarse"] - mean["fine"]), 2.5)
+
+    def test_it_shows_the_same(self):
+        fine, share = self.squares("fine", 40)
+        coarse, coarse_share = self.squares("coarse", 20)
+        rows, columns = np.minimum(fine.shape, coarse.shape)
+        whole = (share[:rows, :columns] > 0.95) & (coarse_share[:rows, :columns] > 0.95)
+        self.assertGreater(whole.sum(), 100)
+        pair = fine[:rows, :columns][whole], coarse[:rows, :columns][whole]
+        self.assertGreater(np.corrcoef(*pair)[0, 1], 0.95)
+
+
+if __name__ == "__main__":
+    unittest.main()

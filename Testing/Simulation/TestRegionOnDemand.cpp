@@ -1,0 +1,185 @@
+// Records that are baked on demand are those of the whole region, and a probe on its way has one region for all poses.
+#include "BusyScene.h"
+
+#include "Progress.h"
+#include "Trace/TraceSetup.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace sono {
+namespace {
+
+using test::busySettings;
+using test::fan;
+using test::makeBusyScene;
+
+/// The busy scene's fan, slid along the face and tilted.
+std::vector<ScanLine> movedFan(double slideMm, double tiltRad)
+{
+  std::vector<ScanLine> lines = fan(9);
+  for (ScanLine& line : lines)
+  {
+    const Vec3d axis(line.axis.x, std::sin(tiltRad), line.axis.z);
+    line = test::makeLine(line.originMm + Vec3d(slideMm, 0.0, 0.0), axis);
+  }
+  return lines;
+}
+
+void expectSameBits(const TracedLines& one, const TracedLines& two)
+{
+  EXPECT_EQ(one.intensity, two.intensity);
+  EXPECT_EQ(one.standardError, two.standardError);
+  EXPECT_EQ(one.boundaryEcho, two.boundaryEcho);
+}
+
+TraceRegion wholeRegion(const Scene& scene, const VoxelBox& box)
+{
+  return buildTraceRegion(scene.tissueVoxels().data(), scene.placement().size, scene.placement().spacingMm, box);
+}
+
+RegionOnDemand regionOnDemand(const Scene& scene, const VoxelBox& box,
+                              const std::shared_ptr<const RegionOnDemand>& other = nullptr)
+{
+  return { scene.tissueVoxels().data(), scene.placement().size, scene.placement().spacingMm, box, {}, other };
+}
+
+/// Each record of the region as its cells give it, compared with the whole region's. How many there are.
+int compareRecords(const RegionOnDemand& region, const TraceRegion& whole)
+{
+  const CellsOnDemand cells = region.view();
+  const TissueCells expected = whole.view();
+  EXPECT_EQ(region.region().cell, whole.cell);
+  int count = 0;
+  for (int k = 0; k < cells.size.z; ++k)
+  {
+    for (int j = 0; j < cells.size.y; ++j)
+    {
+      for (int i = 0; i < cells.size.x; ++i)
+      {
+        const std::uint32_t word = cells.wordAt(i, j, k);
+        const std::uint32_t bits = cells.recordOf(i, j, k, word);
+        EXPECT_EQ(bits, expected.recordOf(i, j, k, word));
+        count += bits != 0u ? 1 : 0;
+      }
+    }
+  }
+  return count;
+}
+
+TEST(RegionOnDemand, RecordsAreThoseOfTheWholeRegion)
+{
+  const auto scene = makeBusyScene();
+  const VoxelBox box{ Vec3i(3, 5, 2), Vec3i(60, 41, 64) };
+  const RegionOnDemand region = regionOnDemand(*scene, box);
+  EXPECT_EQ(region.bakedBlocks(), 0);
+  const int count = compareRecords(region, wholeRegion(*scene, box));
+  EXPECT_GT(count, 3000);
+  EXPECT_GT(region.bakedBlocks(), 100);
+  EXPECT_LT(region.bakedBlocks(), 8 * 5 * 8); // blocks of one tissue have none
+}
+
+TEST(RegionOnDemand, WhatAnotherRegionKnowsIsTheSame)
+{
+  const auto scene = makeBusyScene();
+  // Its blocks lie otherwise, and it does not reach as far.
+  const auto other =
+    std::make_shared<const RegionOnDemand>(scene->tissueVoxels().data(), scene->placement().size,
+                                           scene->placement().spacingMm, VoxelBox{ Vec3i(5, 0, 3), Vec3i(50, 48, 40) });
+  other->bakeAll();
+  const VoxelBox box{ Vec3i(0), scene->placement().size };
+  compareRecords(regionOnDemand(*scene, box, other), wholeRegion(*scene, box));
+}
+
+TEST(RegionOnDemand, PathsMeetAFewOfTheRecordsAndGiveTheSameBits)
+{
+  const auto scene = makeBusyScene();
+  TraceSettings settings = busySettings();
+  settings.pathsPerLine = 8;
+  settings.lobeSigmaRad = 0.05;
+  const auto lines = fan(5);
+  const TracedLines onDemand = trace(*scene, lines, settings);
+  const TraceSetup setup(*scene, lines, settings, {}, {}, Records::OnDemand);
+  const int met = setup.cells->bakedBlocks();
+  setup.cells->bakeAll();
+  EXPECT_LT(met, setup.cells->bakedBlocks() / 2);
+  expectSameBits(trace(*scene, lines, settings), onDemand);
+}
+
+TEST(ProbeOnTheWay, ImageIsThatOfAFreshScene)
+{
+  TraceSettings settings = busySettings();
+  settings.pathsPerLine = 32;
+  settings.onTheWay = true;
+  for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::SharedPaths })
+  {
+    settings.sampling = sampling;
+    const auto scene = makeBusyScene();
+    TraceSettings atRest = settings;
+    atRest.onTheWay = false;
+    trace(*scene, fan(9), atRest);
+    prepareForTheWay(*scene, fan(9), atRest);
+    TracedLines last;
+    for (int step = 0; step <= 40; ++step)
+    {
+      last = trace(*scene, movedFan(-20.0 + step, 0.01 * step), settings);
+    }
+    const auto end = movedFan(20.0, 0.4);
+    expectSameBits(last, trace(*makeBusyScene(), end, settings));
+    // And what the probe sees at rest does not depend on the way either, though it takes over what was baked.
+    expectSameBits(trace(*scene, end, atRest), trace(*makeBusyScene(), end, atRest));
+  }
+}
+
+TEST(ProbeOnTheWay, OneRegionIsPreparedForAllPoses)
+{
+  const auto scene = makeBusyScene();
+  std::set<std::shared_ptr<const RegionOnDemand>> regions;
+  for (int step = 0; step <= 40; ++step)
+  {
+    const auto lines = movedFan(-20.0 + step, 0.01 * step);
+    regions.insert(scene->regionOnTheWay(fanBox(*scene, lines, 30.0)));
+  }
+  EXPECT_EQ(regions.size(), 1u);
+}
+
+TEST(ProbeOnTheWay, ALongVolumeIsCutAtTheSamePlacesForEveryPose)
+{
+  const std::vector<Tissue> tissues = { test::makeTissue("a", 1.5, 1540, 0.4), test::makeTissue("b", 2.4, 1700, 0.6) };
+  const auto scene =
+    test::makeScene(Vec3i(4, 4, 1300), Vec3d(1.0), tissues, [](const Vec3d& p) { return int(p.z / 7.0) % 2; });
+  const auto boxAround = [&](int first, int last) {
+    return scene->regionOnTheWay({ Vec3i(0, 0, first), Vec3i(4, 4, last) })->region().box;
+  };
+  const auto expectBox = [&](const VoxelBox& box, int first, int last) {
+    EXPECT_EQ(box.first, Vec3i(0, 0, first));
+    EXPECT_EQ(box.last, Vec3i(4, 4, last));
+  };
+  expectBox(boxAround(10, 300), 0, 512);
+  expectBox(boxAround(400, 700), 0, 1024);
+  expectBox(boxAround(600, 900), 512, 1024);
+  expectBox(boxAround(1100, 1290), 1024, 1300);
+}
+
+TEST(ProbeOnTheWay, SeesWhatAProbeAtRestSees)
+{
+  const auto scene = makeBusyScene();
+  TraceSettings settings = busySettings();
+  settings.depthMm = 25.0; // so that the regions differ
+  const auto lines = movedFan(3.0, 0.1);
+  const TracedLines atRest = trace(*scene, lines, settings);
+  settings.onTheWay = true;
+  const TracedLines onTheWay = trace(*scene, lines, settings);
+  double error = 0.0;
+  double total = 0.0;
+  for (std::size_t i = 0; i < atRest.intensity.size(); ++i)
+  {
+    error += std::pow(double(atRest.intensity[i]) - onTheWay.intensity[i], 2);
+    total += std::pow(double(atRest.intensity[i]), 2);
+  }
+  EXPECT_LT(std::sqrt(error / total), 1e-3); // rounding, which takes a path in a hundred thousand elsewhere
+}
+
+} // namespace
+} // namespace sono
