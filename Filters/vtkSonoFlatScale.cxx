@@ -133,13 +133,13 @@ void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
     drawing.stroke(rulerCm, faceCm + cm, tickCm, faceCm + cm);
     if (isNumbered)
     {
-      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickCm - 0.015 * depthCm, faceCm + cm, 0.035 * depthCm,
+      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickCm - 0.015 * depthCm, faceCm + cm, 0.05 * depthCm,
                    true, RULER);
     }
   }
   const double markerCm = halfWidthCm(outline[1]) + 0.07 * depthCm;
   drawing.disc(markerCm, 0.0, 0.02 * depthCm);
-  drawing.text("S", markerCm + 0.04 * depthCm, 0.0, 0.055 * depthCm, false, MARKER);
+  drawing.text("S", markerCm + 0.045 * depthCm, 0.0, 0.07 * depthCm, false, MARKER);
 }
 
 } // namespace

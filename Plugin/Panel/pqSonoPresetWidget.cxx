@@ -44,8 +44,8 @@ pqSonoPresetWidget::pqSonoPresetWidget(vtkSMProxy* smproxy, vtkSMProperty* prope
   row->addWidget(this->Choice);
   this->readPresets(QString());
   this->showChoice();
-  // Only a person's choice, not ours.
-  QObject::connect(this->Choice, QOverload<int>::of(&QComboBox::activated), this, [this](int item) { choose(item); });
+  QObject::connect(this->Choice, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+                   [this](int item) { choose(item); });
   for (const QString& name : QStringList{ "PresetFile" } + this->Columns.mid(firstSetting))
   {
     vtkSMProperty* setting = smproxy->GetProperty(name.toUtf8().data());

@@ -3,9 +3,10 @@ import os
 import socket
 import subprocess
 import sys
+import tempfile
 import unittest
 
-from paraview import simple
+from paraview import servermanager, simple
 from paraview.servermanager import Fetch
 
 PLUGIN = os.environ["SONOVDB_PLUGIN"]
@@ -58,6 +59,30 @@ class TestServer(unittest.TestCase):
         table.UpdatePipeline()
         table.UpdatePropertyInformation()
         self.assertTrue(any(row.startswith("cortical_bone\t") for row in table.GetProperty("TissueRows")))
+
+    def test_presets_and_files_are_the_servers(self):
+        """A preset is found, and a text written, where the server is."""
+        probe = simple.UltrasoundProbe(Preset="linear_l14")
+        field = Fetch(probe).GetFieldData()
+        self.assertEqual(field.GetArray("DepthMm").GetValue(0), 40)
+        presets = simple.ProbePresets()
+        presets.UpdatePipeline()
+        presets.UpdatePropertyInformation()
+        self.assertTrue(any(row.startswith("linear_l14\tLinear array L14-5\t0\t128\t40\t")
+                            for row in presets.GetProperty("Rows")))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "some.csv")
+            for name, refused in ((path, False), (os.path.join(folder, "no", "some.csv"), True)):
+                writer = servermanager.ProxyManager().NewProxy("misc", "SonoTextFile")
+                writer.GetProperty("FileName").SetElement(0, name)
+                writer.GetProperty("Text").SetElement(0, "id,name\n1,Ä\n")
+                writer.UpdateVTKObjects()
+                writer.InvokeCommand("Write")
+                writer.UpdatePropertyInformation()
+                self.assertEqual(bool(writer.GetProperty("Refusal").GetElement(0)), refused)
+            self.assertEqual(os.listdir(folder), ["some.csv"])
+            with open(path, encoding="utf-8") as file:
+                self.assertEqual(file.read(), "id,name\n1,Ä\n")
 
 
 if __name__ == "__main__":

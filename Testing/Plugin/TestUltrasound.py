@@ -102,6 +102,21 @@ class TestUltrasound(unittest.TestCase):
         self.assertEqual(list(again.Positionmm), POSE["Positionmm"])
         self.assertTrue((grey(again) == before).all())
 
+    def test_a_named_preset_survives_states_and_traces(self):
+        def lines():
+            return Fetch(simple.FindSource("ultrasound"), idx=5).GetFieldData().GetArray("WidthMm").GetValue(0)
+
+        smtrace.start_trace()
+        make_ultrasound(Preset="linear_l14").UpdatePipeline()
+        texts = [smtrace.stop_trace(), smstate.get_state()]
+        self.assertEqual(lines(), 38.7096)
+        for text in texts:
+            self.tearDown()
+            exec(compile(text, "text", "exec"), {})
+            self.assertEqual(simple.FindSource("ultrasound").Preset, "linear_l14")
+            simple.FindSource("ultrasound").UpdatePipeline()
+            self.assertEqual(lines(), 38.7096)
+
     def test_python_state_brings_the_picture_back(self):
         before = grey(make_ultrasound(GaindB=3, **POSE))
         state = smstate.get_state()
