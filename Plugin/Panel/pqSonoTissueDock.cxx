@@ -39,6 +39,7 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   , saveButton_(new QPushButton(tr("Save and Use...")))
 {
   table_->setObjectName("SonoTissueTable");
+  table_->setMinimumWidth(460); // number, name, colour and tissue beside each other
   message_->setObjectName("SonoTissueMessage");
   message_->setWordWrap(true);
   saveButton_->setObjectName("SonoTissueSave");
@@ -164,6 +165,7 @@ void pqSonoTissueDock::change(int row, int column, const QString& text)
   say(refusal.isEmpty() ? tr("Changed; save to use it.") : refusal);
   if (!refusal.isEmpty())
   {
+    table_->scrollToItem(table_->item(row, column));
     const QRect cell = table_->visualItemRect(table_->item(row, column));
     QToolTip::showText(table_->viewport()->mapToGlobal(cell.bottomLeft()), refusal, table_);
   }
