@@ -66,6 +66,7 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
 void showErrors(vtkSMProxy* colors)
 {
   vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 50.0);
+  vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode").Set(-1); // never
   vtkSMPropertyHelper(colors, "NanOpacity").Set(0.0);
   colors->UpdateVTKObjects();
 }

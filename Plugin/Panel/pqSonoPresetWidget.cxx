@@ -1,6 +1,7 @@
 #include "pqSonoPresetWidget.h"
 
-#include "pqActiveObjects.h"
+#include "SonoComboBox.h"
+
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
@@ -14,7 +15,6 @@
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSmartPointer.h"
 
-#include <QComboBox>
 #include <QHBoxLayout>
 #include <QSignalBlocker>
 
@@ -34,7 +34,7 @@ enum Item
 
 pqSonoPresetWidget::pqSonoPresetWidget(vtkSMProxy* smproxy, vtkSMProperty* property, QWidget* parentObject)
   : Superclass(smproxy, parentObject)
-  , Choice(new QComboBox(this))
+  , Choice(new SonoComboBox(this))
 {
   this->setProperty(property);
   this->Choice->setObjectName("SonoPreset");

@@ -1,5 +1,7 @@
 #include "pqSonoTissueDock.h"
 
+#include "SonoComboBox.h"
+
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSonoUltrasound.h"
@@ -12,7 +14,6 @@
 
 #include <QAction>
 #include <QColor>
-#include <QComboBox>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
@@ -117,7 +118,7 @@ void pqSonoTissueDock::fill()
     QObject::connect(color, &pqColorChooserButton::chosenColorChanged, this,
                      [this, row](const QColor& chosen) { change(row, SonoTissueModel::COLOR, chosen.name()); });
     table_->setCellWidget(row, SonoTissueModel::COLOR, color);
-    auto* tissue = new QComboBox(table_);
+    auto* tissue = new SonoComboBox(table_);
     tissue->setObjectName(QString("SonoTissue_%1").arg(row));
     tissue->setToolTip(tr("The tissue that the label is made of"));
     tissue->addItems(tissues);

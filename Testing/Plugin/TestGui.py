@@ -85,13 +85,52 @@ class TestGui(GuiCase):
             self.assertEqual(self.play("pick_line.xml", folder, f"--data={self.label_map(folder)}"), [])
             states = [pathlib.Path(folder, name + ".pvsm") for name in ("picked", "undone", "dragged")]
             picked, undone, dragged = ([self.values_of(state, "SonoALine", "Line") for state in states])
-            x_cm, y_cm = self.place_in_flat_view(states[0], 0.4, 0.6)
-        # 128 lines over 90 degrees.
-        expected = round((math.degrees(math.atan2(x_cm, y_cm)) + 45) / 90 * 127)
+            in_body = pathlib.Path(folder, "in_body.pvsm")
+            picked_in_body = self.values_of(in_body, "SonoALine", "Line")
+            expected_in_body = self.line_at(*self.place_in_body(in_body, 0.5, 0.47))
+            expected = self.line_at(*self.place_in_flat_view(states[0], 0.4, 0.6))
         self.assertAlmostEqual(picked[0], expected, delta=1)  # lines are as narrow as a pixel or two
         self.assertLess(picked[0], 60)
         self.assertEqual(undone, [64])
         self.assertEqual(dragged, picked)
+        self.assertAlmostEqual(picked_in_body[0], expected_in_body, delta=1)
+        self.assertNotEqual(picked_in_body, picked)
+
+    @staticmethod
+    def line_at(lateral, axial):
+        """Of 128 lines over 90 degrees."""
+        return round((math.degrees(math.atan2(lateral, axial)) + 45) / 90 * 127)
+
+    def place_in_body(self, state, across, down):
+        """Where the image plane is seen at a part of the solid view's width and height: lateral and axial in mm."""
+        def dot(a, b):
+            return sum(x * y for x, y in zip(a, b))
+
+        def cross(a, b):
+            return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+        def unit(a):
+            return [x / math.sqrt(dot(a, a)) for x in a]
+
+        def minus(a, b):
+            return [x - y for x, y in zip(a, b)]
+
+        (view,) = (p for p in ElementTree.parse(state).iter("Proxy")
+                   if p.get("type") == "RenderView" and self.values(p, "CameraPosition")[1] < -100)
+        width, height = self.values(view, "ViewSize")
+        camera = self.values(view, "CameraPosition")
+        ahead = unit(minus(self.values(view, "CameraFocalPoint"), camera))
+        right = unit(cross(ahead, self.values(view, "CameraViewUp")))
+        up = cross(right, ahead)
+        half = math.tan(math.radians(self.values(view, "CameraViewAngle")[0] / 2))
+        x, y = (2 * across - 1) * half * width / height, (1 - 2 * down) * half
+        sight = [a + x * r + y * u for a, r, u in zip(ahead, right, up)]
+        position, axial, lateral = (self.values_of(state, "SonoUltrasound", name)
+                                    for name in ("PositionMm", "Axial", "Lateral"))
+        normal = cross(axial, lateral)
+        along = dot(minus(position, camera), normal) / dot(sight, normal)
+        at = minus([c + along * s for c, s in zip(camera, sight)], position)
+        return dot(at, unit(lateral)), dot(at, unit(axial))
 
     def place_in_flat_view(self, state, across, down):
         """Where a part of the flat view's width and height is in its image: lateral and depth in cm."""
