@@ -62,11 +62,9 @@ void hideUnscanned(vtkSMSessionProxyManager* manager)
   colors->UpdateVTKObjects();
 }
 
-/// Nothing where an error map is not a number, outside the scanned area; half and more of the intensity is bad alike.
+/// Nothing where an error map is not a number, outside the scanned area.
 void showErrors(vtkSMProxy* colors)
 {
-  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, 0.0, 50.0);
-  vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode").Set(-1); // never
   vtkSMPropertyHelper(colors, "NanOpacity").Set(0.0);
   colors->UpdateVTKObjects();
 }
