@@ -40,7 +40,7 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
   return grid;
 }
 
-constexpr int previewPaths = 120;
+constexpr int previewPaths = 60;
 constexpr double previewSamplesPerPeriod = 4.0;
 
 /// Of the RF of this probe.

@@ -38,6 +38,7 @@
 namespace {
 
 constexpr int restMs = 300;
+constexpr int idleMs = 200;
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
 const char* const layoutProperties[] = { "PresetFile", "ScanKind", "LineCount",          "SectorDeg",
                                          "RadiusMm",   "WidthMm",  "ElevationLineCount", "ElevationSectorDeg" };
@@ -136,6 +137,9 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Rest.setSingleShot(true);
   this->Rest.setInterval(restMs);
   this->connect(&this->Rest, SIGNAL(timeout()), SLOT(rest()));
+  this->Prepare.setSingleShot(true);
+  this->Prepare.setInterval(idleMs);
+  this->connect(&this->Prepare, SIGNAL(timeout()), SLOT(prepare()));
   this->connect(this, SIGNAL(startInteraction()), SLOT(start()));
   this->connect(this, SIGNAL(interaction()), SLOT(move()));
   this->connect(this, &pqInteractivePropertyWidget::endInteraction, this, [this] { this->finish(); });
@@ -373,6 +377,29 @@ void pqSonoProbeWidget::rest()
     this->push(after, false);
   }
   pqApplicationCore::instance()->render();
+}
+
+void pqSonoProbeWidget::setView(pqView* next)
+{
+  if (this->view())
+  {
+    this->view()->disconnect(&this->Prepare);
+  }
+  this->Superclass::setView(next);
+  if (next)
+  {
+    // What is shown may have changed.
+    this->Prepare.connect(next, SIGNAL(endRender()), SLOT(start()));
+  }
+}
+
+void pqSonoProbeWidget::prepare()
+{
+  if (!this->Moving && this->isWidgetVisible() && !this->proxy()->GetSession()->GetPendingProgress())
+  {
+    this->findSkin();
+    this->probe()->GetSkin()->Prepare();
+  }
 }
 
 void pqSonoProbeWidget::findSkin()

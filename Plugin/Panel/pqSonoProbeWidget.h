@@ -41,6 +41,8 @@ public:
   void showEvent(QShowEvent*) override {}
   ///@}
 
+  void setView(pqView* view) override;
+
 protected Q_SLOTS:
   void placeWidget() override {}
 
@@ -49,6 +51,7 @@ private Q_SLOTS:
   void move();
   void showMoving();
   void rest();
+  void prepare();
   void snap();
   void resetPose();
   void forget(pqPipelineSource* source);
@@ -74,6 +77,7 @@ private:
   QLabel* Message;
   QTimer Frame; // fires when there is nothing else to do
   QTimer Rest;
+  QTimer Prepare; // fires when the view has not been drawn for a moment
   bool Moving = false;
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;

@@ -182,7 +182,7 @@ std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const
 
 std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box) const
 {
-  const auto region = futureOnTheWay(box);
+  const auto region = futureOnTheWay(box, false);
   if (!region.get())
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -192,12 +192,13 @@ std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box)
   return region.get();
 }
 
-void Scene::beginRegionOnTheWay(const VoxelBox& box) const
+void Scene::beginRegionOnTheWay(const VoxelBox& box, bool allRecords) const
 {
-  futureOnTheWay(box);
+  futureOnTheWay(box, allRecords);
 }
 
-std::shared_future<std::shared_ptr<const RegionOnDemand>> Scene::futureOnTheWay(const VoxelBox& box) const
+std::shared_future<std::shared_ptr<const RegionOnDemand>> Scene::futureOnTheWay(const VoxelBox& box,
+                                                                                bool allRecords) const
 {
   const VoxelBox inside = clipped(box);
   const VoxelBox wanted = clipped(
@@ -206,11 +207,16 @@ std::shared_future<std::shared_ptr<const RegionOnDemand>> Scene::futureOnTheWay(
   if (!onTheWay_.valid() || !(boxOnTheWay_ == wanted))
   {
     boxOnTheWay_ = wanted;
-    onTheWay_ = std::async(std::launch::async, [this, wanted, known = std::weak_ptr(region_)]() -> SharedRegion {
+    onTheWay_ = std::async(std::launch::async, [=, known = std::weak_ptr(region_)]() -> SharedRegion {
       try
       {
-        return std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
-                                                Progress(), known);
+        const auto region = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size,
+                                                             placement().spacingMm, wanted, Progress(), known);
+        if (allRecords)
+        {
+          region->bakeAll();
+        }
+        return region;
       }
       catch (const std::bad_alloc&)
       {

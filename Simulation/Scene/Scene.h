@@ -67,14 +67,14 @@ public:
   /// volume's end. A volume up to that size is one box, so that all poses share it; of a longer one it takes what is
   /// near. Kept beside the other.
   std::shared_ptr<const RegionOnDemand> regionOnTheWay(const VoxelBox& box) const;
-  /// Begins to make that, in the background, where it is not there yet.
-  void beginRegionOnTheWay(const VoxelBox& box) const;
+  /// Begins to make that, in the background, where it is not there yet; with all of its records if wanted.
+  void beginRegionOnTheWay(const VoxelBox& box, bool allRecords) const;
 
 private:
   using SharedRegion = std::shared_ptr<const RegionOnDemand>;
 
   VoxelBox clipped(const VoxelBox& box) const;
-  std::shared_future<SharedRegion> futureOnTheWay(const VoxelBox& box) const;
+  std::shared_future<SharedRegion> futureOnTheWay(const VoxelBox& box, bool allRecords) const;
   void buildSurfaceAt(std::size_t label, const Progress& progress) const;
 
   std::uint64_t id_;

@@ -145,7 +145,7 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
 
 void prepareForTheWay(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
 {
-  scene.beginRegionOnTheWay(fanBox(scene, lines, settings.depthMm));
+  scene.beginRegionOnTheWay(fanBox(scene, lines, settings.depthMm), runsOnDevice(settings));
 }
 
 } // namespace sono
