@@ -61,15 +61,15 @@ std::vector<Curve> curvesOf(const CsvFile& csv, const std::string& error, const 
   for (const CsvFile::Row& row : csv.rows)
   {
     const std::string name = curveOf(csv, row);
-    // Threads do not change a result: over paths their curves would hide each other.
-    if (over == "paths" && has(name, "CPU, 1 thread"))
-    {
-      continue;
-    }
     auto curve = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.name == name; });
     if (curve == curves.end())
     {
       curve = curves.insert(curve, Curve{ name, {}, {}, CurveKind::Line });
+    }
+    // Threads do not change a result: over paths their curves would hide each other.
+    if (over == "paths" && has(name, "CPU, 1 thread"))
+    {
+      continue;
     }
     curve->x.push_back(numberOf(row.fields[x]));
     curve->y.push_back(numberOf(row.fields[y]));
@@ -97,7 +97,7 @@ std::string plot(const CsvFile& csv, const std::string& error, const std::string
   }
   const std::vector<Curve> curves = curvesOf(csv, error, over);
   const bool any = std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
-    return *std::max_element(curve.y.begin(), curve.y.end()) > 0.0;
+    return !curve.y.empty() && *std::max_element(curve.y.begin(), curve.y.end()) > 0.0;
   });
   if (!any)
   {

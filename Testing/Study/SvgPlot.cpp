@@ -249,11 +249,16 @@ std::string svgPlot(const std::string& title, const PlotAxis& x, const PlotAxis&
   svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width << "' height='" << height
       << "' font-family='sans-serif' font-size='11'>\n";
   drawFrame(svg, title, x, y, across, up, height);
+  double row = top - 3.0;
   for (std::size_t i = 0; i < curves.size(); ++i)
   {
-    const Look look = lookOf(i);
+    if (curves[i].y.empty())
+    {
+      continue;
+    }
+    const Look look = curves[i].kind == CurveKind::Level ? Look{ "#222222", "7 4", 0 } : lookOf(i);
     drawCurve(svg, curves[i], look, across, up);
-    const double row = top + 12.0 + 15.0 * double(i);
+    row += 15.0;
     const double from = width - right + 8.0;
     if (curves[i].kind != CurveKind::Dots)
     {

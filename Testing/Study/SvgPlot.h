@@ -13,7 +13,7 @@ enum class CurveKind
   Level ///< a dashed line across the plot at its first y
 };
 
-/// Points of one name.
+/// Points of one name. Without points a curve is not drawn, but the others look as if it were.
 struct Curve
 {
   std::string name;
