@@ -117,23 +117,33 @@ double gcnrOfSpeckle(double contrastDb, int looks)
 
 double leastGcnrError(const std::vector<MeasuredLesion>& lesions, double meanContrastDb)
 {
-  double bound = 0.0;
-  for (double multiplier = 0.0; multiplier < 0.2; multiplier += 0.0005)
+  constexpr double stepDb = 0.01;
+  const int budget = int(meanContrastDb * double(lesions.size()) / stepDb + 0.5);
+  std::vector<double> least(std::size_t(budget) + 1, 0.0); // of the lesions so far, for what they may be off together
+  for (const MeasuredLesion& lesion : lesions)
   {
-    double value = 0.0;
-    for (const MeasuredLesion& lesion : lesions)
+    std::vector<double> own; // of this one, for what it may be off
+    for (int off = 0; off <= budget; ++off)
+    {
+      double error = off == 0 ? 1.0 : own.back();
+      for (const double contrast :
+           { std::fabs(lesion.contrastDb) - off * stepDb, std::fabs(lesion.contrastDb) + off * stepDb })
+      {
+        error = contrast >= 0.0 ? std::min(error, std::fabs(gcnrOfSpeckle(contrast) - lesion.gcnr)) : error;
+      }
+      own.push_back(error);
+    }
+    for (int together = budget; together >= 0; --together)
     {
       double best = 1e30;
-      for (double contrast = 0.0; contrast < 40.0; contrast += 0.01)
+      for (int off = 0; off <= together; ++off)
       {
-        best = std::min(best, std::fabs(gcnrOfSpeckle(contrast) - lesion.gcnr) +
-                                multiplier * std::fabs(contrast - std::fabs(lesion.contrastDb)));
+        best = std::min(best, least[std::size_t(together - off)] + own[std::size_t(off)]);
       }
-      value += best / double(lesions.size());
+      least[std::size_t(together)] = best;
     }
-    bound = std::max(bound, value - multiplier * meanContrastDb);
   }
-  return bound;
+  return least.back() / double(lesions.size());
 }
 
 } // namespace sono::study

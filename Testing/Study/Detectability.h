@@ -40,8 +40,8 @@ struct MeasuredLesion
 };
 
 /// The smallest mean absolute gCNR error that fully developed speckle allows when the mean absolute contrast error
-/// stays within meanContrastDb: each lesion may have any contrast of its sign, and gCNR follows by gcnrOfSpeckle. A
-/// lower bound by Lagrange's multiplier, within the grid's 0.01 dB.
+/// stays within meanContrastDb: each lesion may have any contrast of its sign, and gCNR follows by gcnrOfSpeckle. By
+/// dynamic programming over what the lesions may be off together, in steps of 0.01 dB.
 double leastGcnrError(const std::vector<MeasuredLesion>& lesions, double meanContrastDb);
 
 } // namespace sono::study

@@ -6,6 +6,7 @@
 #include "Progress.h"
 #include "Study.h"
 #include "WireEcho.h"
+#include "WireRays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,11 @@ PhantomImaging phantomImaging(int lines, Apodization apodization)
   return imaging;
 }
 
+double phantomApertureMm()
+{
+  return apertureOf(readProbePreset(dataFile("probes/phased_p4-2.json"))).widthMm();
+}
+
 double gelDbAt(const PhantomImaging& imaging, double depthMm)
 {
   const Tissue gel = *bundledTissues().find("phantom_gel");
@@ -90,7 +96,7 @@ PhantomBench::PhantomBench(std::vector<PhantomTarget> targets, WireModel wires, 
 {
   settings_.spacingMm = spacingMm;
   settings_.wiresAsVoxels = wires == WireModel::Voxels;
-  if (wires == WireModel::Surface)
+  if (wires == WireModel::Surface || wires == WireModel::SurfaceOfAperture)
   {
     surfaces_.push_back(phantomWireSurface(targets_, settings_, bundledTissues()));
   }
@@ -104,8 +110,14 @@ RfLines PhantomBench::image(const PhantomImaging& imaging, int view, unsigned se
   tracing.seed = seed;
   EchoSettings echo = imaging.echo;
   echo.seed = seed;
-  const TracedLines traced = trace(*scene_, lines, tracing, {}, surfaces_);
+  const bool mirrors = wires_ == WireModel::Surface;
+  const TracedLines traced = trace(*scene_, lines, tracing, {}, mirrors ? surfaces_ : std::vector<TargetSurface>());
   std::unique_ptr<PointScatterers> points;
+  if (wires_ == WireModel::SurfaceOfAperture)
+  {
+    points = std::make_unique<PointScatterers>(scatterersMet(
+      *scene_, surfaces_, imaging, phantomViewPose(settings_, view), phantomApertureMm(), 0.1, wireEchoPerMm(echo)));
+  }
   if (wires_ == WireModel::Scatterers)
   {
     points = std::make_unique<PointScatterers>(phantomWireScatterers(targets_, settings_, wireEchoPerMm(echo)));

@@ -16,9 +16,10 @@ namespace sono::study {
 /// How a wire echoes.
 enum class WireModel
 {
-  Scatterers, ///< thinner than a wavelength: a line of scatterers, seen by every beam that covers it
-  Surface,    ///< Embree geometry for the tracer: a mirror for the scan lines that meet it, and for no others
-  Voxels      ///< voxels of the label map, as the seed has it: boundary and scatterers
+  Scatterers,        ///< thinner than a wavelength: a line of scatterers, seen by every beam that covers it
+  Surface,           ///< Embree geometry for the tracer: a mirror for the scan lines that meet it, and for no others
+  SurfaceOfAperture, ///< the same surface, passed by rays from the whole aperture (WireRays.h)
+  Voxels             ///< voxels of the label map, as the seed has it: boundary and scatterers
 };
 
 /// The settings of the phantom study. What the seed (Amadou 2024, tables 3 and 4 and the text around them) gives is
@@ -35,6 +36,9 @@ struct PhantomImaging
 /// `lines` scan lines; the seed does not tell how it weights the elements. The pulse-echo field is computed here, which
 /// takes a second.
 PhantomImaging phantomImaging(int lines = 256, Apodization apodization = Apodization::Boxcar);
+
+/// Width of that probe's aperture.
+double phantomApertureMm();
 
 /// Rms echo of the phantom's gel at a depth, before any gain, dB to a perfect reflector at the focus.
 double gelDbAt(const PhantomImaging& imaging, double depthMm);

@@ -1,4 +1,4 @@
-// Target registration error of the wires, by view and group, for three ways to model a wire.
+// Target registration error of the wires, by view and group, for four ways to model a wire.
 #include "PhantomWires.h"
 
 #include "PhantomImaging.h"
@@ -177,12 +177,16 @@ void run(Output& output)
   // A mirror 0.1 mm wide is met only by lines that are no further apart: 2048 at 120 mm of depth. They go without
   // speckle, which would take a minute.
   const double pixelMm = PhantomImaging().pixelMm;
-  const std::vector<Case> cases{ { "scatterers", WireModel::Scatterers, 256, true, pixelMm },
-                                 { "scatterers", WireModel::Scatterers, 128, true, pixelMm },
-                                 { "Embree surface, without speckle", WireModel::Surface, 128, false, pixelMm },
-                                 { "Embree surface, without speckle", WireModel::Surface, 2048, false, pixelMm },
-                                 { "Embree surface, without speckle", WireModel::Surface, 2048, false, 0.05 },
-                                 { "voxels of 0.5 mm", WireModel::Voxels, 256, true, pixelMm } };
+  const std::vector<Case> cases{
+    { "Embree surface, rays from the aperture", WireModel::SurfaceOfAperture, 256, true, pixelMm },
+    { "Embree surface, rays from the aperture", WireModel::SurfaceOfAperture, 128, true, pixelMm },
+    { "lines of scatterers", WireModel::Scatterers, 256, true, pixelMm },
+    { "lines of scatterers", WireModel::Scatterers, 128, true, pixelMm },
+    { "Embree mirror for each scan line, without speckle", WireModel::Surface, 128, false, pixelMm },
+    { "Embree mirror for each scan line, without speckle", WireModel::Surface, 2048, false, pixelMm },
+    { "Embree mirror for each scan line, without speckle", WireModel::Surface, 2048, false, 0.05 },
+    { "voxels of 0.5 mm", WireModel::Voxels, 256, true, pixelMm }
+  };
   std::vector<std::vector<std::string>> models;
   std::vector<std::vector<std::string>> places;
   for (const Case& c : cases)

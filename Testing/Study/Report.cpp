@@ -1,14 +1,14 @@
 #include "Report.h"
 
 #include "Detectability.h"
-#include "Labels/CsvFile.h"
+#include "ErrorReport.h"
+#include "Html.h"
 #include "Progress.h"
 #include "SvgPlot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -17,13 +17,6 @@
 
 namespace sono::study {
 namespace {
-
-double numberOf(const std::string& text)
-{
-  std::istringstream stream(text); // "12.3 +- 4" counts as 12.3
-  double value = 0.0;
-  return stream >> value ? value : std::numeric_limits<double>::quiet_NaN();
-}
 
 /// What a figure must reach; empty for those that are only reported.
 struct Goal
@@ -60,7 +53,7 @@ public:
     speckle();
     beam();
     pictures();
-    errors();
+    text_ << errorSection(folder_);
     asTheyAre();
     return text_.str();
   }
@@ -93,35 +86,17 @@ private:
   }
 
   void heading(const std::string& words) { text_ << "<h2>" << escapedHtml(words) << "</h2>\n"; }
-  void paragraph(const std::string& words) { text_ << "<p>" << escapedHtml(words) << "</p>\n"; }
+  void paragraph(const std::string& words) { text_ << htmlParagraph(words); }
 
-  void show(const CsvFile& csv)
-  {
-    text_ << "<table><tr>";
-    for (const std::string& name : csv.header)
-    {
-      text_ << "<th>" << escapedHtml(name) << "</th>";
-    }
-    text_ << "</tr>\n";
-    for (const CsvFile::Row& row : csv.rows)
-    {
-      text_ << "<tr>";
-      for (const std::string& field : row.fields)
-      {
-        text_ << "<td>" << escapedHtml(field) << "</td>";
-      }
-      text_ << "</tr>\n";
-    }
-    text_ << "</table>\n";
-  }
-
-  void showTable(const std::string& name)
+  void showTable(const std::string& name, const std::string& part)
   {
     if (const auto csv = table(name))
     {
-      show(*csv);
+      text_ << htmlTable(*csv, commandOf(part));
     }
   }
+
+  static std::string commandOf(const std::string& part) { return "Testing/study.sh FOLDER " + part + " report"; }
 
   /// Columns of a table over its first, one curve each.
   void plotColumns(const CsvFile& csv, const std::string& title, const std::string& unit)
@@ -129,7 +104,7 @@ private:
     std::vector<Curve> curves;
     for (std::size_t column = 1; column < csv.header.size(); ++column)
     {
-      Curve curve{ csv.header[column], {}, {}, false };
+      Curve curve{ csv.header[column], {}, {}, CurveKind::Line };
       for (const CsvFile::Row& row : csv.rows)
       {
         curve.x.push_back(numberOf(row.fields[0]));
@@ -167,8 +142,8 @@ private:
               "0.23 mm; its place is the vertex of the parabola through the main lobe in dB. The seed's column stands "
               "beside it. A wire of 0.1 mm is thinner than a wavelength and scatters; as a surface it is a mirror that "
               "only those scan lines see that meet it.");
-    showTable("phantom_tre.csv");
-    showTable("phantom_wire_models.csv");
+    showTable("phantom_tre.csv", "phantom_wires");
+    showTable("phantom_wire_models.csv", "phantom_wires");
     if (const auto csv = table("phantom_wires.csv"))
     {
       std::map<std::string, Curve> groups;
@@ -176,7 +151,7 @@ private:
       {
         Curve& curve = groups[row.fields[0]];
         curve.name = row.fields[0];
-        curve.dots = true;
+        curve.kind = CurveKind::Dots;
         curve.x.push_back(numberOf(row.fields[3]));
         curve.y.push_back(numberOf(row.fields[4]));
       }
@@ -185,7 +160,9 @@ private:
       {
         curves.push_back(curve);
       }
-      text_ << svgPlot("Error of each wire", { "depth mm" }, { "error mm" }, curves);
+      text_ << svgPlot("Error of each wire", { "depth, mm" }, { "found less true place, mm" }, curves);
+      paragraph("Each dot is a wire of the headline row: how far its fitted place lies from the true one, against its "
+                "depth. The spread grows with depth, where the beam is wide and speckle pulls at the peak.");
     }
   }
 
@@ -200,18 +177,18 @@ private:
               "do to their contrast.");
     if (const auto csv = table("phantom_lesions.csv"))
     {
-      show(*csv);
+      text_ << htmlTable(*csv, commandOf("phantom_lesions"));
       plotLesions(*csv);
     }
-    showTable("phantom_anechoic.csv");
+    showTable("phantom_anechoic.csv", "phantom_anechoic");
     paragraph("Other settings, each the same for all lesions.");
-    showTable("phantom_settings.csv");
+    showTable("phantom_settings.csv", "phantom_settings");
   }
 
   /// gCNR over the size of the contrast: theory, the seed's real and simulated lesions, and ours.
   void plotLesions(const CsvFile& csv)
   {
-    Curve theory{ "speckle in theory", {}, {}, false };
+    Curve theory{ "speckle in theory", {}, {}, CurveKind::Line };
     for (double db = 0.5; db <= 26.0; db += 0.5)
     {
       theory.x.push_back(db);
@@ -221,7 +198,7 @@ private:
     const std::map<std::string, std::size_t> columns{ { "real (seed)", 2 }, { "simulated (seed)", 3 }, { "here", 4 } };
     for (const auto& [name, column] : columns)
     {
-      Curve curve{ name, {}, {}, true };
+      Curve curve{ name, {}, {}, CurveKind::Dots };
       for (const CsvFile::Row& row : csv.rows)
       {
         if (row.fields[1] == "gCNR")
@@ -235,7 +212,8 @@ private:
       }
       curves.push_back(curve);
     }
-    text_ << svgPlot("gCNR and contrast of the five lesions", { "contrast dB, without sign" }, { "gCNR" }, curves);
+    text_ << svgPlot("gCNR and contrast of the five lesions", { "contrast, dB, without sign" }, { "gCNR" }, curves);
+    paragraph("The curve is what fully developed speckle must have. Ours lie on it; the seed's real lesions do not.");
   }
 
   void speckle()
@@ -265,7 +243,7 @@ private:
   {
     if (std::filesystem::exists(folder_ / name))
     {
-      text_ << "<p><img src='" << name << "' alt='" << name << "'><br>" << escapedHtml(words) << "</p>\n";
+      text_ << htmlPicture(folder_ / name, words + " By " + commandOf("phantom_figures") + ".");
     }
     else
     {
@@ -282,84 +260,26 @@ private:
     const std::string panels = "From the upper left: segmentation, without MCPT, 500 rays, 2500 rays; C0 0.2, "
                                "gamma -1.8, tau 2.8, Gaussian beam with sigma 1.5 mm.";
     picture("parameters.png", "Energy kept at boundaries, lobe 6 degrees. " + panels);
-    showTable("phantom_parameters.csv");
+    showTable("phantom_parameters.csv", "phantom_figures");
     picture("parameters_seed.png", "The seed's equations to the letter, lobe 45 degrees. " + panels);
-    showTable("phantom_parameters_seed.csv");
-  }
-
-  void errors()
-  {
-    heading("Run time against error");
-    const auto files = filesLike("error_");
-    if (files.empty())
-    {
-      paragraph("Not measured: there is no error_*.csv.");
-    }
-    for (const auto& path : files)
-    {
-      const CsvFile csv = CsvFile::read(path.string());
-      text_ << "<h3>" << escapedHtml(path.stem().string().substr(6)) << "</h3>\n";
-      for (const std::string& error : csv.header)
-      {
-        if (error.rfind("rmse_", 0) == 0)
-        {
-          plotError(csv, error, "paths");
-          plotError(csv, error, "seconds");
-        }
-      }
-      text_ << "<details><summary>Table</summary>\n";
-      show(csv);
-      text_ << "</details>\n";
-    }
-  }
-
-  void plotError(const CsvFile& csv, const std::string& error, const std::string& over)
-  {
-    if (csv.column(over) < 0)
-    {
-      return;
-    }
-    const auto x = std::size_t(csv.column(over));
-    const auto y = std::size_t(csv.column(error));
-    std::map<std::string, Curve> curves;
-    for (const CsvFile::Row& row : csv.rows)
-    {
-      std::string name;
-      for (std::size_t i = 0; i < csv.header.size(); ++i)
-      {
-        const std::string& column = csv.header[i];
-        if (column != "paths" && column != "seconds" && column.rfind("rmse_", 0) != 0)
-        {
-          name += (name.empty() ? "" : ", ") + row.fields[i];
-        }
-      }
-      Curve& curve = curves[name];
-      curve.name = name;
-      curve.x.push_back(numberOf(row.fields[x]));
-      curve.y.push_back(numberOf(row.fields[y]));
-    }
-    std::vector<Curve> list;
-    bool any = false;
-    for (auto& [name, curve] : curves)
-    {
-      curve.dots = curve.x.size() == 1; // an error that more paths do not lessen
-      any = any || *std::max_element(curve.y.begin(), curve.y.end()) > 0.0;
-      list.push_back(curve);
-    }
-    if (!any)
-    {
-      paragraph(error + " is 0 throughout: nothing that is chosen by chance lies in the way.");
-      return;
-    }
-    text_ << svgPlot(error + " over " + over, { over, true }, { error, true }, list);
+    showTable("phantom_parameters_seed.csv", "phantom_figures");
   }
 
   void asTheyAre()
   {
     heading("Stability");
-    showTable("stability.csv");
+    paragraph(
+      "Every hazard that PHYSICS section 8 names, a scene for each: what comes out, what it costs, how far single "
+      "precision lies from double down to the B-mode, beside the standard error of the paths. What single "
+      "precision decides otherwise at a hit (along a wall, on an edge) sends a path elsewhere. A computed field "
+      "has no twin. The seed tells nothing of its stability.");
+    showTable("stability.csv", "stability");
     heading("Skipping");
-    showTable("skipping.csv");
+    paragraph(
+      "What time and memory would be with one skip switched off: more than 1 is what it buys, medians of five "
+      "pairs by one thread. Tracing with 500 paths a line; RF of eight lines. Bricks that no beam sees, and the "
+      "store of all scatterers, are measured once.");
+    showTable("skipping.csv", "skipping");
   }
 
   std::filesystem::path folder_;
@@ -370,6 +290,7 @@ constexpr const char* head =
   R"(<!DOCTYPE html><html><head><meta charset="utf-8"><title>SonoVDB: the study</title><style>
 body { font-family: sans-serif; max-width: 72em; margin: 2em auto; color: #222; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 0.9em; }
+caption { text-align: left; color: #666; }
 td, th { border: 1px solid #ccc; padding: 0.2em 0.6em; text-align: left; }
 img { max-width: 100%; }
 </style></head><body>

@@ -1,22 +1,71 @@
 #include "SvgPlot.h"
 
+#include "Html.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 
 namespace sono::study {
 namespace {
 
-constexpr double width = 640.0;
-constexpr double height = 340.0;
+constexpr double width = 720.0;
+constexpr double leastHeight = 340.0;
 constexpr double left = 70.0;
-constexpr double right = 230.0; // the legend's
+constexpr double right = 300.0; // the legend's
 constexpr double top = 30.0;
 constexpr double bottom = 50.0;
 constexpr std::array<const char*, 8> colours{ "#1f5fa8", "#c8501e", "#3a8a3a", "#8a3a9a",
                                               "#b09000", "#208a8a", "#c03060", "#555555" };
+constexpr std::array<const char*, 8> dashes{ "none", "6 3", "2 2", "8 3 2 3", "12 3", "1 3", "4 2 1 2", "10 2 2 2" };
+
+/// A mark of one of eight shapes around a place.
+void drawMark(std::ostream& svg, double x, double y, const char* colour, std::size_t shape)
+{
+  const auto polygon = [&](std::initializer_list<std::pair<double, double>> corners) {
+    svg << "<polygon class='mark' fill='" << colour << "' points='";
+    for (const auto& [dx, dy] : corners)
+    {
+      svg << x + dx << ',' << y + dy << ' ';
+    }
+    svg << "'/>\n";
+  };
+  const auto strokes = [&](const char* path) {
+    svg << "<path class='mark' fill='none' stroke-width='1.6' stroke='" << colour << "' transform='translate(" << x
+        << ' ' << y << ")' d='" << path << "'/>\n";
+  };
+  switch (shape % 8)
+  {
+    case 0:
+      svg << "<circle class='mark' cx='" << x << "' cy='" << y << "' r='3' fill='" << colour << "'/>\n";
+      break;
+    case 1:
+      polygon({ { -3, -3 }, { 3, -3 }, { 3, 3 }, { -3, 3 } });
+      break;
+    case 2:
+      polygon({ { 0, -4 }, { 3.6, 3 }, { -3.6, 3 } });
+      break;
+    case 3:
+      polygon({ { 0, -4.2 }, { 4.2, 0 }, { 0, 4.2 }, { -4.2, 0 } });
+      break;
+    case 4:
+      strokes("M-3 -3L3 3M-3 3L3 -3");
+      break;
+    case 5:
+      strokes("M0 -4V4M-4 0H4");
+      break;
+    case 6:
+      svg << "<circle class='mark' cx='" << x << "' cy='" << y << "' r='3' fill='white' stroke-width='1.4' stroke='"
+          << colour << "'/>\n";
+      break;
+    default:
+      polygon({ { 0, 4 }, { 3.6, -3 }, { -3.6, -3 } });
+  }
+}
 
 /// One axis: from values to pixels.
 class Scale
@@ -99,7 +148,8 @@ std::vector<double> shownValues(const std::vector<Curve>& curves, const PlotAxis
   {
     for (std::size_t i = 0; i < curve.x.size(); ++i)
     {
-      if (good(curve.x[i], x) && good(curve.y[i], y))
+      const bool level = curve.kind == CurveKind::Level; // everywhere, and nowhere in particular
+      if (good(curve.y[i], y) && (level ? !ofX : good(curve.x[i], x)))
       {
         values.push_back(ofX ? curve.x[i] : curve.y[i]);
       }
@@ -109,7 +159,7 @@ std::vector<double> shownValues(const std::vector<Curve>& curves, const PlotAxis
 }
 
 void drawFrame(std::ostream& svg, const std::string& title, const PlotAxis& x, const PlotAxis& y, const Scale& across,
-               const Scale& up)
+               const Scale& up, double height)
 {
   svg << "<text x='" << left << "' y='18' font-weight='bold'>" << escapedHtml(title) << "</text>\n";
   for (const double t : across.ticks())
@@ -134,59 +184,93 @@ void drawFrame(std::ostream& svg, const std::string& title, const PlotAxis& x, c
       << escapedHtml(y.label) << "</text>\n";
 }
 
-void drawCurve(std::ostream& svg, const Curve& curve, const char* colour, const Scale& across, const Scale& up)
+/// What tells one curve from the others: neighbours differ in colour and mark, those of one colour in all else.
+struct Look
 {
+  const char* colour;
+  const char* dash;
+  std::size_t mark;
+};
+
+Look lookOf(std::size_t index)
+{
+  return { colours[index % colours.size()], dashes[index / colours.size() % dashes.size()],
+           index + index / colours.size() };
+}
+
+void drawLine(std::ostream& svg, const std::string& points, const Look& look)
+{
+  svg << "<polyline fill='none' stroke='" << look.colour << "' stroke-width='1.4' stroke-dasharray='" << look.dash
+      << "' points='" << points << "'/>\n";
+}
+
+void drawCurve(std::ostream& svg, const Curve& curve, const Look& look, const Scale& across, const Scale& up)
+{
+  if (curve.kind == CurveKind::Level)
+  {
+    std::ostringstream ends;
+    const double y = curve.y.empty() || !up.shows(curve.y[0]) ? -1.0 : up.pixel(curve.y[0]);
+    ends << left << ',' << y << ' ' << width - right << ',' << y;
+    if (y >= 0.0)
+    {
+      drawLine(svg, ends.str(), look);
+    }
+    return;
+  }
+  std::vector<std::pair<double, double>> places;
   std::ostringstream points;
   for (std::size_t i = 0; i < curve.x.size(); ++i)
   {
-    if (!across.shows(curve.x[i]) || !up.shows(curve.y[i]))
+    if (across.shows(curve.x[i]) && up.shows(curve.y[i]))
     {
-      continue;
-    }
-    const double px = across.pixel(curve.x[i]);
-    const double py = up.pixel(curve.y[i]);
-    points << px << ',' << py << ' ';
-    if (curve.dots)
-    {
-      svg << "<circle cx='" << px << "' cy='" << py << "' r='3.5' fill='" << colour << "'/>\n";
+      places.emplace_back(across.pixel(curve.x[i]), up.pixel(curve.y[i]));
+      points << places.back().first << ',' << places.back().second << ' ';
     }
   }
-  if (!curve.dots)
+  if (curve.kind == CurveKind::Line)
   {
-    svg << "<polyline fill='none' stroke='" << colour << "' stroke-width='1.6' points='" << points.str() << "'/>\n";
+    drawLine(svg, points.str(), look);
+  }
+  // Marks on a finely drawn line would hide it.
+  for (std::size_t i = 0; i < places.size() && (curve.kind == CurveKind::Dots || places.size() <= 24); ++i)
+  {
+    drawMark(svg, places[i].first, places[i].second, look.colour, look.mark);
   }
 }
 
 } // namespace
 
-std::string escapedHtml(const std::string& text)
-{
-  std::string out;
-  for (const char c : text)
-  {
-    out += c == '&'   ? std::string("&amp;")
-           : c == '<' ? std::string("&lt;")
-           : c == '>' ? std::string("&gt;")
-                      : std::string(1, c);
-  }
-  return out;
-}
-
 std::string svgPlot(const std::string& title, const PlotAxis& x, const PlotAxis& y, const std::vector<Curve>& curves)
 {
+  const double height = std::max(leastHeight, top + bottom + 15.0 * double(curves.size()));
   const Scale across(x, shownValues(curves, x, y, true), left, width - right);
   const Scale up(y, shownValues(curves, x, y, false), height - bottom, top);
   std::ostringstream svg;
   svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width << "' height='" << height
       << "' font-family='sans-serif' font-size='11'>\n";
-  drawFrame(svg, title, x, y, across, up);
+  drawFrame(svg, title, x, y, across, up, height);
+  double row = top - 3.0;
   for (std::size_t i = 0; i < curves.size(); ++i)
   {
-    const char* colour = colours[i % colours.size()];
-    drawCurve(svg, curves[i], colour, across, up);
-    const double row = top + 12.0 + 15.0 * double(i);
-    svg << "<rect x='" << width - right + 10 << "' y='" << row - 8 << "' width='10' height='8' fill='" << colour
-        << "'/><text x='" << width - right + 25 << "' y='" << row << "'>" << escapedHtml(curves[i].name) << "</text>\n";
+    if (curves[i].y.empty())
+    {
+      continue;
+    }
+    const Look look = curves[i].kind == CurveKind::Level ? Look{ "#222222", "7 4", 0 } : lookOf(i);
+    drawCurve(svg, curves[i], look, across, up);
+    row += 15.0;
+    const double from = width - right + 8.0;
+    if (curves[i].kind != CurveKind::Dots)
+    {
+      std::ostringstream ends;
+      ends << from << ',' << row - 4.0 << ' ' << from + 24.0 << ',' << row - 4.0;
+      drawLine(svg, ends.str(), look);
+    }
+    if (curves[i].kind != CurveKind::Level)
+    {
+      drawMark(svg, from + 12.0, row - 4.0, look.colour, look.mark);
+    }
+    svg << "<text x='" << from + 30.0 << "' y='" << row << "'>" << escapedHtml(curves[i].name) << "</text>\n";
   }
   svg << "</svg>\n";
   return svg.str();

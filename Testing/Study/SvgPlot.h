@@ -5,13 +5,21 @@
 
 namespace sono::study {
 
-/// Points of one name; joined by lines, or shown as dots.
+/// How a curve is drawn.
+enum class CurveKind
+{
+  Line,
+  Dots,
+  Level ///< a dashed line across the plot at its first y
+};
+
+/// Points of one name. Without points a curve is not drawn, but the others look as if it were.
 struct Curve
 {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;
-  bool dots = false;
+  CurveKind kind = CurveKind::Line;
 };
 
 struct PlotAxis
@@ -20,11 +28,9 @@ struct PlotAxis
   bool logarithmic = false;
 };
 
-/// A plot as an SVG element of 640 x 340 pixels with ticks, grid and a legend. Points that are not finite, or not
-/// positive on a logarithmic axis, are left out.
+/// A plot as an SVG element, 720 pixels wide and as high as its legend wants, with ticks, grid and a legend. No two of
+/// 64 curves look alike: eight colours, then other marks and dashes. Points that are not finite, or not positive on a
+/// logarithmic axis, are left out.
 std::string svgPlot(const std::string& title, const PlotAxis& x, const PlotAxis& y, const std::vector<Curve>& curves);
-
-/// Text as HTML holds it.
-std::string escapedHtml(const std::string& text);
 
 } // namespace sono::study

@@ -8,6 +8,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <set>
 
 namespace {
 
@@ -50,8 +51,8 @@ TEST(StudyReport, DrawsErrorsOverPathsAndSecondsAndSaysWhatIsMissing)
   output.table("stability.csv", { "case", "result" }, { { "depth 0", "refused <clearly>" } });
   writeReport(folder);
   const std::string html = textOf(folder / "report.html");
-  sono::testing::expectContains(html, "rmse_intensity over paths");
-  sono::testing::expectContains(html, "rmse_intensity over seconds");
+  sono::testing::expectContains(html, "Intensity: error over paths");
+  sono::testing::expectContains(html, "Intensity: error over seconds");
   sono::testing::expectContains(html, ">sobol<");
   sono::testing::expectContains(html, "refused &lt;clearly&gt;");
   sono::testing::expectContains(html, "skipping.csv is missing");
@@ -72,14 +73,14 @@ TEST(StudyReport, FiguresThatMissAreNamed)
 
 TEST(SvgPlot, PlacesPointsAndLeavesOutWhatItCannotShow)
 {
-  const std::string svg =
-    svgPlot("t", { "x", true }, { "y" }, { { "c", { 1.0, 10.0, 100.0, -1.0 }, { 0.0, 1.0, 2.0, 3.0 }, true } });
+  const std::string svg = svgPlot("t", { "x", true }, { "y" },
+                                  { { "c", { 1.0, 10.0, 100.0, -1.0 }, { 0.0, 1.0, 2.0, 3.0 }, CurveKind::Dots } });
   std::size_t dots = 0;
   for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1))
   {
     ++dots;
   }
-  EXPECT_EQ(dots, 3u);
+  EXPECT_EQ(dots, 4u); // one in the legend
   // The middle one lies halfway between the others on a logarithmic axis.
   const auto placeOf = [&](std::size_t index) {
     std::size_t at = svg.find("cx='");
@@ -90,6 +91,38 @@ TEST(SvgPlot, PlacesPointsAndLeavesOutWhatItCannotShow)
     return std::stod(svg.substr(at + 4));
   };
   EXPECT_NEAR(placeOf(1), 0.5 * (placeOf(0) + placeOf(2)), 0.1);
+}
+
+TEST(SvgPlot, NoTwoCurvesLookAlike)
+{
+  // All in one place: what is drawn there differs by its look alone.
+  const Curve curve{ "c", { 1.0, 2.0 }, { 1.0, 2.0 }, CurveKind::Line };
+  const std::string svg = svgPlot("t", { "x" }, { "y" }, std::vector<Curve>(64, curve));
+  std::set<std::string> looks;
+  for (std::size_t at = svg.find("<polyline"); at != std::string::npos;)
+  {
+    const std::size_t legend = svg.find("<polyline", at + 1);
+    looks.insert(svg.substr(at, legend - at));
+    at = svg.find("<polyline", legend + 1);
+  }
+  EXPECT_EQ(looks.size(), 64u);
+}
+
+TEST(StudyReport, ShowsTheReferencesOwnErrorAndTheGpusCurves)
+{
+  const auto folder = emptyFolder("study_gpu");
+  const Output output(folder, "sample", true);
+  const std::vector<std::string> header{ "sampler", "precision", "device", "paths", "seconds", "rmse_rf" };
+  output.table("error_rib.csv", header,
+               { { "reference", "", "", "1", "", "0.001" },
+                 { "independent", "single", "CPU, 2 threads", "1", "0.1", "0.3" },
+                 { "independent", "single", "CPU, 2 threads", "10", "1", "0.1" } });
+  output.table("error_rib_gpu.csv", header, { { "independent", "single", "GPU", "1", "0.001", "0.3" } });
+  writeReport(folder);
+  const std::string html = textOf(folder / "report.html");
+  sono::testing::expectContains(html, "the reference's own error");
+  sono::testing::expectContains(html, "independent, single, GPU");
+  EXPECT_EQ(html.find("<h3>rib_gpu</h3>"), std::string::npos);
 }
 
 TEST(StudyReport, OfAnEmptyFolderIsRefused)
