@@ -28,6 +28,7 @@ namespace {
 
 constexpr int firstLookMs = 150; // shorter runs are over before anybody could stop them
 constexpr int lookMs = 50;
+constexpr int restPerLook = 10; // so that looking, which may draw, takes a tenth of the time at most
 constexpr int sentenceMs = 15000;
 
 pqProgressManager* progressManager()
@@ -122,7 +123,8 @@ bool pqSonoStop::wantsStop()
 {
   const bool canLook =
     busy_ && !looking_ && QThread::currentThread() == this->thread() && QGuiApplication::mouseButtons() == Qt::NoButton;
-  if (canLook && !stop_ && sinceBegin_.elapsed() > firstLookMs && sinceLook_.elapsed() > lookMs)
+  if (canLook && !stop_ && sinceBegin_.elapsed() > firstLookMs &&
+      sinceLook_.elapsed() > std::max<qint64>(lookMs, restPerLook * lastLookMs_))
   {
     this->look();
   }
@@ -132,12 +134,13 @@ bool pqSonoStop::wantsStop()
 void pqSonoStop::look()
 {
   looking_ = true;
+  sinceLook_.start();
   progressManager()->setEnableAbort(true);
   qApp->installEventFilter(this); // in front of all others
   // Without timers: some of ParaView's render, which would update the pipeline that is running.
   QCoreApplication::processEvents(QEventLoop::X11ExcludeTimers | QEventLoop::ExcludeSocketNotifiers);
   qApp->removeEventFilter(this);
-  sinceLook_.start();
+  lastLookMs_ = sinceLook_.restart();
   looking_ = false;
 }
 

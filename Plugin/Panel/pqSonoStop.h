@@ -57,7 +57,8 @@ private:
   bool stop_ = false;
   QElapsedTimer sinceBegin_;
   QElapsedTimer sinceLook_;
-  QTimer afterwards_; // back in the event loop
+  qint64 lastLookMs_ = 0; // how long it took
+  QTimer afterwards_;     // back in the event loop
   QPointer<QWindow> closing_;
   std::vector<std::pair<QPointer<QObject>, std::unique_ptr<QEvent>>> held_;
   std::vector<vtkAlgorithm*> stopped_; // not told to the user yet
