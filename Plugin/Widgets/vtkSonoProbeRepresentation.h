@@ -148,7 +148,6 @@ private:
 
   SonoProbePose Pose() const;
   void SetPose(const SonoProbePose& pose);
-  void UpdateShape();
   void FindSkin();
   void Slide(const double eventPosition[2]);
   void FollowWithHandle(const double eventPosition[2]);

@@ -201,6 +201,21 @@ class TestGui(GuiCase):
         for state in (dragged, tilted):
             self.assertEqual(state["Preview"], [0])  # at rest
 
+    def test_one_filter_is_dragged_along_the_skin(self):
+        """Coarse while the button is down, in full when it rests."""
+        with tempfile.TemporaryDirectory() as folder:
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("moving", "rested")]
+            seen = [pathlib.Path(folder, f"drag_ultrasound_{name}.png") for name in ("moving", "rested")]
+            with self.look_after(states[0], seen[0]), self.look_after(states[1], seen[1]):
+                errors = self.play("drag_ultrasound.xml", folder, f"--script={PLAYBACKS / 'drag_ultrasound.py'}")
+            self.assertEqual(errors, [])
+            moving, rested = (self.probe_of(state, "SonoUltrasound") for state in states)
+            for picture in seen:
+                self.compare(picture, "-fail", "0.15", "-failpercent", "1", "-hardfail", "2")
+        self.assertEqual((moving.pop("Preview"), rested.pop("Preview")), ([1], [0]))
+        self.assertEqual(moving, rested)
+        self.assertNotEqual(rested["PositionMm"], [87.8, -86.5, -45])
+
     @contextlib.contextmanager
     def look_after(self, path, seen):
         """Photographs the screen three seconds after a file has appeared."""
@@ -218,9 +233,9 @@ class TestGui(GuiCase):
         watcher.join()
 
     @staticmethod
-    def probe_of(path):
+    def probe_of(path, kind="SonoProbeSource"):
         """The pose in a state file."""
-        (probe,) = (p for p in ElementTree.parse(path).iter("Proxy") if p.get("type") == "SonoProbeSource")
+        (probe,) = (p for p in ElementTree.parse(path).iter("Proxy") if p.get("type") == kind)
         return {name: TestGui.values(probe, name)
                 for name in ("PositionMm", "Axial", "Lateral", "Preview")}
 
