@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # study.sh [FOLDER] [PART...]: the phantom study, run time against error, stability and what each skip buys, measured
-# and gathered in FOLDER/report.html (default: build-simulation/study). Takes about a quarter of an hour on two cores.
+# and gathered in FOLDER/report.html (default: build-simulation/study). Takes under half an hour on two cores that do
+# nothing else.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"

@@ -12,7 +12,10 @@ namespace sono::study {
 
 Difference singleAgainstDouble(const BenchScene& bench, TraceSettings tracing)
 {
-  tracing.device = Device::Cpu; // the twin's
+  tracing.device = Device::Cpu;  // the twin's
+  TraceSettings first = tracing; // builds the cache of the scene, which is no cost of a path
+  first.pathsPerLine = 1;
+  trace(*bench.scene, bench.lines, first, {}, bench.targets);
   const BenchImage single = makeBenchImage(bench, tracing, Precision::Single);
   Difference d;
   const double paths = double(tracing.pathsPerLine) * double(bench.lines.size());
