@@ -1,5 +1,7 @@
 #include "WireRays.h"
 
+#include "Trace/RecordPaths.h"
+
 #include <cmath>
 
 namespace sono::study {
