@@ -404,6 +404,7 @@ void pqSonoProbeWidget::prepare()
 
 void pqSonoProbeWidget::findSkin()
 {
+  SCOPED_UNDO_EXCLUDE(); // nobody wants to undo that data were looked at
   vtkNew<vtkMultiBlockDataSet> surfaces;
   if (this->view())
   {

@@ -28,7 +28,8 @@ namespace {
 
 constexpr int firstLookMs = 150; // shorter runs are over before anybody could stop them
 constexpr int lookMs = 50;
-constexpr int restPerLook = 10; // so that looking, which may draw, takes a tenth of the time at most
+constexpr int restPerLook = 10; // so that looking, which may draw, takes a tenth of the time
+constexpr int longestRestMs = 1000;
 constexpr int sentenceMs = 15000;
 
 pqProgressManager* progressManager()
@@ -124,7 +125,7 @@ bool pqSonoStop::wantsStop()
   const bool canLook =
     busy_ && !looking_ && QThread::currentThread() == this->thread() && QGuiApplication::mouseButtons() == Qt::NoButton;
   if (canLook && !stop_ && sinceBegin_.elapsed() > firstLookMs &&
-      sinceLook_.elapsed() > std::max<qint64>(lookMs, restPerLook * lastLookMs_))
+      sinceLook_.elapsed() > std::clamp<qint64>(restPerLook * lastLookMs_, lookMs, longestRestMs))
   {
     this->look();
   }

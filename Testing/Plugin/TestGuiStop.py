@@ -49,6 +49,15 @@ class Person:
                     return x, y
         return None
 
+    def await_button(self):
+        """On a busy machine it takes a while until it is drawn."""
+        for _ in range(50):
+            time.sleep(0.2)
+            button = self.find_button()
+            if button:
+                return button
+        raise TimeoutError("the abort button is not red")
+
     def move(self, x, y):
         xtest.fake_input(self.display, X.MotionNotify, x=x, y=y)
         self.display.sync()
@@ -101,9 +110,7 @@ class TestGuiStop(GuiCase):
             person.move(1390, 890)  # so that the pointer is in no picture
             seen["before"] = person.picture()
             self.assertIsNone(person.find_button())
-            time.sleep(1.5)
-            seen["button"] = person.find_button()
-            person.click(*seen["button"])
+            person.click(*person.await_button())
             seen["stopped"] = person.await_file("stopped.pvsm")
             time.sleep(1.5)
             seen["kept"] = person.picture()
