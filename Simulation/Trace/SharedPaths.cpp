@@ -17,7 +17,8 @@ void traceShared(const Space& space, const TraceSetup& setup, TracedLines& out, 
   traceSharedLines(space, { setup.view, setup.lines, setup.paths, setup.frequencyMHz }, out, progress);
 }
 
-template void traceShared(const CellSpace<EmbreeTargets, CellsOnDemand>&, const TraceSetup&, TracedLines&, const Progress&);
+template void traceShared(const CellSpace<EmbreeTargets, CellsOnDemand>&, const TraceSetup&, TracedLines&,
+                          const Progress&);
 template void traceShared(const NanoSpace<EmbreeTargets>&, const TraceSetup&, TracedLines&, const Progress&);
 
 } // namespace sono
