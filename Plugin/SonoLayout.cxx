@@ -161,7 +161,7 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
 
 } // namespace
 
-void sonoShowLayout(vtkSMSourceProxy* ultrasound)
+vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
 {
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = ultrasound->GetSessionProxyManager();
@@ -192,4 +192,5 @@ void sonoShowLayout(vtkSMSourceProxy* ultrasound)
   {
     view->StillRender();
   }
+  return solid;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
 class vtkSMSourceProxy;
+class vtkSMViewProxy;
 
 /// Sets up a new tab "Ultrasound" for a Simulate Ultrasound: the anatomy, translucent, with probe, fan and image in
 /// place; the image flat with a depth scale in cm and the probe's marker; the RF and envelope of one line, which is
-/// drawn into both images. Makes an A-Line and a Flat Image Scale for that, unless there are some.
-void sonoShowLayout(vtkSMSourceProxy* ultrasound);
+/// drawn into both images. Makes an A-Line and a Flat Image Scale for that, unless there are some. The view with the
+/// anatomy.
+vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound);

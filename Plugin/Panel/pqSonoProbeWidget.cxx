@@ -1,5 +1,6 @@
 #include "pqSonoProbeWidget.h"
 
+#include "SonoMovingViews.h"
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
 #include "vtkSonoUltrasound.h"
@@ -22,6 +23,7 @@
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
+#include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
@@ -34,6 +36,9 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QToolButton>
+
+#include <algorithm>
+#include <utility>
 
 namespace {
 
@@ -60,6 +65,14 @@ vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyG
     }
   }
   return all;
+}
+
+/// Whether some source waits for Apply.
+bool hasChanges()
+{
+  const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
+  return std::any_of(sources.begin(), sources.end(),
+                     [](pqPipelineSource* source) { return source->modifiedState() != pqProxy::UNMODIFIED; });
 }
 
 } // namespace
@@ -324,13 +337,11 @@ void pqSonoProbeWidget::showMoving()
     SCOPED_UNDO_EXCLUDE();
     this->push(this->pose(), true);
   }
-  for (pqView* shown : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>())
+  if (!this->Shown)
   {
-    if (shown->widget()->isVisible())
-    {
-      shown->forceRender(); // an interactive one would not run the pipeline
-    }
+    this->Shown = std::make_unique<SonoMovingViews>(this->proxy());
   }
+  this->Shown->draw();
 }
 
 void pqSonoProbeWidget::rest()
@@ -346,9 +357,18 @@ void pqSonoProbeWidget::rest()
   }
   this->Frame.stop();
   this->Moving = false;
+  std::unique_ptr<SonoMovingViews> shown = std::move(this->Shown);
   if (!this->isLive())
   {
     return;
+  }
+  if (shown && hasChanges())
+  {
+    shown.reset(); // what is applied with the pose may change the anatomy
+  }
+  else if (shown)
+  {
+    shown->drawInFull();
   }
   const auto after = this->pose();
   {
@@ -386,16 +406,18 @@ void pqSonoProbeWidget::setView(pqView* next)
     this->view()->disconnect(&this->Prepare);
   }
   this->Superclass::setView(next);
-  if (next)
+  if (this->view())
   {
     // What is shown may have changed.
-    this->Prepare.connect(next, SIGNAL(endRender()), SLOT(start()));
+    this->Prepare.connect(this->view(), SIGNAL(endRender()), SLOT(start()));
   }
 }
 
 void pqSonoProbeWidget::prepare()
 {
-  if (!this->Moving && this->isWidgetVisible() && !this->proxy()->GetSession()->GetPendingProgress())
+  // Not from a server: all that is shown would come over unasked.
+  if (!this->Moving && this->isWidgetVisible() && !vtkSMSessionClient::SafeDownCast(this->proxy()->GetSession()) &&
+      !this->proxy()->GetSession()->GetPendingProgress())
   {
     this->findSkin();
     this->probe()->GetSkin()->Prepare();

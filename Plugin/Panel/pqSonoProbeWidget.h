@@ -7,10 +7,13 @@
 #include <QPair>
 #include <QTimer>
 
+#include <memory>
+
 class QCheckBox;
 class QDoubleSpinBox;
 class QGridLayout;
 class QLabel;
+class SonoMovingViews;
 class pqPipelineSource;
 class vtkDataObject;
 class vtkSMPropertyGroup;
@@ -81,6 +84,7 @@ private:
   bool Moving = false;
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;
+  std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests
   QMap<QPair<vtkSMProxy*, int>, vtkSmartPointer<vtkSMProxy>> Fetchers;
 };
 

@@ -5,13 +5,16 @@
 #include "vtkDataObjectTypes.h"
 #include "vtkPVDataInformation.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMViewProxy.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
+#include "pqView.h"
 
 #include <QAction>
 
@@ -78,7 +81,10 @@ void pqSonoToolBar::simulate()
 void pqSonoToolBar::showLayout()
 {
   pqPipelineSource* source = pqActiveObjects::instance().activeSource();
-  sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
+  vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
   pqActiveObjects::instance().setActiveSource(source);
+  // Where the probe can be seen and dragged.
+  pqActiveObjects::instance().setActiveView(
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(solid));
   pqApplicationCore::instance()->render();
 }
