@@ -96,6 +96,15 @@ class TestGui(GuiCase):
         self.assertAlmostEqual(picked_in_body[0], expected_in_body, delta=1)
         self.assertNotEqual(picked_in_body, picked)
 
+    def test_what_is_behind_the_camera_or_plots_other_lines_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("behind.xml", folder, f"--script={PLAYBACKS / 'behind.py'}"), [])
+            clicked, laid_out = (pathlib.Path(folder, name + ".pvsm") for name in ("clicked", "laid_out"))
+            self.assertEqual(self.values_of(clicked, "SonoALine", "Line"), [3])
+            plots = [p for p in ElementTree.parse(laid_out).iter("Proxy") if p.get("type") == "SonoALine"]
+        ports = {proxy.get("output_port") for plot in plots for proxy in plot.findall("Property[@name='Input']/Proxy")}
+        self.assertEqual(ports, {"2", "3"})  # RF and traced lines
+
     @staticmethod
     def line_at(lateral, axial):
         """Of 128 lines over 90 degrees."""
