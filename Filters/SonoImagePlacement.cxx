@@ -7,6 +7,14 @@
 
 namespace sono {
 
+Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose, bool isVolume)
+{
+  const Vec3d from = (worldMm - pose.positionMm) / 10.0;
+  const double axial = glm::dot(from, pose.axial);
+  const double elevation = glm::dot(from, glm::cross(pose.axial, pose.lateral));
+  return { glm::dot(from, pose.lateral), isVolume ? elevation : axial, isVolume ? axial : elevation };
+}
+
 ImagePlacement::ImagePlacement(const PlaneImage& plane, const ProbePose& pose)
   : size_(plane.width, plane.height, 1)
   , pixel_(plane.pixelMm)
@@ -26,14 +34,9 @@ ImagePlacement::ImagePlacement(const VolumeImage& volume, const ProbePose& pose)
 
 ImagePlacement ImagePlacement::flat(const ProbePose& pose) const
 {
-  const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
-  const Vec3d from = origin_ - pose.positionMm;
-  const bool isVolume = size_.z > 1;
-  const Vec3d second = isVolume ? elevation : pose.axial;
-  const Vec3d third = isVolume ? pose.axial : elevation;
   ImagePlacement result = *this;
   result.pixel_ = pixel_ / 10.0;
-  result.origin_ = Vec3d(glm::dot(from, pose.lateral), glm::dot(from, second), glm::dot(from, third)) / 10.0;
+  result.origin_ = flatFromWorld(origin_, pose, size_.z > 1);
   result.setColumns({ 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 });
   return result;
 }

@@ -11,6 +11,13 @@ class vtkInformation;
 
 namespace sono {
 
+/// What is drawn on a flat image lies so much in front of it, which is towards negative z.
+constexpr double flatDrawingCm = -0.01;
+
+/// A place in the world as the flat image has it, in cm: x lateral, y depth, z out of the image plane; of a volume
+/// y elevation, z depth.
+Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose, bool isVolume);
+
 /// Where a scan-converted image lies: in the world, LPS mm, or flat in the probe's own frame, in cm.
 class ImagePlacement
 {

@@ -1,6 +1,7 @@
 #include "vtkSonoALine.h"
 
 #include "Progress.h"
+#include "SonoImagePlacement.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
@@ -51,16 +52,12 @@ void drawLine(int line, const sono::Vec3d& from, const sono::Vec3d& to, vtkPolyD
   sono::writeNumber("Line", line, polyData->GetFieldData());
 }
 
-/// A place in the world as the flat image has it.
-sono::Vec3d flatFromWorld(const sono::Vec3d& world, const sono::ProbeField& probe)
+/// A place in the world as it is drawn on the flat image; of a volume, in it.
+sono::Vec3d drawnFlat(const sono::Vec3d& worldMm, const sono::ProbeField& probe)
 {
-  constexpr double inFrontCm = -0.01;
-  const sono::ProbePose& pose = probe.pose;
-  const sono::Vec3d from = (world - pose.positionMm) / 10.0;
-  const double elevation = glm::dot(from, glm::cross(pose.axial, pose.lateral));
-  const double axial = glm::dot(from, pose.axial);
   const bool isVolume = probe.geometry.kind == sono::ScanKind::Matrix;
-  return { glm::dot(from, pose.lateral), isVolume ? elevation : axial, isVolume ? axial : elevation + inFrontCm };
+  const sono::Vec3d front(0.0, 0.0, isVolume ? 0.0 : sono::flatDrawingCm);
+  return sono::flatFromWorld(worldMm, probe.pose, isVolume) + front;
 }
 
 } // namespace
@@ -154,7 +151,7 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
 
     const sono::ScanLine place = sono::makeScanLines(probe.geometry, probe.pose)[std::size_t(line)];
     const sono::Vec3d end = place.originMm + probe.geometry.depthMm * place.axis;
-    drawLine(line, flatFromWorld(place.originMm, probe), flatFromWorld(end, probe), vtkPolyData::GetData(output, 1));
+    drawLine(line, drawnFlat(place.originMm, probe), drawnFlat(end, probe), vtkPolyData::GetData(output, 1));
     drawLine(line, place.originMm, end, vtkPolyData::GetData(output, 2));
   });
 }

@@ -28,7 +28,8 @@ public:
 
   ///@{
   /**
-   * Edge of a square pixel, of a matrix a cubic voxel, in mm, above 0; at most 2^28 of them. Default 0.23.
+   * Edge of a square pixel, of a matrix a cubic voxel, in mm, above 0; at most 2^28 of them. Twice as wide
+   * while the probe is being moved. Default 0.23.
    */
   vtkSetMacro(PixelMm, double);
   vtkGetMacro(PixelMm, double);

@@ -1,5 +1,6 @@
 #include "vtkSonoFlatScale.h"
 
+#include "SonoImagePlacement.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 
@@ -10,6 +11,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
@@ -23,8 +25,6 @@
 vtkStandardNewMacro(vtkSonoFlatScale);
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 enum Part
 {
@@ -48,7 +48,7 @@ public:
     polygons_->InsertNextCell(corners);
     for (int i = 0; i < corners; ++i)
     {
-      const double angle = 2.0 * pi * i / corners;
+      const double angle = 2.0 * vtkMath::Pi() * i / corners;
       polygons_->InsertCellPoint(point(x + radius * std::cos(angle), y + radius * std::sin(angle)));
     }
     polygonParts_->InsertNextValue(MARKER);
@@ -94,11 +94,7 @@ public:
   }
 
 private:
-  vtkIdType point(double x, double y)
-  {
-    constexpr double inFrontCm = -0.01;
-    return points_->InsertNextPoint(x, y, inFrontCm);
-  }
+  vtkIdType point(double x, double y) { return points_->InsertNextPoint(x, y, sono::flatDrawingCm); }
 
   vtkNew<vtkPoints> points_;
   vtkNew<vtkCellArray> lines_;

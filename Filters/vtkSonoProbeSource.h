@@ -152,7 +152,8 @@ public:
   ///@{
   /**
    * Whether the probe is being moved. The stages then make a coarse image quickly: at most 60 paths a line, RF sampled
-   * at six times the centre frequency at most, and scatterer cells half as wide again as they are set to. Default off.
+   * at four times the centre frequency at most, scatterer cells up to twice and pixels twice as wide as they are set
+   * to. Default off.
    */
   vtkSetMacro(Preview, bool);
   vtkGetMacro(Preview, bool);

@@ -28,6 +28,7 @@ int vtkSonoSceneWriter::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkSonoSceneWriter::WriteData()
 {
+  bool written = false;
   const int ok = sono::announceStage(this, [&] {
     if (this->FileName.empty())
     {
@@ -35,6 +36,11 @@ void vtkSonoSceneWriter::WriteData()
     }
     const auto scene = vtkSonoSceneHandle::Get(vtkMultiBlockDataSet::SafeDownCast(this->GetInput()));
     sono::writeScene(this->FileName, *scene, sono::progressOf(this));
+    written = true;
   });
-  this->SetErrorCode(ok ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
+  this->SetErrorCode(written ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
+  if (ok && !written)
+  {
+    vtkWarningMacro("Stopped: '" << this->FileName << "' was not written; save it again.");
+  }
 }

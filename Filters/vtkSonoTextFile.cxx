@@ -1,5 +1,6 @@
 #include "vtkSonoTextFile.h"
 
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 
 #include <filesystem>
@@ -21,6 +22,11 @@ void vtkSonoTextFile::PrintSelf(ostream& os, vtkIndent indent)
 
 void vtkSonoTextFile::Write()
 {
+  auto* ranks = vtkMultiProcessController::GetGlobalController();
+  if (ranks && ranks->GetLocalProcessId() > 0)
+  {
+    return;
+  }
   const std::string part = this->FileName + ".part";
   std::ofstream stream(part, std::ios::binary);
   stream << this->Text;

@@ -36,7 +36,7 @@ public:
   ///@}
 
   /**
-   * Writes the text; where that fails, an older file of the name is left as it was.
+   * Writes the text; where that fails, an older file of the name is left as it was. In parallel the first rank writes.
    */
   void Write();
 

@@ -216,8 +216,8 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   const Stages& stages = *this->Chain;
-  for (vtkAlgorithm* stage : std::initializer_list<vtkAlgorithm*>{ stages.scene, stages.probe, stages.tracer,
-                                                                   stages.formation, stages.bmode, stages.converter })
+  for (vtkAlgorithm* stage : std::initializer_list<vtkAlgorithm*>{
+         stages.scene, stages.probe, stages.tracer, stages.formation, stages.bmode, stages.converter, stages.errors })
   {
     os << indent << stage->GetClassName() << ":" << endl;
     stage->PrintSelf(os, indent.GetNextIndent());

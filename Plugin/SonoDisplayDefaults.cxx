@@ -70,13 +70,26 @@ void showErrors(vtkSMProxy* colors)
 }
 
 /// Paths and hits over the 80 dB below the transducer's intensity; what is fainter hardly sounds.
-void showIntensities(vtkSMProxy* representation)
+void scaleIntensities(vtkSMProxy* colors)
 {
-  vtkNew<vtkSMTransferFunctionManager> tables;
-  vtkSMProxy* colors = tables->GetColorTransferFunction("IntensityDb", representation->GetSessionProxyManager());
   vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, -80.0, 0.0);
   vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode").Set(-1); // never
   colors->UpdateVTKObjects();
+}
+
+/// Whether an output is the tracer's ray paths or boundary hits.
+bool isRays(vtkSMSourceProxy* source, unsigned int port)
+{
+  if (equal(source->GetXMLName(), "SonoRayTracer"))
+  {
+    return port >= 2;
+  }
+  return equal(source->GetXMLName(), "SonoUltrasound") &&
+         (port == vtkSonoUltrasound::RAY_PATHS || port == vtkSonoUltrasound::BOUNDARY_HITS);
+}
+
+void showRays(vtkSMProxy* representation)
+{
   vtkSMPropertyHelper(representation, "PointSize", true).Set(4.0);
   vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0); // the colours themselves, whatever the light
   vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
@@ -159,6 +172,10 @@ public:
     {
       showErrors(registered->Proxy);
     }
+    if (equal(registered->GroupName, "lookup_tables") && std::strstr(registered->ProxyName, "IntensityDb"))
+    {
+      scaleIntensities(registered->Proxy);
+    }
     if (!equal(registered->GroupName, "representations"))
     {
       return;
@@ -185,11 +202,9 @@ public:
     {
       keepInPlace(registered->Proxy);
     }
-    else if (isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::RAY_PATHS) ||
-             isOutput(input, port, "SonoUltrasound", vtkSonoUltrasound::BOUNDARY_HITS) ||
-             (equal(input->GetXMLName(), "SonoRayTracer") && port >= 2))
+    else if (isRays(input, port))
     {
-      showIntensities(registered->Proxy);
+      showRays(registered->Proxy);
     }
     else if (isOutput(input, port, "SonoProbeSource", vtkSonoUltrasound::PROBE))
     {

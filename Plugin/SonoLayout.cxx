@@ -92,7 +92,8 @@ void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, vtkSMSourc
   setCamera(view, { 0.0, 0.0, -1.0 }, { 0.0, -1.0, 0.0 });
 }
 
-/// The filter of this kind that an output of the ultrasound has already, or a new one.
+/// The filter of this kind that an output of the ultrasound has already, or a new one. A scale is the same on all of
+/// them.
 vtkSmartPointer<vtkSMSourceProxy> filterOf(vtkSMSourceProxy* ultrasound, unsigned int port, const char* kind,
                                            Controller* controller, vtkSMSessionProxyManager* manager)
 {
@@ -102,7 +103,12 @@ vtkSmartPointer<vtkSMSourceProxy> filterOf(vtkSMSourceProxy* ultrasound, unsigne
   for (sources->Begin("sources"); !sources->IsAtEnd(); sources->Next())
   {
     vtkSMProxy* source = sources->GetProxy();
-    if (std::strcmp(source->GetXMLName(), kind) == 0 && vtkSMPropertyHelper(source, "Input").GetAsProxy() == ultrasound)
+    if (std::strcmp(source->GetXMLName(), kind) != 0)
+    {
+      continue;
+    }
+    const vtkSMPropertyHelper input(source, "Input");
+    if (input.GetAsProxy() == ultrasound && (input.GetOutputPort() == port || !source->GetProperty("Line")))
     {
       return vtkSMSourceProxy::SafeDownCast(source);
     }
@@ -121,12 +127,11 @@ vtkSmartPointer<vtkSMSourceProxy> filterOf(vtkSMSourceProxy* ultrasound, unsigne
   return made;
 }
 
-std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
-std::array<double, 3> envelopeColor{ 0.15, 0.4, 0.7 };
-
 /// Over the depth, RF to the left axis and the envelope in dB to the right one.
 void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* controller)
 {
+  std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
+  std::array<double, 3> envelopeColor{ 0.15, 0.4, 0.7 };
   vtkSMPropertyHelper(view, "ChartTitle", true).Set("");
   vtkSMPropertyHelper(view, "BottomAxisTitle", true).Set("Depth (cm)");
   vtkSMPropertyHelper(view, "LeftAxisTitle", true).Set("RF");

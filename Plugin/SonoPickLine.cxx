@@ -90,7 +90,8 @@ vtkSmartPointer<vtkFieldData> fieldOf(vtkSMSourceProxy* source, unsigned int por
   return field;
 }
 
-/// A place's lateral and axial coordinates in mm where the sight meets the image plane, and how far along it is.
+/// A place's lateral and axial coordinates in mm where the sight meets the image plane, and how far along it is: 0 to 1
+/// between the sight's ends, less behind the camera.
 struct Meeting
 {
   double lateralMm;
@@ -193,9 +194,10 @@ SonoPickedLine sonoPickLine(vtkSMRenderViewProxy* view, int x, int y)
     }
     const vtkSmartPointer<vtkFieldData> field = fieldOf(image, input.GetOutputPort());
     Meeting meeting;
-    if (!meetPlane(sight, kind, field, meeting) || meeting.along >= nearest)
+    if (!meetPlane(sight, kind, field, meeting) || meeting.along < 0.0 || meeting.along > 1.0 ||
+        meeting.along >= nearest)
     {
-      continue;
+      continue; // edge on, out of sight, or behind another
     }
     const int line = vtkSonoALine::LineAt(field, meeting.lateralMm, meeting.axialMm);
     vtkSMSourceProxy* plot = line >= 0 ? plotOf(image) : nullptr;

@@ -24,7 +24,7 @@ private:
   void press(vtkObject* interactor);
   void release(vtkObject* interactor, pqView* view);
 
-  int pressedAt_[2] = { -1, -1 };
+  int pressedAt_[2] = { -1000, -1000 }; // nowhere
 };
 
 #endif

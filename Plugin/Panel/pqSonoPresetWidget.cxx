@@ -7,6 +7,7 @@
 #include "pqFileDialog.h"
 #include "pqServerManagerModel.h"
 #include "vtkCommand.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSession.h"
@@ -54,6 +55,21 @@ pqSonoPresetWidget::pqSonoPresetWidget(vtkSMProxy* smproxy, vtkSMProperty* prope
       pqCoreUtilities::connect(setting, event, this, SLOT(showChoice()));
     }
   }
+}
+
+void pqSonoPresetWidget::apply()
+{
+  // The numbers have widgets of their own, which do this for them.
+  this->Superclass::apply();
+  const QString file = vtkSMUncheckedPropertyHelper(this->property()).GetAsString();
+  vtkSMPropertyHelper(this->property()).Set(file.toUtf8().data());
+  this->proxy()->UpdateVTKObjects();
+}
+
+void pqSonoPresetWidget::reset()
+{
+  this->Superclass::reset();
+  this->property()->ClearUncheckedElements();
 }
 
 bool pqSonoPresetWidget::readPresets(const QString& file)

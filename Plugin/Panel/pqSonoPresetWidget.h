@@ -18,6 +18,9 @@ class pqSonoPresetWidget : public pqPropertyWidget
 public:
   pqSonoPresetWidget(vtkSMProxy* proxy, vtkSMProperty* property, QWidget* parent = nullptr);
 
+  void apply() override;
+  void reset() override;
+
 private Q_SLOTS:
   void showChoice();
 

@@ -106,6 +106,8 @@ void pqSonoStop::shutdown()
 void pqSonoStop::begin()
 {
   busy_ = true;
+  // Events that wait were looked at with no button down; one that is down now belongs to them.
+  dragging_ = held_.empty() && QGuiApplication::mouseButtons() != Qt::NoButton;
   sinceBegin_.start();
   sinceLook_.start();
 }
@@ -122,8 +124,7 @@ void pqSonoStop::end()
 
 bool pqSonoStop::wantsStop()
 {
-  const bool canLook =
-    busy_ && !looking_ && QThread::currentThread() == this->thread() && QGuiApplication::mouseButtons() == Qt::NoButton;
+  const bool canLook = busy_ && !dragging_ && !looking_ && QThread::currentThread() == this->thread();
   if (canLook && !stop_ && sinceBegin_.elapsed() > firstLookMs &&
       sinceLook_.elapsed() > std::clamp<qint64>(restPerLook * lastLookMs_, lookMs, longestRestMs))
   {
@@ -213,11 +214,18 @@ void pqSonoStop::hasFinished(vtkAlgorithm* filter)
   const auto isIt = [&](const QPointer<pqPipelineSource>& source) {
     return source && source->getProxy()->GetClientSideObject() == filter;
   };
-  const auto found = std::find_if(waiting_.begin(), waiting_.end(), isIt);
-  if (found != waiting_.end())
+  // Apply stays as it is: something may have been typed meanwhile.
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isIt), waiting_.end());
+}
+
+void pqSonoStop::offerApply()
+{
+  for (const QPointer<pqPipelineSource>& source : waiting_)
   {
-    (*found)->setModifiedState(pqProxy::UNMODIFIED);
-    waiting_.erase(found);
+    if (source && source->modifiedState() == pqProxy::UNMODIFIED)
+    {
+      source->setModifiedState(pqProxy::MODIFIED);
+    }
   }
 }
 
@@ -231,27 +239,29 @@ void pqSonoStop::settle()
     if (source && !names.contains(source->getSMName()))
     {
       names << source->getSMName();
-      if (source->modifiedState() == pqProxy::UNMODIFIED)
+      if (std::find(waiting_.begin(), waiting_.end(), source) == waiting_.end())
       {
         waiting_.emplace_back(source);
-        source->setModifiedState(pqProxy::MODIFIED); // so that Apply can be clicked
       }
     }
   }
+  this->offerApply();
   if (!names.isEmpty())
   {
     const QString sentence =
-      tr("Stopped: %1. What was there before is shown; click Apply to run it again.").arg(names.join(", "));
+      tr("Stopped: %1. What was there before is shown; select it and click Apply to run it again.")
+        .arg(names.join(", "));
     vtkOutputWindowDisplayText((sentence + "\n").toUtf8().data());
     if (auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget()))
     {
-      window->statusBar()->showMessage(tr("Stopped; Apply runs it again."), sentenceMs); // there is little room
+      window->statusBar()->showMessage(tr("Stopped; select it and click Apply."), sentenceMs); // there is little room
     }
   }
   if (auto* panel = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>())
   {
     QObject::connect(panel, QOverload<pqProxy*>::of(&pqPropertiesPanel::applied), this, &pqSonoStop::runAgain,
                      Qt::UniqueConnection);
+    QObject::connect(panel, &pqPropertiesPanel::resetDone, this, &pqSonoStop::offerApply, Qt::UniqueConnection);
   }
   for (auto& [receiver, event] : std::exchange(held_, {}))
   {

@@ -19,8 +19,8 @@ class pqProxy;
 /// Lets ParaView's abort button (and Escape) stop our filters while they run in the GUI's own process. ParaView 5.11
 /// shows progress but handles no events meanwhile; this handles them, several times a second, while one of our filters
 /// works. Only the button, Escape and closing the window are acted on, which stops the run. Other input waits for its
-/// end, as it does without us; timers wait, too, so that nothing starts a run inside a run. While a mouse button is
-/// held, as in a drag, nothing is handled at all.
+/// end, as it does without us; timers wait, too, so that nothing starts a run inside a run. While a mouse button that
+/// was pressed before the run is held, as in a drag, nothing is handled at all.
 ///
 /// The filter that was stopped goes on showing what it made before, and waits for Apply.
 class pqSonoStop
@@ -48,12 +48,14 @@ private:
   void begin();
   void end();
   void settle();
+  void offerApply();
   void runAgain(pqProxy* applied);
   void look();
   bool isOnButton(QEvent* event) const;
 
-  bool busy_ = false;    // ParaView shows progress
-  bool looking_ = false; // events are handled just now
+  bool busy_ = false;     // ParaView shows progress
+  bool dragging_ = false; // since before that
+  bool looking_ = false;  // events are handled just now
   bool stop_ = false;
   QElapsedTimer sinceBegin_;
   QElapsedTimer sinceLook_;

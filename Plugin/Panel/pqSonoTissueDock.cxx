@@ -78,12 +78,13 @@ void pqSonoTissueDock::say(const QString& sentence)
 
 void pqSonoTissueDock::load()
 {
-  source_ = pqActiveObjects::instance().activeSource();
-  const bool isAll = isA(source_, "SonoUltrasound");
-  if (!isAll && !isA(source_, "SonoSceneBuilder"))
+  pqPipelineSource* selected = pqActiveObjects::instance().activeSource();
+  const bool isAll = isA(selected, "SonoUltrasound");
+  if (!isAll && !isA(selected, "SonoSceneBuilder"))
   {
     return say(tr("What is selected is no Ultrasound Scene and no Simulate Ultrasound; select one and load it."));
   }
+  source_ = selected;
   const unsigned int port = isAll ? static_cast<unsigned int>(vtkSonoUltrasound::ANATOMY) : 0;
   const bool loaded = model_.load(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), port);
   saveButton_->setEnabled(loaded);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <iomanip>
+#include <sstream>
 #include <string>
 
 /// What the probe says of its movements.
@@ -7,4 +9,9 @@ constexpr const char* sonoOffSkin = "That is off the skin: the probe stays where
 constexpr const char* sonoNoSkin = "No surface is shown here that the probe could stand on: show the Ultrasound Scene.";
 
 /// Such as "Tilt +5.0 degrees".
-std::string sonoSignedNumber(const char* what, double value, const char* unit);
+inline std::string sonoSignedNumber(const char* what, double value, const char* unit)
+{
+  std::ostringstream text;
+  text << what << " " << std::showpos << std::fixed << std::setprecision(1) << value << " " << unit;
+  return text.str();
+}

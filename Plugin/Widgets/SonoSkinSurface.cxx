@@ -92,6 +92,7 @@ bool SonoSkinSurface::sort()
     count_[axis] = static_cast<int>(length / cubeMm_[axis]) + 1;
   }
   mesh_->BuildCells();
+  weights_.resize(static_cast<std::size_t>(mesh_->GetMaxCellSize()));
   Middles middles;
   // Single precision, in which most meshes come.
   vtkSmartPointer<vtkFloatArray> points = vtkFloatArray::SafeDownCast(mesh_->GetPoints()->GetData());
@@ -231,11 +232,11 @@ bool SonoSkinSurface::findNearest(const vtkVector3d& point, double& distance2, d
     }
     double there[3];
     double inCell[3];
-    double weights[VTK_CELL_SIZE];
     int part = 0;
     double apart2 = 0.0;
     mesh_->GetCell(candidate, scratch_);
-    if (scratch_->EvaluatePosition(point.GetData(), there, part, inCell, apart2, weights) != -1 && apart2 < distance2)
+    if (scratch_->EvaluatePosition(point.GetData(), there, part, inCell, apart2, weights_.data()) != -1 &&
+        apart2 < distance2)
     {
       distance2 = apart2;
       std::copy(there, there + 3, place);

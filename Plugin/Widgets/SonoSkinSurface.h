@@ -44,6 +44,7 @@ private:
   vtkMTimeType time_;
   vtkNew<vtkPolyData> mesh_;
   vtkNew<vtkGenericCell> scratch_;
+  std::vector<double> weights_; ///< of a polygon's corners; of no use, but VTK writes them
   double bounds_[6];
   bool sorted_ = false;
   int count_[3]; ///< of cubes along each axis

@@ -47,13 +47,6 @@ const char* hintOf(int state)
 
 } // namespace
 
-std::string sonoSignedNumber(const char* what, double value, const char* unit)
-{
-  std::ostringstream text;
-  text << what << " " << std::showpos << std::fixed << std::setprecision(1) << value << " " << unit;
-  return text.str();
-}
-
 vtkSonoProbeRepresentation::vtkSonoProbeRepresentation()
   : Parts(new Internals)
 {

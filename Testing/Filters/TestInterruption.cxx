@@ -3,6 +3,7 @@
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
+#include "vtkErrorCode.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkMultiBlockDataSet.h"
@@ -14,12 +15,15 @@
 #include "vtkSonoRayTracer.h"
 #include "vtkSonoScanConverter.h"
 #include "vtkSonoSceneBuilder.h"
+#include "vtkSonoSceneWriter.h"
 #include "vtkSonoThoraxSource.h"
 #include "vtkSonoUltrasound.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace {
@@ -215,6 +219,30 @@ TEST(Interruption, TheOneFilterStopsInAnyOfItsStages)
     ultrasound->SetFillBody(false);
     EXPECT_EQ(picture(), before);
   }
+}
+
+TEST(Interruption, ASceneWhoseWritingIsStoppedIsNotThere)
+{
+  const std::string path = testing::TempDir() + "stopped.nvdb";
+  std::filesystem::remove(path);
+  Button button;
+  Chain chain;
+  vtkNew<Counter> warnings;
+  vtkNew<vtkSonoSceneWriter> writer;
+  writer->SetInputConnection(chain.scene->GetOutputPort());
+  writer->SetFileName(path.c_str());
+  writer->AddObserver(vtkCommand::WarningEvent, warnings);
+  chain.scene->Update();
+  button.pressAfter(2);
+  writer->Write();
+  EXPECT_EQ(writer->GetErrorCode(), static_cast<unsigned long>(vtkErrorCode::CannotOpenFileError));
+  EXPECT_EQ(warnings->count, 1);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  button.leaveAlone();
+  writer->Write();
+  EXPECT_EQ(writer->GetErrorCode(), static_cast<unsigned long>(vtkErrorCode::NoError));
+  EXPECT_EQ(warnings->count, 1);
+  EXPECT_TRUE(std::filesystem::remove(path));
 }
 
 TEST(Interruption, ALongLineStopsInItsMiddle)

@@ -199,7 +199,7 @@ class TestChain(unittest.TestCase):
         exec(trace, {})
         check()
 
-    def test_moving_probe_has_a_coarse_picture_of_the_same_size(self):
+    def test_moving_probe_has_a_coarse_picture_in_the_same_place(self):
         fine = grey(make_chain())
         size = Fetch(simple.FindSource("picture")).GetBounds()
         probe = simple.FindSource("probe")

@@ -96,6 +96,15 @@ class TestGui(GuiCase):
         self.assertAlmostEqual(picked_in_body[0], expected_in_body, delta=1)
         self.assertNotEqual(picked_in_body, picked)
 
+    def test_what_is_behind_the_camera_or_plots_other_lines_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("behind.xml", folder, f"--script={PLAYBACKS / 'behind.py'}"), [])
+            clicked, laid_out = (pathlib.Path(folder, name + ".pvsm") for name in ("clicked", "laid_out"))
+            self.assertEqual(self.values_of(clicked, "SonoALine", "Line"), [3])
+            plots = [p for p in ElementTree.parse(laid_out).iter("Proxy") if p.get("type") == "SonoALine"]
+        ports = {proxy.get("output_port") for plot in plots for proxy in plot.findall("Property[@name='Input']/Proxy")}
+        self.assertEqual(ports, {"2", "3"})  # RF and traced lines
+
     @staticmethod
     def line_at(lateral, axial):
         """Of 128 lines over 90 degrees."""
@@ -145,13 +154,20 @@ class TestGui(GuiCase):
         return self.fail("There is no flat view.")
 
     @staticmethod
-    def values(proxy, name):
-        return [float(e.get("value")) for e in proxy.findall(f"Property[@name='{name}']/Element")]
+    def texts(proxy, name):
+        return [e.get("value") for e in proxy.findall(f"Property[@name='{name}']/Element")]
 
-    def values_of(self, state, kind, name):
+    @classmethod
+    def values(cls, proxy, name):
+        return [float(text) for text in cls.texts(proxy, name)]
+
+    def texts_of(self, state, kind, name):
         """A property of the only proxy of a kind in a state file."""
         (proxy,) = (p for p in ElementTree.parse(state).iter("Proxy") if p.get("type") == kind)
-        return self.values(proxy, name)
+        return self.texts(proxy, name)
+
+    def values_of(self, state, kind, name):
+        return [float(text) for text in self.texts_of(state, kind, name)]
 
     def test_tissue_editor(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -182,6 +198,16 @@ class TestGui(GuiCase):
         self.assertEqual(mine, [2, 128, 77, 38, 49.57, 3.57])
         self.assertIn("bad.json", sentence)
         self.assertIn("depthMm", sentence)
+
+    def test_a_chosen_preset_takes_the_place_of_a_named_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            errors = self.play("named_preset.xml", folder, f"--script={PLAYBACKS / 'named_preset.py'}")
+            self.assertEqual(errors, [])
+            reset, chosen = (pathlib.Path(folder, name + ".pvsm") for name in ("reset", "chosen"))
+            files = [self.texts_of(state, "SonoProbeSource", "PresetFile") for state in (reset, chosen)]
+            depth = self.values_of(chosen, "SonoProbeSource", "DepthMm")
+        self.assertEqual(files, [["linear_l14"], [""]])
+        self.assertEqual(depth, [160])
 
     def test_probe_is_dragged_along_the_skin(self):
         """With real mouse events: it slides, the picture follows, a button tilts it, undo takes that back."""

@@ -6,6 +6,7 @@ import tempfile
 import threading
 import time
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 from Xlib import X, XK, display
 from Xlib.ext import xtest
@@ -23,14 +24,17 @@ class Person:
         self.frame_buffer = case.frame_buffer
         self.folder = pathlib.Path(folder)
         self.display = display.Display(case.display)
+        self.ended = threading.Event()  # ParaView has
 
     def await_file(self, name):
         """When a file was written, on the clock of the files."""
         path = self.folder / name
         for _ in range(3000):
+            ended = self.ended.wait(0.1)
             if path.exists():
                 return path.stat().st_mtime
-            time.sleep(0.1)
+            if ended:
+                break
         raise TimeoutError(f"{name} was not written")
 
     def picture(self):
@@ -62,10 +66,13 @@ class Person:
         xtest.fake_input(self.display, X.MotionNotify, x=x, y=y)
         self.display.sync()
 
-    def click(self, x, y):
+    def click(self, x, y, seconds=0):
+        """Seconds between press and release."""
         self.move(x, y)
-        for kind in (X.ButtonPress, X.ButtonRelease):
-            xtest.fake_input(self.display, kind, 1)
+        xtest.fake_input(self.display, X.ButtonPress, 1)
+        self.display.sync()
+        time.sleep(seconds)
+        xtest.fake_input(self.display, X.ButtonRelease, 1)
         self.display.sync()
 
     def press_quit(self):
@@ -88,17 +95,19 @@ class TestGuiStop(GuiCase):
     def play_with(self, name, folder, act):
         """Plays a script on the scene of stop.py while a person acts; what ParaView wrote, and its return code."""
         failures = []
+        person = Person(self, folder)
 
         def act_alone():
             try:
-                act(Person(self, folder))
+                act(person)
             except Exception as failure:  # to be told by the test, not by the thread
                 failures.append(failure)
 
-        person = threading.Thread(target=act_alone)
-        person.start()
+        acting = threading.Thread(target=act_alone)
+        acting.start()
         done = self.paraview(folder, f"--script={PLAYBACKS / 'stop.py'}", f"--test-script={PLAYBACKS / name}", "--exit")
-        person.join()
+        person.ended.set()
+        acting.join()
         self.assertEqual(failures, [], done.stdout)
         return done
 
@@ -110,7 +119,9 @@ class TestGuiStop(GuiCase):
             person.move(1390, 890)  # so that the pointer is in no picture
             seen["before"] = person.picture()
             self.assertIsNone(person.find_button())
-            person.click(*person.await_button())
+            button = person.await_button()
+            person.click(600, 450, 1)  # a hand is slower than ParaView looks, and impatient
+            person.click(*button)
             seen["stopped"] = person.await_file("stopped.pvsm")
             time.sleep(1.5)
             seen["kept"] = person.picture()
@@ -118,16 +129,30 @@ class TestGuiStop(GuiCase):
             seen["whole"] = person.await_file("whole.pvsm")
             time.sleep(1.5)
             seen["after"] = person.picture()
+            person.await_file("begun_anew.pvsm")
+            person.click(*person.await_button())
+            person.await_file("typed.pvsm")
+            for name in ("undone", "typed"):
+                seen[name] = {setting: self.setting(person.folder / f"{name}.pvsm", setting)
+                              for setting in ("PathsPerLine", "GainDb")}
 
         with tempfile.TemporaryDirectory() as folder:
             done = self.play_with("stop.xml", folder, act)
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertNotIn("ERR|", done.stdout)
-        self.assertEqual(done.stdout.count("Stopped: ultrasound."), 1, done.stdout)
+        self.assertEqual(done.stdout.count("Stopped: ultrasound."), 2, done.stdout)
         whole = seen["whole"] - seen["again"]
         self.assertLess(seen["stopped"] - seen["begun"], 0.7 * whole)
         self.assertEqual(seen["kept"], seen["before"])
         self.assertNotEqual(seen["after"], seen["before"])
+        self.assertEqual(seen["undone"], {"PathsPerLine": "100", "GainDb": "0"})
+        self.assertEqual(seen["typed"], {"PathsPerLine": "100", "GainDb": "7"})
+
+    @staticmethod
+    def setting(state, name):
+        """Of the only Simulate Ultrasound in a state file."""
+        (proxy,) = (p for p in ElementTree.parse(state).iter("Proxy") if p.get("type") == "SonoUltrasound")
+        return proxy.find(f"Property[@name='{name}']/Element").get("value")
 
     def test_leaving_during_a_run(self):
         """ParaView ends at once and quietly, by its key and by the window's cross."""

@@ -10,7 +10,7 @@ from sonovdb.vtkSonoWidgets import vtkSonoProbeRepresentation, vtkSonoProbeWidge
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData, vtkStaticCellLocator
-from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkRegularPolygonSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor
 
 Probe = vtkSonoProbeRepresentation
@@ -216,6 +216,17 @@ class TestSkin(unittest.TestCase):
         for x, y, height in ((0, 0, 3), (1, 40, 0), (-49, -49, 0)):
             self.assertTrue(skin.Meet((x, y, 20), (x, y, -20), place, normal))
             np.testing.assert_allclose(place, (x, y, height), atol=0.05)
+
+    def test_a_polygon_of_thousands_of_corners(self):
+        disc = vtkRegularPolygonSource()
+        disc.SetNumberOfSides(20000)
+        disc.SetRadius(50)
+        disc.Update()
+        skin = vtkSonoSkin()
+        skin.SetSurfaces(disc.GetOutput())
+        place, normal = [0.0] * 3, [0.0] * 3
+        self.assertTrue(skin.FindNearest((10, 0, 20), place, normal))
+        np.testing.assert_allclose(place, (10, 0, 0), atol=1e-4)
 
     def test_a_surface_is_sorted_once(self):
         skin = vtkSonoSkin()

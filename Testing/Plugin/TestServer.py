@@ -18,14 +18,16 @@ def free_port():
         return listener.getsockname()[1]
 
 
-class TestServer(unittest.TestCase):
-    def setUp(self):
-        port = free_port()
-        self.server = subprocess.Popen(["pvserver", f"--server-port={port}"],
-                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+class WithServer(unittest.TestCase):
+    def start(self, command, port):
+        # pvpython has begun an MPI job of its own, of which these are no part.
+        environment = {name: value for name, value in os.environ.items()
+                       if name.startswith("OMPI_ALLOW") or not name.startswith(("OMPI_", "PMIX_"))}
+        self.server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                       env=environment)
         self.addCleanup(self.server.stdout.close)
         self.addCleanup(self.server.wait)
-        self.addCleanup(self.server.kill)
+        self.addCleanup(self.server.terminate)
         for line in self.server.stdout:
             if "Accepting connection" in line:
                 break
@@ -35,6 +37,23 @@ class TestServer(unittest.TestCase):
 
     def tearDown(self):
         simple.Disconnect()
+
+    @staticmethod
+    def write(path, text):
+        """What was wrong."""
+        writer = servermanager.ProxyManager().NewProxy("misc", "SonoTextFile")
+        writer.GetProperty("FileName").SetElement(0, path)
+        writer.GetProperty("Text").SetElement(0, text)
+        writer.UpdateVTKObjects()
+        writer.InvokeCommand("Write")
+        writer.UpdatePropertyInformation()
+        return writer.GetProperty("Refusal").GetElement(0)
+
+
+class TestServer(WithServer):
+    def setUp(self):
+        port = free_port()
+        self.start(["pvserver", f"--server-port={port}"], port)
 
     def test_simulation_runs_on_the_server(self):
         thorax = simple.ThoraxPhantom(VoxelSizemm=4)
@@ -73,16 +92,22 @@ class TestServer(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "some.csv")
             for name, refused in ((path, False), (os.path.join(folder, "no", "some.csv"), True)):
-                writer = servermanager.ProxyManager().NewProxy("misc", "SonoTextFile")
-                writer.GetProperty("FileName").SetElement(0, name)
-                writer.GetProperty("Text").SetElement(0, "id,name\n1,Ä\n")
-                writer.UpdateVTKObjects()
-                writer.InvokeCommand("Write")
-                writer.UpdatePropertyInformation()
-                self.assertEqual(bool(writer.GetProperty("Refusal").GetElement(0)), refused)
+                self.assertEqual(bool(self.write(name, "id,name\n1,Ä\n")), refused)
             self.assertEqual(os.listdir(folder), ["some.csv"])
             with open(path, encoding="utf-8") as file:
                 self.assertEqual(file.read(), "id,name\n1,Ä\n")
+
+
+class TestParallelServer(WithServer):
+    def test_the_first_rank_writes_a_text(self):
+        """Each rank has a folder of its own, so that all that they write is seen."""
+        with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
+            port = free_port()
+            ranks = [["-np", "1", "--wdir", folder, "pvserver", f"--server-port={port}"] for folder in (first, second)]
+            self.start(["mpirun", "--oversubscribe", *ranks[0], ":", *ranks[1]], port)
+            self.assertEqual(servermanager.ActiveConnection.GetNumberOfDataPartitions(), 2)
+            self.assertEqual(self.write("some.csv", "id,name\n"), "")
+            self.assertEqual((os.listdir(first), os.listdir(second)), (["some.csv"], []))
 
 
 if __name__ == "__main__":

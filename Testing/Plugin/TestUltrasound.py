@@ -194,6 +194,26 @@ class TestUltrasound(unittest.TestCase):
         ultrasound.Input = simple.UltrasoundScene(Input=simple.FindSource("thorax"), BuildSurfaces=0)
         self.assertTrue((grey(ultrasound) == first).all())
 
+    def test_first_display_of_the_outputs(self):
+        """A bold outline of the probe; paths and hits in colours that lie over 80 dB until a person sets others."""
+        ultrasound = make_ultrasound(NumberofShownPaths=5)
+        view = simple.CreateView("RenderView")
+
+        def show(port):
+            return simple.Show(simple.OutputPort(ultrasound, port), view)
+
+        self.assertEqual(show(5).LineWidth, 3)
+        for port in (1, 2, 3, 5):
+            self.assertEqual((show(port).Diffuse, show(port).PointSize), (1, 2), port)
+        for points in ([-80, 0], [-50, -10]):
+            for port in (6, 9):
+                shown = show(port)
+                self.assertEqual((shown.Diffuse, shown.PointSize), (0, 4))
+                colors = simple.GetColorTransferFunction("IntensityDb")
+                self.assertEqual([colors.RGBPoints[0], colors.RGBPoints[-4]], points)
+                simple.Delete(shown)
+            colors.RescaleTransferFunction(-50, -10)
+
     def test_the_plugin_is_loaded_twice(self):
         before = grey(make_ultrasound())
         simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
