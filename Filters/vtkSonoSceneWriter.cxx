@@ -28,7 +28,7 @@ int vtkSonoSceneWriter::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkSonoSceneWriter::WriteData()
 {
-  const int ok = sono::announceStage(this, [&] {
+  const bool isWritten = sono::runWork(this, [&] {
     if (this->FileName.empty())
     {
       throw sono::Error("No scene file is named; set FileName to one that ends in .nvdb or .vdb.");
@@ -36,5 +36,5 @@ void vtkSonoSceneWriter::WriteData()
     const auto scene = vtkSonoSceneHandle::Get(vtkMultiBlockDataSet::SafeDownCast(this->GetInput()));
     sono::writeScene(this->FileName, *scene, sono::progressOf(this));
   });
-  this->SetErrorCode(ok ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
+  this->SetErrorCode(isWritten ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
 }
