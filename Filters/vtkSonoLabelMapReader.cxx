@@ -88,6 +88,7 @@ std::vector<double> timesOf(const std::vector<std::string>& fileNames)
 vtkSonoLabelMapReader::vtkSonoLabelMapReader()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText("Reading the label map");
 }
 
 vtkSonoLabelMapReader::~vtkSonoLabelMapReader() = default;

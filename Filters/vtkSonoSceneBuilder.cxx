@@ -40,6 +40,7 @@ vtkSonoSceneBuilder::vtkSonoSceneBuilder()
 {
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
+  this->SetProgressText("Building the anatomy");
 }
 
 vtkSonoSceneBuilder::~vtkSonoSceneBuilder() = default;

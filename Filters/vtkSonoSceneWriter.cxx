@@ -11,7 +11,11 @@
 
 vtkStandardNewMacro(vtkSonoSceneWriter);
 
-vtkSonoSceneWriter::vtkSonoSceneWriter() = default;
+vtkSonoSceneWriter::vtkSonoSceneWriter()
+{
+  this->SetProgressText("Writing the scene");
+}
+
 vtkSonoSceneWriter::~vtkSonoSceneWriter() = default;
 
 void vtkSonoSceneWriter::PrintSelf(ostream& os, vtkIndent indent)
