@@ -208,6 +208,13 @@ class TestUltrasound(unittest.TestCase):
         ultrasound.Input = simple.UltrasoundScene(Input=simple.FindSource("thorax"), BuildSurfaces=0)
         self.assertTrue((grey(ultrasound) == first).all())
 
+    def test_a_second_one_of_the_same_label_map(self):
+        """ParaView's Python names the array of the active source, the first one's image, before it sets the input."""
+        first = make_ultrasound()
+        before = grey(first)
+        second = simple.SimulateUltrasound(Input=simple.FindSource("thorax"), **QUICK)
+        self.assertTrue((grey(second) == before).all())
+
     def test_the_plugin_is_loaded_twice(self):
         before = grey(make_ultrasound())
         simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
