@@ -1,14 +1,18 @@
 #include "SonoInterruption.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkDataObjectCollection.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkInformationUnsignedLongKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
@@ -26,11 +30,28 @@ vtkInformationObjectBaseKey* madeKey()
   return key;
 }
 
-/// The state of the pipeline in which the filter was stopped.
-vtkInformationUnsignedLongKey* stoppedAtKey()
+/// The state of the pipeline in which the filter was stopped or failed.
+vtkInformationUnsignedLongKey* standsAtKey()
 {
-  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("STOPPED_AT", "SonoVDB");
+  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("STANDS_AT", "SonoVDB");
   return key;
+}
+
+/// When the youngest part of some data was made. The time of a data object itself does not tell: ParaView makes a new
+/// shallow copy of the same data for each run.
+unsigned long ageOf(vtkDataObject* data)
+{
+  unsigned long age = 0;
+  for (int kind = 0; kind < vtkDataObject::NUMBER_OF_ATTRIBUTE_TYPES; ++kind)
+  {
+    vtkFieldData* arrays = data->GetAttributesAsFieldData(kind);
+    for (int i = 0; arrays && i < arrays->GetNumberOfArrays(); ++i)
+    {
+      age = std::max<unsigned long>(age, arrays->GetAbstractArray(i)->GetMTime());
+    }
+  }
+  auto* shape = vtkPointSet::SafeDownCast(data);
+  return shape && shape->GetPoints() ? std::max<unsigned long>(age, shape->GetPoints()->GetMTime()) : age;
 }
 
 /// As of this update's beginning; grows when the filter, anything upstream or the input's data change.
@@ -44,7 +65,7 @@ unsigned long stateOf(vtkAlgorithm* filter)
     {
       if (vtkDataObject* data = filter->GetInputDataObject(port, i))
       {
-        state = std::max<unsigned long>(state, data->GetUpdateTime());
+        state = std::max(state, ageOf(data));
       }
     }
   }
@@ -65,11 +86,11 @@ void showMade(vtkAlgorithm* filter, vtkInformationVector* outputs)
   }
 }
 
-void rememberStop(vtkAlgorithm* filter)
+void rememberState(vtkAlgorithm* filter)
 {
   // Marking the outputs as aborted counts as a change of the filter.
   const unsigned long state = std::max<unsigned long>(stateOf(filter), filter->GetMTime());
-  filter->GetInformation()->Set(stoppedAtKey(), state);
+  filter->GetInformation()->Set(standsAtKey(), state);
 }
 
 } // namespace
@@ -109,27 +130,34 @@ void keepMade(vtkAlgorithm* filter, vtkInformationVector* outputs)
 void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   showMade(filter, outputs);
-  rememberStop(filter);
+  rememberState(filter);
   if (Interrupter* const interrupter = current)
   {
     interrupter->hasStopped(filter);
   }
 }
 
+void standEmpty(vtkAlgorithm* filter)
+{
+  filter->GetInformation()->Remove(madeKey());
+  filter->SetAbortOutput(true);
+  rememberState(filter);
+}
+
 bool standsStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   vtkInformation* memory = filter->GetInformation();
-  if (!memory->Has(stoppedAtKey()))
+  if (!memory->Has(standsAtKey()))
   {
     return false;
   }
-  if (memory->Get(stoppedAtKey()) != stateOf(filter))
+  if (memory->Get(standsAtKey()) != stateOf(filter))
   {
-    memory->Remove(stoppedAtKey());
+    memory->Remove(standsAtKey());
     return false;
   }
   showMade(filter, outputs);
-  rememberStop(filter);
+  rememberState(filter);
   return true;
 }
 

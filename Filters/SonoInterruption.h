@@ -36,7 +36,11 @@ void keepMade(vtkAlgorithm* filter, vtkInformationVector* outputs);
 /// it stand still.
 void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs);
 
-/// Whether the filter was stopped and nothing has changed since; its outputs are put back as by standStill.
+/// After a failure: marks the outputs as aborted, which empties them and all downstream without a word, and has the
+/// filter stand still.
+void standEmpty(vtkAlgorithm* filter);
+
+/// Whether the filter stands still and nothing has changed since; its outputs are put back as they were left then.
 bool standsStill(vtkAlgorithm* filter, vtkInformationVector* outputs);
 
 } // namespace sono

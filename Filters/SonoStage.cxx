@@ -6,6 +6,7 @@
 #include "vtkCommand.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkExecutive.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringKey.h"
@@ -23,8 +24,8 @@
 namespace sono {
 namespace {
 
-/// After an algorithm has said what is wrong, its executive adds messages of its own: that the request failed, with the
-/// request's innards, or that the image which could not be announced has no extent. They are dropped; others pass.
+/// After a quiet stage has failed, its executive adds messages of its own: that the request failed, with the request's
+/// innards, or that the image which could not be announced has no extent. They are dropped; others pass.
 class OneSentence : public vtkCommand
 {
 public:
@@ -58,16 +59,17 @@ vtkInformationIntegerKey* quietKey()
   return key;
 }
 
+/// Of an algorithm that could not announce what it will make, and has said why.
+vtkInformationIntegerKey* refusedKey()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("REFUSED", "SonoVDB");
+  return key;
+}
+
 /// Says what is wrong, but not twice while nothing changes: a viewer asks a failed pipeline again and again.
 void say(vtkAlgorithm* algorithm, const char* sentence)
 {
-  vtkExecutive* executive = algorithm->GetExecutive();
-  if (!executive->HasObserver(vtkCommand::ErrorEvent))
-  {
-    vtkNew<OneSentence> filter;
-    executive->AddObserver(vtkCommand::ErrorEvent, filter);
-  }
-  auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
+  auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(algorithm->GetExecutive());
   const unsigned long now = pipeline ? pipeline->GetPipelineMTime() : algorithm->GetMTime();
   vtkInformation* memory = algorithm->GetInformation();
   const char* said = memory->Get(saidKey());
@@ -89,9 +91,14 @@ enum class Outcome
   Failed
 };
 
+bool isQuiet(vtkAlgorithm* algorithm)
+{
+  return algorithm->GetInformation()->Has(quietKey());
+}
+
 Outcome attempt(vtkAlgorithm* algorithm, const std::function<void()>& work)
 {
-  if (algorithm->GetInformation()->Has(quietKey()))
+  if (isQuiet(algorithm))
   {
     algorithm->GetInformation()->Remove(saidKey());
   }
@@ -113,6 +120,20 @@ Outcome attempt(vtkAlgorithm* algorithm, const std::function<void()>& work)
     say(algorithm, error.what());
   }
   return Outcome::Failed;
+}
+
+void announceNothing(vtkAlgorithm* algorithm)
+{
+  const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+  for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkInformation* outInfo = algorithm->GetOutputInformation(port);
+    if (vtkImageData::GetData(outInfo))
+    {
+      outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+      outInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), empty, 6);
+    }
+  }
 }
 
 } // namespace
@@ -137,6 +158,8 @@ Progress partOf(const Progress& whole, double from, double to)
 void keepQuiet(vtkAlgorithm* algorithm)
 {
   algorithm->GetInformation()->Set(quietKey(), 1);
+  vtkNew<OneSentence> filter;
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, filter);
 }
 
 std::string saidBy(vtkAlgorithm* algorithm)
@@ -145,9 +168,25 @@ std::string saidBy(vtkAlgorithm* algorithm)
   return said ? said : "";
 }
 
-int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
+bool runWork(vtkAlgorithm* algorithm, const std::function<void()>& work)
 {
   return attempt(algorithm, work) != Outcome::Failed;
+}
+
+int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
+{
+  if (attempt(algorithm, work) != Outcome::Failed)
+  {
+    algorithm->GetInformation()->Remove(refusedKey());
+    return 1;
+  }
+  if (isQuiet(algorithm))
+  {
+    return 0;
+  }
+  algorithm->GetInformation()->Set(refusedKey(), 1);
+  announceNothing(algorithm);
+  return 1;
 }
 
 int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const std::function<void()>& work)
@@ -163,9 +202,14 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
   }
   if (algorithm->GetAbortOutput() || standsStill(algorithm, outputVector))
   {
-    return 1; // its input was stopped, or it was itself
+    return 1; // its input was stopped or failed, or it was or did itself
   }
-  const bool isInner = algorithm->GetInformation()->Has(quietKey());
+  if (algorithm->GetInformation()->Has(refusedKey()))
+  {
+    standEmpty(algorithm);
+    return 1;
+  }
+  const bool isInner = isQuiet(algorithm);
   const Outcome outcome = attempt(algorithm, work);
   if (outcome == Outcome::Done && !isInner)
   {
@@ -183,7 +227,15 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
       standStill(algorithm, outputVector);
     }
   }
-  return outcome != Outcome::Failed;
+  else if (outcome == Outcome::Failed)
+  {
+    if (isInner)
+    {
+      return 0;
+    }
+    standEmpty(algorithm);
+  }
+  return 1;
 }
 
 void announceDevice(Device device)

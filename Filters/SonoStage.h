@@ -18,15 +18,20 @@ Progress progressOf(vtkAlgorithm* algorithm);
 /// The part [from, to] of a whole's progress.
 Progress partOf(const Progress& whole, double from, double to);
 
-/// Runs a stage's work and gives RequestData's return value: an exception becomes one vtkErrorMacro sentence and 0, an
-/// abort is quiet and 1. Stopped by the interrupter (SonoInterruption.h), it keeps its data of before. In parallel,
-/// only the first piece works; the others stay empty, because the stages do not split their data.
+/// Runs a stage's work and gives RequestData's return value. An exception becomes one vtkErrorMacro sentence and leaves
+/// the outputs empty, as an abort, which is quiet, does; either way no stage downstream works, or says anything, on
+/// what is missing. The value is then 1 all the same, because after a 0 each viewer adds an error of its own at each
+/// look. Stopped by the interrupter (SonoInterruption.h), a stage keeps its data of before. In parallel, only the first
+/// piece works; the others stay empty, because the stages do not split their data.
 int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const std::function<void()>& work);
 
-/// The same for RequestInformation, which every piece needs.
+/// The same for RequestInformation, which every piece needs; after an exception images are announced without voxels.
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work);
 
-/// For a stage inside another filter: what it has to say is kept for `saidBy` and told to nobody.
+/// The same for work that is neither, as writing a file is; false after an exception.
+bool runWork(vtkAlgorithm* algorithm, const std::function<void()>& work);
+
+/// For a stage inside another filter: what it has to say is kept for `saidBy` and told to nobody, and a failure is a 0.
 void keepQuiet(vtkAlgorithm* algorithm);
 
 /// What a quiet stage said in its last pass; empty where that went well.

@@ -41,7 +41,7 @@ StageChain::StageChain(vtkAlgorithm* owner, std::vector<Link> links)
 void StageChain::reportProgress(std::size_t link, double fraction)
 {
   const double begin = link > 0 ? links_[link - 1].progressEnd : 0.0;
-  owner_->SetProgressText(links_[link].text);
+  owner_->SetProgressText(links_[link].stage->GetProgressText());
   owner_->UpdateProgress(begin + fraction * (links_[link].progressEnd - begin));
   if (owner_->CheckAbort())
   {

@@ -12,11 +12,10 @@ namespace sono {
 class StageChain
 {
 public:
-  /// One of the stages: what the progress bar says meanwhile, and where its progress ends in that of the whole.
+  /// One of the stages, and where its progress ends in that of the whole, which has the stage's text meanwhile.
   struct Link
   {
     vtkAlgorithm* stage;
-    const char* text;
     double progressEnd;
   };
 

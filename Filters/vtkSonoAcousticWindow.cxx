@@ -38,7 +38,8 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, bool fillBody, 
   builder->SetInputDataObject(copy);
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
-  sono::StageChain(owner, { { builder, "Looking at the label map", 0.5 } }).update();
+  builder->SetProgressText(owner->GetProgressText()); // it is a part of that
+  sono::StageChain(owner, { { builder, 0.5 } }).update();
   return vtkSonoSceneHandle::Get(builder->GetOutput());
 }
 
@@ -63,7 +64,11 @@ std::optional<sono::ProbePose> carriedPose(vtkFieldData* field)
 
 } // namespace
 
-vtkSonoAcousticWindow::vtkSonoAcousticWindow() = default;
+vtkSonoAcousticWindow::vtkSonoAcousticWindow()
+{
+  this->SetProgressText("Looking for an acoustic window");
+}
+
 vtkSonoAcousticWindow::~vtkSonoAcousticWindow() = default;
 
 void vtkSonoAcousticWindow::PrintSelf(ostream& os, vtkIndent indent)

@@ -14,7 +14,11 @@
 
 vtkStandardNewMacro(vtkSonoBMode);
 
-vtkSonoBMode::vtkSonoBMode() = default;
+vtkSonoBMode::vtkSonoBMode()
+{
+  this->SetProgressText("Making grey");
+}
+
 vtkSonoBMode::~vtkSonoBMode() = default;
 
 void vtkSonoBMode::PrintSelf(ostream& os, vtkIndent indent)

@@ -90,6 +90,7 @@ void fillMap(const Converted& converted, const sono::ProbePose& pose, vtkImageDa
 vtkSonoErrorMap::vtkSonoErrorMap()
 {
   this->SetNumberOfOutputPorts(2);
+  this->SetProgressText("Mapping the error");
 }
 
 vtkSonoErrorMap::~vtkSonoErrorMap() = default;

@@ -70,6 +70,7 @@ std::optional<sono::PointScatterers> pointScatterers(vtkPointSet* points)
 vtkSonoImageFormation::vtkSonoImageFormation()
 {
   this->SetNumberOfInputPorts(3);
+  this->SetProgressText("Forming echoes");
 }
 
 vtkSonoImageFormation::~vtkSonoImageFormation() = default;

@@ -88,6 +88,7 @@ std::vector<double> timesOf(const std::vector<std::string>& fileNames)
 vtkSonoLabelMapReader::vtkSonoLabelMapReader()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText("Reading the label map");
 }
 
 vtkSonoLabelMapReader::~vtkSonoLabelMapReader() = default;
@@ -151,7 +152,6 @@ int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
 int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    this->Times.clear(); // should the next line throw
     this->Times = timesOf(this->FileNames);
     this->Volume = this->ReadPhase(0);
     vtkInformation* outInfo = output->GetInformationObject(0);
@@ -170,10 +170,6 @@ int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVec
 int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    if (this->Times.empty())
-    {
-      this->Times = timesOf(this->FileNames); // ParaView asks for data even where there was nothing to announce
-    }
     vtkInformation* outInfo = output->GetInformationObject(0);
     const double time =
       outInfo->Has(Pipeline::UPDATE_TIME_STEP()) ? outInfo->Get(Pipeline::UPDATE_TIME_STEP()) : this->Times.front();

@@ -79,6 +79,7 @@ vtkSonoPhantomSource::vtkSonoPhantomSource()
 {
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(3);
+  this->SetProgressText("Making the phantom");
 }
 
 vtkSonoPhantomSource::~vtkSonoPhantomSource() = default;

@@ -42,6 +42,7 @@ std::string presetPath(const std::string& preset)
 vtkSonoProbeSource::vtkSonoProbeSource()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText("Placing the probe");
 }
 
 vtkSonoProbeSource::~vtkSonoProbeSource() = default;

@@ -28,6 +28,7 @@ double focusMm(double property)
 vtkSonoPulseEchoField::vtkSonoPulseEchoField()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText("Computing the beam");
 }
 
 vtkSonoPulseEchoField::~vtkSonoPulseEchoField() = default;

@@ -70,6 +70,7 @@ vtkSonoRayTracer::vtkSonoRayTracer()
 {
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(4);
+  this->SetProgressText("Tracing");
 }
 
 vtkSonoRayTracer::~vtkSonoRayTracer() = default;

@@ -89,6 +89,7 @@ vtkSonoScanConverter::vtkSonoScanConverter()
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
+  this->SetProgressText("Placing the image");
 }
 
 vtkSonoScanConverter::~vtkSonoScanConverter() = default;

@@ -40,6 +40,7 @@ vtkSonoSceneBuilder::vtkSonoSceneBuilder()
 {
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
+  this->SetProgressText("Building the anatomy");
 }
 
 vtkSonoSceneBuilder::~vtkSonoSceneBuilder() = default;
@@ -68,10 +69,14 @@ int vtkSonoSceneBuilder::FillInputPortInformation(int, vtkInformation* info)
 
 vtkDataArray* vtkSonoSceneBuilder::LabelArray(vtkInformationVector** input)
 {
+  vtkPointData* arrays = vtkImageData::GetData(input[0])->GetPointData();
+  if (arrays->GetNumberOfArrays() == 1)
+  {
+    return arrays->GetArray(0); // whatever name the property has kept from the input before
+  }
   // ParaView names no array for an input that has not run yet.
   const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  return name && !*name ? vtkImageData::GetData(input[0])->GetPointData()->GetScalars()
-                        : this->GetInputArrayToProcess(0, input);
+  return name && !*name ? arrays->GetScalars() : this->GetInputArrayToProcess(0, input);
 }
 
 int vtkSonoSceneBuilder::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)

@@ -42,6 +42,7 @@ std::shared_ptr<const sono::TissueTable> tissueTable(const sono::Scene& scene)
 vtkSonoSceneReader::vtkSonoSceneReader()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText("Reading the scene");
 }
 
 vtkSonoSceneReader::~vtkSonoSceneReader() = default;

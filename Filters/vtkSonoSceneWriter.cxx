@@ -11,7 +11,11 @@
 
 vtkStandardNewMacro(vtkSonoSceneWriter);
 
-vtkSonoSceneWriter::vtkSonoSceneWriter() = default;
+vtkSonoSceneWriter::vtkSonoSceneWriter()
+{
+  this->SetProgressText("Writing the scene");
+}
+
 vtkSonoSceneWriter::~vtkSonoSceneWriter() = default;
 
 void vtkSonoSceneWriter::PrintSelf(ostream& os, vtkIndent indent)
@@ -28,18 +32,18 @@ int vtkSonoSceneWriter::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkSonoSceneWriter::WriteData()
 {
-  bool written = false;
-  const int ok = sono::announceStage(this, [&] {
+  bool isWritten = false;
+  const bool isRun = sono::runWork(this, [&] {
     if (this->FileName.empty())
     {
       throw sono::Error("No scene file is named; set FileName to one that ends in .nvdb or .vdb.");
     }
     const auto scene = vtkSonoSceneHandle::Get(vtkMultiBlockDataSet::SafeDownCast(this->GetInput()));
     sono::writeScene(this->FileName, *scene, sono::progressOf(this));
-    written = true;
+    isWritten = true;
   });
-  this->SetErrorCode(written ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
-  if (ok && !written)
+  this->SetErrorCode(isWritten ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
+  if (isRun && !isWritten)
   {
     vtkWarningMacro("Stopped: '" << this->FileName << "' was not written; save it again.");
   }

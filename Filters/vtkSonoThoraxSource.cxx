@@ -24,6 +24,7 @@ std::shared_ptr<const sono::LabelVolume> makeVolume(double spacingMm)
 vtkSonoThoraxSource::vtkSonoThoraxSource()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText("Making the thorax");
 }
 
 vtkSonoThoraxSource::~vtkSonoThoraxSource() = default;

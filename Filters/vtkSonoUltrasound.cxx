@@ -110,13 +110,13 @@ private:
 };
 
 vtkSonoUltrasound::Stages::Stages(vtkSonoUltrasound* owner)
-  : chain(owner, { { probe, "Placing the probe", 0.0 },
-                   { scene, "Building the anatomy", 0.3 },
-                   { tracer, "Tracing", 0.75 },
-                   { formation, "Forming echoes", 0.95 },
-                   { bmode, "Making grey", 0.97 },
-                   { errors, "Mapping the error", 0.98 },
-                   { converter, "Placing the image", 1.0 } })
+  : chain(owner, { { probe, 0.0 },
+                   { scene, 0.3 },
+                   { tracer, 0.75 },
+                   { formation, 0.95 },
+                   { bmode, 0.97 },
+                   { errors, 0.98 },
+                   { converter, 1.0 } })
 {
   tracer->SetInputConnection(1, probe->GetOutputPort());
   formation->SetInputConnection(tracer->GetOutputPort());

@@ -19,6 +19,7 @@
 #include <QHBoxLayout>
 #include <QSignalBlocker>
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -44,10 +45,17 @@ pqSonoPresetWidget::pqSonoPresetWidget(vtkSMProxy* smproxy, vtkSMProperty* prope
   row->setContentsMargins(0, 0, 0, 0);
   row->addWidget(this->Choice);
   this->readPresets(QString());
+  const QStringList names = QStringList{ "PresetFile" } + this->Columns.mid(firstSetting);
+  const auto has = [smproxy](const QString& name) { return smproxy->GetProperty(name.toUtf8().data()) != nullptr; };
+  if (!std::all_of(names.begin(), names.end(), has))
+  {
+    this->Choice->setEnabled(false); // of a custom filter that shows the preset without its numbers
+    return;
+  }
   this->showChoice();
   QObject::connect(this->Choice, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
                    [this](int item) { choose(item); });
-  for (const QString& name : QStringList{ "PresetFile" } + this->Columns.mid(firstSetting))
+  for (const QString& name : names)
   {
     vtkSMProperty* setting = smproxy->GetProperty(name.toUtf8().data());
     for (const auto event : { vtkCommand::ModifiedEvent, vtkCommand::UncheckedPropertyModifiedEvent })

@@ -1,4 +1,6 @@
 """Bad input gives one sentence that names the fault and the way out, and no output."""
+import pathlib
+import tempfile
 import unittest
 
 import numpy as np
@@ -10,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 
 class TestBadInput(unittest.TestCase):
@@ -62,6 +65,40 @@ class TestBadInput(unittest.TestCase):
         reader.Modified()
         reader.Update()
         self.assertEqual(len(said), 2)
+
+    def test_what_is_downstream_of_a_failure_is_silent_and_empty(self):
+        chain = Chain()
+        stages = [chain.scene, chain.tracer, chain.formation, chain.bmode, chain.converter]
+        said = [listen(stage) for stage in stages]
+        chain.converter.Update()
+        pixels = chain.converter.GetOutput().GetNumberOfPoints()
+        self.assertGreater(pixels, 0)
+        chain.scene.SetTissueTableFile("nowhere.csv")
+        for _ in range(2):
+            chain.converter.Update()
+        self.assertEqual([len(sentences) for sentences in said], [1, 0, 0, 0, 0])
+        self.assertEqual(chain.converter.GetOutput().GetNumberOfPoints(), 0)
+        chain.scene.SetTissueTableFile("")
+        chain.converter.Update()
+        self.assertEqual(chain.converter.GetOutput().GetNumberOfPoints(), pixels)
+        self.assertEqual([len(sentences) for sentences in said], [1, 0, 0, 0, 0])
+
+    def test_file_that_comes_and_goes(self):
+        """The size of the image is announced before it is read."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "labels.vti"))
+            writer = make(vtkXMLImageDataWriter, FileName=path)
+            writer.SetInputData(label_image(np.full((3, 4, 5), 7, np.uint8)))
+            writer.Write()
+            reader = make(vtkSonoLabelMapReader, FileName=path)
+            scene = make(vtkSonoSceneBuilder, BuildSurfaces=False)
+            scene.SetInputConnection(reader.GetOutputPort())
+            said = [listen(reader), listen(scene)]
+            for name, points in ((path, 8), (path + "x", 0), (path, 8)):
+                reader.SetFileName(name)
+                scene.Update()
+                self.assertEqual(scene.GetOutput().GetNumberOfPoints(), points)
+        self.assertEqual([len(sentences) for sentences in said], [1, 0])
 
     def test_target_that_is_not_closed(self):
         chain, plane = Chain(), vtkPlaneSource()

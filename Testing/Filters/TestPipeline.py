@@ -26,6 +26,12 @@ class TestStages(unittest.TestCase):
     def test_a_run_has_nothing_to_complain_about(self):
         self.assertEqual(self.messages.GetOutput(), "")
 
+    def test_each_stage_says_what_it_does(self):
+        """What the status bar shows instead of the class."""
+        texts = [stage.GetProgressText() for stage in self.chain.stages().values()]
+        self.assertTrue(all(texts), texts)
+        self.assertEqual(len(set(texts)), len(texts))
+
     def test_traced_lines_have_one_row_a_line(self):
         lines = self.chain.tracer.GetOutputDataObject(0)
         self.assertEqual(lines.GetDimensions(), (360, 12, 1))  # 90 mm in bins of 0.25 mm

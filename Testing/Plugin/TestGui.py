@@ -17,6 +17,15 @@ from guicase import PLAYBACKS, GuiCase, save_screen
 
 ROOT = PLAYBACKS.parents[2]
 BASELINE = PLAYBACKS / "baseline"
+GONE = """
+view = GetActiveViewOrCreate("RenderView")
+ultrasound = SimulateUltrasound(Input=LabelMapReader(FileName=sys.argv[2]), NumberofLines=12, PathsperLine=20)
+for port in (0, 4):  # the image and the anatomy
+    Show(OutputPort(ultrasound, port), view)
+Show(OutputPort(ALine(Input=OutputPort(ultrasound, 2)), 2), view)
+Render()
+SaveState(sys.argv[1])
+"""
 
 
 class TestGui(GuiCase):
@@ -269,6 +278,15 @@ class TestGui(GuiCase):
         with tempfile.TemporaryDirectory() as folder:
             (sentence,) = self.play("no_labels.xml", folder)
         self.assertIn("'RTData' holds no labels", sentence)
+
+    def test_state_whose_data_are_gone_gives_one_sentence(self):
+        """By File > Load State, of a scene that shows image, anatomy and a line."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.run_script(GONE, folder, pathlib.Path(folder, "gone.pvsm"), self.label_map(folder))
+            pathlib.Path(folder, "thorax.vti").unlink()
+            (sentence,) = self.play("load_state.xml", folder)
+        self.assertIn("thorax.vti is missing", sentence)
+        self.assertIn("name a label map", sentence)
 
 
 if __name__ == "__main__":
