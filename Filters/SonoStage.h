@@ -15,9 +15,6 @@ namespace sono {
 /// thread, where VTK may be touched; worker threads only look at the abort flag, which is atomic.
 Progress progressOf(vtkAlgorithm* algorithm);
 
-/// The part [from, to] of a whole's progress.
-Progress partOf(const Progress& whole, double from, double to);
-
 /// Runs a stage's work and gives RequestData's return value: an exception becomes one vtkErrorMacro sentence and 0, an
 /// abort is quiet and 1. Stopped by the interrupter (SonoInterruption.h), it keeps its data of before. In parallel,
 /// only the first piece works; the others stay empty, because the stages do not split their data.

@@ -278,8 +278,7 @@ struct DeviceImager::Work
       {
         const double share = double(images) / job.images;
         const double before = double(image) / job.images;
-        const Progress part = progress ? Progress([&](double f) { return progress(before + share * f); }) : Progress{};
-        tracer->run(firstLine, lines, part, stream);
+        tracer->run(firstLine, lines, partOf(progress, before, before + share), stream);
       }
       clock->mark(StageClock::Traced, stream);
       if (job.echo)

@@ -121,13 +121,13 @@ void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
 
 void Scene::buildAll(const Progress& progress) const
 {
-  labelGrid(progress ? Progress([&](double f) { return progress(0.1 * f); }) : Progress{});
+  labelGrid(partOf(progress, 0.0, 0.1));
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!surfaces_.empty())
   {
     buildSurfaceAt(0, {}); // the boxes as well
   }
-  const Progress rest = progress ? Progress([&](double f) { return progress(0.1 + 0.9 * f); }) : Progress{};
+  const Progress rest = partOf(progress, 0.1, 1.0);
   parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
     const Progress ofLabel = [&](double) {
       breathe();
