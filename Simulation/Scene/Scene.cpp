@@ -2,6 +2,8 @@
 
 #include "ParallelFor.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -18,6 +20,17 @@ std::uint64_t nextId()
 {
   static std::atomic<std::uint64_t> last{ 0 };
   return ++last;
+}
+
+/// Runs `build` with the lock held. Isolated: a thread that waits in one of its loops must not meanwhile take up a task
+/// of a loop around, which may ask the same scene and would lock again.
+template<class Build>
+auto locked(std::mutex& mutex, const Build& build)
+{
+  return tbb::this_task_arena::isolate([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return build();
+  });
 }
 
 } // namespace
@@ -85,12 +98,13 @@ Mat3d Scene::rotationToLocal() const
 
 const LabelGrid& Scene::labelGrid(const Progress& progress) const
 {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!labelGrid_)
-  {
-    labelGrid_ = std::make_unique<LabelGrid>(buildLabelGrid(volume_, progress));
-  }
-  return *labelGrid_;
+  return *locked(mutex_, [&] {
+    if (!labelGrid_)
+    {
+      labelGrid_ = std::make_unique<LabelGrid>(buildLabelGrid(volume_, progress));
+    }
+    return labelGrid_.get();
+  });
 }
 
 const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
@@ -100,10 +114,11 @@ const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
   {
     throw Error("label " + std::to_string(labelId) + " does not occur in the label map: choose one that does");
   }
-  const std::lock_guard<std::mutex> lock(mutex_);
   const auto index = std::size_t(label - volume_.labels.data());
-  buildSurfaceAt(index, progress);
-  return *surfaces_[index];
+  return *locked(mutex_, [&] {
+    buildSurfaceAt(index, progress);
+    return surfaces_[index].get();
+  });
 }
 
 void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
@@ -122,18 +137,19 @@ void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
 void Scene::buildAll(const Progress& progress) const
 {
   labelGrid(partOf(progress, 0.0, 0.1));
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!surfaces_.empty())
-  {
-    buildSurfaceAt(0, {}); // the boxes as well
-  }
   const Progress rest = partOf(progress, 0.1, 1.0);
-  parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
-    const Progress ofLabel = [&](double) {
-      breathe();
-      return true;
-    };
-    buildSurfaceAt(std::size_t(label), ofLabel);
+  locked(mutex_, [&] {
+    if (!surfaces_.empty())
+    {
+      buildSurfaceAt(0, {}); // the boxes as well
+    }
+    parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
+      const Progress ofLabel = [&](double) {
+        breathe();
+        return true;
+      };
+      buildSurfaceAt(std::size_t(label), ofLabel);
+    });
   });
 }
 
@@ -163,14 +179,16 @@ VoxelBox Scene::clipped(const VoxelBox& box) const
 std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box, const Progress& progress) const
 {
   const VoxelBox wanted = clipped(box);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!region_ || !(region_->region().box == wanted))
-  {
-    const bool isThere = onTheWay_.valid() && onTheWay_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
-                                               progress, isThere ? onTheWay_.get() : nullptr);
-  }
-  return region_;
+  return locked(mutex_, [&] {
+    if (!region_ || !(region_->region().box == wanted))
+    {
+      const bool isThere =
+        onTheWay_.valid() && onTheWay_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+      region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
+                                                 progress, isThere ? onTheWay_.get() : nullptr);
+    }
+    return region_;
+  });
 }
 
 std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const

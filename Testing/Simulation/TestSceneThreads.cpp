@@ -1,0 +1,103 @@
+// Several tasks and threads may ask one scene for what it builds on first need.
+#include "TestScenes.h"
+
+#include "ParallelFor.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <random>
+#include <thread>
+
+namespace sono {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// Noise of two tissues: every voxel has a record, and every piece of a surface takes a while.
+std::unique_ptr<Scene> makeNoise(const Vec3i& size)
+{
+  std::mt19937 random(5);
+  return test::makeScene(size, Vec3d(1.0),
+                         { test::makeTissue("a", 1.5, 1540, 0.4), test::makeTissue("b", 2.4, 1700, 0.6) },
+                         [&](const Vec3d&) { return int(random() % 2); });
+}
+
+bool waitFor(const std::atomic<bool>& flag)
+{
+  const auto end = Clock::now() + 10s;
+  while (!flag && Clock::now() < end)
+  {
+    std::this_thread::sleep_for(1ms);
+  }
+  return flag;
+}
+
+/// Has one thread build by `ask`, and others meanwhile begin a loop whose every task asks the same, on the same arena.
+/// Another thread holds up a piece of the building, so that the builder must wait for it. If it took up a task of the
+/// loop then it would wait for itself, for good: ctest's time limit fails the test.
+void askWhileItIsBuilt(const std::function<void(const Scene&, const Progress&)>& ask)
+{
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 4);
+  tbb::task_arena arena(4, 2);
+  std::unique_ptr<Scene> scene;
+  std::atomic<bool> isHeldUp{ false };
+  std::atomic<bool> loopRuns{ false };
+  std::thread loop([&] {
+    if (waitFor(isHeldUp))
+    {
+      arena.execute([&] {
+        parallelFor(32, {}, [&](int) {
+          loopRuns = true;
+          ask(*scene, {});
+        });
+      });
+    }
+  });
+  for (int attempt = 0; attempt < 20 && !isHeldUp; ++attempt) // whether others take part is up to chance
+  {
+    scene = makeNoise(Vec3i(96));
+    int told = 0;
+    arena.execute([&] {
+      ask(*scene, [&, builder = std::this_thread::get_id()](double) {
+        if (std::this_thread::get_id() == builder)
+        {
+          std::this_thread::sleep_for(++told < 5 ? 1ms : 0ms); // until others are awake
+        }
+        else if (!isHeldUp.exchange(true))
+        {
+          waitFor(loopRuns);
+          std::this_thread::sleep_for(100ms);
+        }
+        return true;
+      });
+    });
+  }
+  loop.join();
+  EXPECT_TRUE(loopRuns);
+}
+
+TEST(SceneThreads, WhoBuildsARegionDoesNotWaitForItself)
+{
+  askWhileItIsBuilt([](const Scene& scene, const Progress& progress) {
+    scene.regionOnDemand({ Vec3i(0), scene.placement().size }, progress);
+  });
+}
+
+TEST(SceneThreads, WhoBuildsASurfaceDoesNotWaitForItself)
+{
+  askWhileItIsBuilt([](const Scene& scene, const Progress& progress) { scene.surface(1, progress); });
+}
+
+TEST(SceneThreads, WhoBuildsAllDoesNotWaitForItself)
+{
+  askWhileItIsBuilt([](const Scene& scene, const Progress& progress) { scene.buildAll(progress); });
+}
+
+} // namespace
+} // namespace sono
