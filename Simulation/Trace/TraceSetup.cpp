@@ -108,7 +108,7 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   const VoxelBox box = fanBox(scene, worldLines, settings.depthMm);
   const bool bakesAll = records == Records::All || settings.march == March::NanoVDB;
   const Progress layingOut = partOf(progress, 0.0, bakesAll ? 0.25 : 1.0);
-  cells = settings.onTheWay ? scene.regionOnTheWay(box) : scene.regionOnDemand(box, layingOut);
+  cells = settings.onTheWay ? scene.regionOnTheWay(box, layingOut) : scene.regionOnDemand(box, layingOut);
   region = { cells, &cells->region() };
   if (bakesAll)
   {
