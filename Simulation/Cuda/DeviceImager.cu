@@ -128,6 +128,10 @@ struct DeviceImager::Work
     tracer = std::make_unique<DeviceTracer>();
     echo = std::make_unique<DeviceEcho>();
     display = std::make_unique<DeviceDisplay>();
+    for (PinnedArray<float>& picture : pictures)
+    {
+      picture.release();
+    }
   }
 
   /// Images that go through the stages together: at most what fits in a quarter of the device's memory.
