@@ -150,11 +150,6 @@ Progress progressOf(vtkAlgorithm* algorithm)
   };
 }
 
-Progress partOf(const Progress& whole, double from, double to)
-{
-  return [=](double fraction) { return !whole || whole(from + fraction * (to - from)); };
-}
-
 void keepQuiet(vtkAlgorithm* algorithm)
 {
   algorithm->GetInformation()->Set(quietKey(), 1);

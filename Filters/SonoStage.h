@@ -15,9 +15,6 @@ namespace sono {
 /// thread, where VTK may be touched; worker threads only look at the abort flag, which is atomic.
 Progress progressOf(vtkAlgorithm* algorithm);
 
-/// The part [from, to] of a whole's progress.
-Progress partOf(const Progress& whole, double from, double to);
-
 /// Runs a stage's work and gives RequestData's return value. An exception becomes one vtkErrorMacro sentence and leaves
 /// the outputs empty, as an abort, which is quiet, does; either way no stage downstream works, or says anything, on
 /// what is missing. The value is then 1 all the same, because after a 0 each viewer adds an error of its own at each

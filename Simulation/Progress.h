@@ -10,6 +10,12 @@ namespace sono {
 /// May be empty. It is called from one thread at a time, not necessarily the caller's.
 using Progress = std::function<bool(double)>;
 
+/// The part [from, to] of a whole's progress.
+inline Progress partOf(const Progress& whole, double from, double to)
+{
+  return whole ? Progress([=](double fraction) { return whole(from + fraction * (to - from)); }) : Progress{};
+}
+
 /// Bad input. The message is one sentence that names the file, label or parameter and the way out.
 class Error : public std::runtime_error
 {

@@ -12,12 +12,9 @@ PlaneImage simulateOnCpu(const Scene& scene, const ProbePose& pose, const ImageS
   TraceSettings tracing = settings.tracing;
   EchoSettings echo = settings.echo;
   tracing.device = echo.device = Device::Cpu;
-  const auto part = [&](double from, double share) {
-    return progress ? Progress([&progress, from, share](double f) { return progress(from + share * f); }) : Progress{};
-  };
   const auto lines = makeScanLines(settings.geometry, pose);
-  const TracedLines traced = trace(scene, lines, tracing, part(0.0, 0.8), targets);
-  const RfLines rf = formRf(scene, lines, traced, echo, part(0.8, 0.2));
+  const TracedLines traced = trace(scene, lines, tracing, partOf(progress, 0.0, 0.8), targets);
+  const RfLines rf = formRf(scene, lines, traced, echo, partOf(progress, 0.8, 1.0));
   const BModeLines bmode = makeBMode(rf.envelope(), rf.lineCount, rf.sampleCount, rf.sampleMm, settings.bmode);
   return scanConvert(settings.geometry, bmode.grey, bmode.sampleCount, bmode.sampleMm, settings.pixelMm);
 }
@@ -51,8 +48,7 @@ std::vector<PlaneImage> simulateImages(const Scene& scene, const std::vector<Pro
   {
     const double done = double(images.size()) / double(poses.size());
     const double share = 1.0 / double(poses.size());
-    const Progress part = progress ? Progress([&](double f) { return progress(done + share * f); }) : Progress{};
-    images.push_back(simulateOnCpu(scene, pose, settings, part, targets));
+    images.push_back(simulateOnCpu(scene, pose, settings, partOf(progress, done, done + share), targets));
   }
   return images;
 }

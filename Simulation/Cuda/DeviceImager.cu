@@ -128,6 +128,10 @@ struct DeviceImager::Work
     tracer = std::make_unique<DeviceTracer>();
     echo = std::make_unique<DeviceEcho>();
     display = std::make_unique<DeviceDisplay>();
+    for (PinnedArray<float>& picture : pictures)
+    {
+      picture.release();
+    }
   }
 
   /// Images that go through the stages together: at most what fits in a quarter of the device's memory.
@@ -278,8 +282,7 @@ struct DeviceImager::Work
       {
         const double share = double(images) / job.images;
         const double before = double(image) / job.images;
-        const Progress part = progress ? Progress([&](double f) { return progress(before + share * f); }) : Progress{};
-        tracer->run(firstLine, lines, part, stream);
+        tracer->run(firstLine, lines, partOf(progress, before, before + share), stream);
       }
       clock->mark(StageClock::Traced, stream);
       if (job.echo)

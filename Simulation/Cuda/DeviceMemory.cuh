@@ -117,18 +117,23 @@ public:
   PinnedArray() = default;
   PinnedArray(const PinnedArray&) = delete;
   PinnedArray& operator=(const PinnedArray&) = delete;
-  ~PinnedArray() { cudaFreeHost(data_); }
+  ~PinnedArray() { release(); }
 
   T* data() const { return data_; }
+
+  void release()
+  {
+    cudaFreeHost(data_);
+    data_ = nullptr;
+    capacity_ = 0;
+  }
 
   /// Contents are lost when it grows.
   void resize(std::size_t count)
   {
     if (count > capacity_)
     {
-      cudaFreeHost(data_);
-      data_ = nullptr;
-      capacity_ = 0;
+      release();
       void* memory = nullptr;
       check(cudaMallocHost(&memory, count * sizeof(T)), "pinning memory for its results");
       data_ = static_cast<T*>(memory);

@@ -119,8 +119,8 @@ std::vector<PlaneImage> simulateOnDevice(const Scene& scene, const std::vector<P
                                          const ImageSettings& settings, const Progress& progress,
                                          const std::vector<TargetSurface>& targets)
 {
-  const Progress preparing = progress ? Progress([&](double f) { return progress(0.3 * f); }) : Progress{};
-  const Progress running = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
+  const Progress preparing = partOf(progress, 0.0, 0.3);
+  const Progress running = partOf(progress, 0.3, 1.0);
   const ImageJob job = makeImageJob(scene, poses, settings, preparing, targets);
   DeviceWants wants;
   wants.image = true;

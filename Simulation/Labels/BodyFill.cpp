@@ -297,7 +297,7 @@ BodyFill fillBody(LabelVolume& volume, const BodyFillSettings& settings, const P
   const auto alongZ = interpolation(n.z, grid.factor.z, grid.size.z);
   std::atomic<std::size_t> skin{ 0 };
   std::atomic<std::size_t> soft{ 0 };
-  const Progress filling = progress ? Progress([&](double f) { return progress(0.5 + 0.5 * f); }) : Progress{};
+  const Progress filling = partOf(progress, 0.5, 1.0);
   LabelVolume filled = volume; // so that a stop leaves the volume as it was
   parallelFor(n.z, filling, [&](int k) {
     std::vector<float> row(std::size_t(grid.size.x));

@@ -2,11 +2,15 @@
 
 #include "ParallelFor.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <map>
 #include <new>
+#include <utility>
 
 namespace sono {
 
@@ -20,7 +24,58 @@ std::uint64_t nextId()
   return ++last;
 }
 
+/// Runs `build` with the lock held. Isolated: a thread that waits in one of its loops must not meanwhile take up a task
+/// of a loop around, which may ask the same scene and would lock again.
+template<class Build>
+auto locked(std::mutex& mutex, const Build& build)
+{
+  return tbb::this_task_arena::isolate([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return build();
+  });
+}
+
 } // namespace
+
+/// A region that is made in the background. Who waits for it holds it; when nobody holds it any more it stops.
+struct Scene::Making
+{
+  Making(const Scene& scene, const VoxelBox& wanted, bool allRecords)
+    : box(wanted)
+    , region(std::async(std::launch::async,
+                        [=, &scene, known = std::weak_ptr(scene.region_)] { return make(scene, allRecords, known); }))
+  {
+  }
+  ~Making() { unwanted = true; }
+
+  SharedRegion make(const Scene& scene, bool allRecords, const std::weak_ptr<const RegionOnDemand>& known)
+  {
+    const Progress progress = [this](double fraction) {
+      done = fraction;
+      return !unwanted;
+    };
+    try
+    {
+      const auto made = std::make_shared<RegionOnDemand>(scene.tissueVoxels().data(), scene.placement().size,
+                                                         scene.placement().spacingMm, box,
+                                                         partOf(progress, 0.0, allRecords ? 0.25 : 1.0), known);
+      if (allRecords)
+      {
+        made->bakeAll(partOf(progress, 0.25, 1.0));
+      }
+      return made;
+    }
+    catch (const std::bad_alloc&)
+    {
+      return nullptr;
+    }
+  }
+
+  VoxelBox box;
+  std::atomic<double> done{ 0.0 };
+  std::atomic<bool> unwanted{ false };
+  std::shared_future<SharedRegion> region; ///< null where memory ran out; its end is waited for
+};
 
 Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue)
   : id_(nextId())
@@ -85,12 +140,13 @@ Mat3d Scene::rotationToLocal() const
 
 const LabelGrid& Scene::labelGrid(const Progress& progress) const
 {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!labelGrid_)
-  {
-    labelGrid_ = std::make_unique<LabelGrid>(buildLabelGrid(volume_, progress));
-  }
-  return *labelGrid_;
+  return *locked(mutex_, [&] {
+    if (!labelGrid_)
+    {
+      labelGrid_ = std::make_unique<LabelGrid>(buildLabelGrid(volume_, progress));
+    }
+    return labelGrid_.get();
+  });
 }
 
 const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
@@ -100,10 +156,11 @@ const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
   {
     throw Error("label " + std::to_string(labelId) + " does not occur in the label map: choose one that does");
   }
-  const std::lock_guard<std::mutex> lock(mutex_);
   const auto index = std::size_t(label - volume_.labels.data());
-  buildSurfaceAt(index, progress);
-  return *surfaces_[index];
+  return *locked(mutex_, [&] {
+    buildSurfaceAt(index, progress);
+    return surfaces_[index].get();
+  });
 }
 
 void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
@@ -121,19 +178,20 @@ void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
 
 void Scene::buildAll(const Progress& progress) const
 {
-  labelGrid(progress ? Progress([&](double f) { return progress(0.1 * f); }) : Progress{});
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!surfaces_.empty())
-  {
-    buildSurfaceAt(0, {}); // the boxes as well
-  }
-  const Progress rest = progress ? Progress([&](double f) { return progress(0.1 + 0.9 * f); }) : Progress{};
-  parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
-    const Progress ofLabel = [&](double) {
-      breathe();
-      return true;
-    };
-    buildSurfaceAt(std::size_t(label), ofLabel);
+  labelGrid(partOf(progress, 0.0, 0.1));
+  const Progress rest = partOf(progress, 0.1, 1.0);
+  locked(mutex_, [&] {
+    if (!surfaces_.empty())
+    {
+      buildSurfaceAt(0, {}); // the boxes as well
+    }
+    parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
+      const Progress ofLabel = [&](double) {
+        breathe();
+        return true;
+      };
+      buildSurfaceAt(std::size_t(label), ofLabel);
+    });
   });
 }
 
@@ -163,14 +221,16 @@ VoxelBox Scene::clipped(const VoxelBox& box) const
 std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box, const Progress& progress) const
 {
   const VoxelBox wanted = clipped(box);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!region_ || !(region_->region().box == wanted))
-  {
-    const bool isThere = onTheWay_.valid() && onTheWay_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
-                                               progress, isThere ? onTheWay_.get() : nullptr);
-  }
-  return region_;
+  return locked(mutex_, [&] {
+    if (!region_ || !(region_->region().box == wanted))
+    {
+      const bool isThere =
+        onTheWay_ && onTheWay_->region.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+      region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
+                                                 progress, isThere ? onTheWay_->region.get() : nullptr);
+    }
+    return region_;
+  });
 }
 
 std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
@@ -180,49 +240,40 @@ std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const
   return { region, &region->region() };
 }
 
-std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box) const
+std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box, const Progress& progress) const
 {
-  const auto region = futureOnTheWay(box, false);
-  if (!region.get())
+  const auto making = makingOnTheWay(box, false);
+  while (making->region.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+  {
+    report(progress, making->done);
+  }
+  if (!making->region.get())
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    onTheWay_ = {}; // there may be more memory next time
+    if (onTheWay_ == making)
+    {
+      onTheWay_ = nullptr; // there may be more memory next time
+    }
     throw std::bad_alloc();
   }
-  return region.get();
+  return making->region.get();
 }
 
 void Scene::beginRegionOnTheWay(const VoxelBox& box, bool allRecords) const
 {
-  futureOnTheWay(box, allRecords);
+  makingOnTheWay(box, allRecords);
 }
 
-std::shared_future<std::shared_ptr<const RegionOnDemand>> Scene::futureOnTheWay(const VoxelBox& box,
-                                                                                bool allRecords) const
+std::shared_ptr<const Scene::Making> Scene::makingOnTheWay(const VoxelBox& box, bool allRecords) const
 {
   const VoxelBox inside = clipped(box);
   const VoxelBox wanted = clipped(
     { inside.first / edgeOnTheWay * edgeOnTheWay, (inside.last + (edgeOnTheWay - 1)) / edgeOnTheWay * edgeOnTheWay });
+  std::shared_ptr<const Making> before; // goes after the lock, since its end is waited for
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!onTheWay_.valid() || !(boxOnTheWay_ == wanted))
+  if (!onTheWay_ || !(onTheWay_->box == wanted))
   {
-    boxOnTheWay_ = wanted;
-    onTheWay_ = std::async(std::launch::async, [=, known = std::weak_ptr(region_)]() -> SharedRegion {
-      try
-      {
-        const auto region = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size,
-                                                             placement().spacingMm, wanted, Progress(), known);
-        if (allRecords)
-        {
-          region->bakeAll();
-        }
-        return region;
-      }
-      catch (const std::bad_alloc&)
-      {
-        return nullptr;
-      }
-    });
+    before = std::exchange(onTheWay_, std::make_shared<Making>(*this, wanted, allRecords));
   }
   return onTheWay_;
 }

@@ -133,7 +133,7 @@ void writeScene(const std::string& path, const Scene& scene, const Progress& pro
   {
     throw Error("cannot write '" + path + "': the name of a scene file must end in .nvdb or .vdb.");
   }
-  scene.buildAll(progress ? Progress([&](double f) { return progress(0.7 * f); }) : Progress{});
+  scene.buildAll(partOf(progress, 0.0, 0.7));
   ending == ".nvdb" ? writeNanoScene(path, scene) : writeOpenScene(path, scene);
   report(progress, 1.0);
 }

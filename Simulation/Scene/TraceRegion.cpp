@@ -54,7 +54,7 @@ SONO_SIMD_CLONES void sweepRow(std::uint8_t* row, const std::uint8_t* const* ear
 }
 
 /// Chebyshev distance of every cell to the nearest marked one or the border of the box, by two chamfer sweeps.
-void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n)
+void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n, const Progress& progress)
 {
   std::vector<std::uint8_t> scratch(std::size_t(n.x) + 2);
   const auto row = [&](int y, int z) {
@@ -65,6 +65,7 @@ void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n)
     const int step = pass == 0 ? -1 : 1;
     for (int kk = 1; kk + 1 < n.z; ++kk)
     {
+      report(progress, 0.5 * (pass + double(kk) / n.z));
       const int k = pass == 0 ? kk : n.z - 1 - kk;
       for (int jj = 1; jj + 1 < n.y; ++jj)
       {
@@ -105,9 +106,9 @@ public:
   {
   }
 
-  void markBoundaries()
+  void markBoundaries(const Progress& progress)
   {
-    parallelFor(n_.z, {}, [&](int k) {
+    parallelFor(n_.z, progress, [&](int k) {
       for (int j = 0; j < n_.y; ++j)
       {
         markBoundaryRow(source(j, k), source(j - 1, k), source(j + 1, k), source(j, k - 1), source(j, k + 1),
@@ -118,7 +119,7 @@ public:
 
   /// Half-width of the uniform cube around every voxel: one less than the Chebyshev distance to the nearest voxel that
   /// touches another tissue, or to the border.
-  std::vector<std::uint8_t> distances() const
+  std::vector<std::uint8_t> distances(const Progress& progress) const
   {
     std::vector<std::uint8_t> distance(boundary_.size(), std::uint8_t(maxDistance));
     for (int k = 0; k < n_.z; ++k)
@@ -133,18 +134,18 @@ public:
         row[0] = row[n_.x - 1] = 0;
       }
     }
-    chebyshevDistance(distance, n_);
+    chebyshevDistance(distance, n_, progress);
     return distance;
   }
 
-  void writeWords(const std::vector<std::uint8_t>& distance)
+  void writeWords(const std::vector<std::uint8_t>& distance, const Progress& progress)
   {
     const Vec3i blocks = TissueCells::blocksFor(n_);
     const std::size_t count = std::size_t(blocks.x) * blocks.y * blocks.z;
     region_.cell.assign(count * 32, TissueCells::outsideWord);
     region_.firstRecord.assign(count, 0);
     const TissueCells layout = region_.view();
-    parallelFor(blocks.z, {}, [&](int layer) {
+    parallelFor(blocks.z, progress, [&](int layer) {
       // A layer of blocks holds the border and the voxels 2 layer - 1 and 2 layer.
       for (int k = std::max(0, 2 * layer - 1); k < std::min(2 * layer + 1, n_.z); ++k)
       {
@@ -202,21 +203,16 @@ TraceRegion layOutRegion(const std::uint8_t* tissues, const Vec3i& size, const V
   region.box = box;
   region.spacing = Vec3f(spacingMm);
   RegionBuilder builder(tissues, size, region);
-  builder.markBoundaries();
-  report(progress, 0.4);
-  builder.writeWords(builder.distances());
-  report(progress, 1.0);
+  builder.markBoundaries(partOf(progress, 0.0, 0.2));
+  builder.writeWords(builder.distances(partOf(progress, 0.2, 0.5)), partOf(progress, 0.5, 1.0));
   return region;
 }
 
 TraceRegion buildTraceRegion(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
                              const VoxelBox& box, const Progress& progress)
 {
-  const auto part = [&](double from, double share) {
-    return progress ? Progress([&progress, from, share](double f) { return progress(from + share * f); }) : Progress{};
-  };
-  RegionOnDemand region(tissues, size, spacingMm, box, part(0.0, 0.25));
-  region.bakeAll(part(0.25, 0.75));
+  RegionOnDemand region(tissues, size, spacingMm, box, partOf(progress, 0.0, 0.25));
+  region.bakeAll(partOf(progress, 0.25, 1.0));
   return std::move(region).take();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ParallelFor.h"
 #include "Trace/Deposit.h"
 
 #include <algorithm>
@@ -145,18 +146,19 @@ public:
 
   /// One batch of `paths` paths of every line; the key's path is replaced. All the paths of the group are one
   /// low-discrepancy set. Returns the number of segments traced.
-  std::uint64_t trace(PathKey key, int paths)
+  std::uint64_t trace(PathKey key, int paths, const Breath& breathe)
   {
     std::uint64_t segments = 0;
     for (int owner = 0; owner < int(lines_.size()); ++owner)
     {
       for (int i = 0; i < paths; ++i)
       {
-        if (key.path % LineTally::pathsPerFold == 0)
+        key.path = std::uint32_t(owner) * std::uint32_t(paths) + std::uint32_t(i);
+        if (key.path > 0 && key.path % LineTally::pathsPerFold == 0)
         {
           fold();
+          breathe();
         }
-        key.path = std::uint32_t(owner) * std::uint32_t(paths) + std::uint32_t(i);
         path_.owner = owner;
         segments += follow(key);
         double total = 0.0;

@@ -99,8 +99,8 @@ inline std::vector<LineRange> makeGroups(const SharedRun& run, const std::vector
 /// One group of one batch. `starts` and `batchTallies` are by line, from `first` on.
 template<class Space>
 inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, const LineRange& group, int batch,
-                                  int paths, int first, const std::vector<LineStart>& starts, GroupWorker& worker,
-                                  std::vector<BatchTally>& batchTallies, TracedLines& out)
+                                  int paths, int first, const std::vector<LineStart>& starts, const Breath& breathe,
+                                  GroupWorker& worker, std::vector<BatchTally>& batchTallies, TracedLines& out)
 {
   const TraceView& view = run.view;
   worker.lines.clear();
@@ -121,7 +121,8 @@ inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, cons
   {
     worker.scrambles[std::size_t(b)] = makeBounceScramble(view.seed, key.line, key.batch, std::uint32_t(b));
   }
-  const std::uint64_t segments = SharedGroup<Space>(view, space, worker.lines, worker.scratch).trace(key, paths);
+  const std::uint64_t segments =
+    SharedGroup<Space>(view, space, worker.lines, worker.scratch).trace(key, paths, breathe);
   for (int i = group.first; i < group.last; ++i)
   {
     const GroupLine& line = worker.lines[std::size_t(i - group.first)];
@@ -137,11 +138,14 @@ inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, cons
 }
 
 template<class Space>
-SONO_SIMD_CLONES __attribute__((flatten)) std::uint64_t traceGroup(
-  const Space& space, const SharedRun& run, const LineRange& group, int batch, int paths, int first,
-  const std::vector<LineStart>& starts, GroupWorker& worker, std::vector<BatchTally>& batchTallies, TracedLines& out)
+SONO_SIMD_CLONES __attribute__((flatten)) std::uint64_t traceGroup(const Space& space, const SharedRun& run,
+                                                                   const LineRange& group, int batch, int paths,
+                                                                   int first, const std::vector<LineStart>& starts,
+                                                                   const Breath& breathe, GroupWorker& worker,
+                                                                   std::vector<BatchTally>& batchTallies,
+                                                                   TracedLines& out)
 {
-  return traceGroupIn(space, run, group, batch, paths, first, starts, worker, batchTallies, out);
+  return traceGroupIn(space, run, group, batch, paths, first, starts, breathe, worker, batchTallies, out);
 }
 
 /// The batches' means of a line. The weights of a branch add up to its probability on average but not in each batch:
@@ -216,14 +220,12 @@ void traceSharedLines(const Space& space, const SharedRun& run, TracedLines& out
     {
       const PathRange range = batchRange(run.paths, batches, batch);
       const std::vector<LineRange> groups = makeGroups(run, starts, lines, batch, batches);
-      const Progress part = progress ? Progress([&](double f) {
-        const double done = lines.first + (batch + f) / batches * (lines.last - lines.first);
-        return progress(done / out.lineCount);
-      })
-                                     : Progress{};
-      parallelFor(int(groups.size()), part, [&](int g) {
+      const double share = double(lines.last - lines.first) / out.lineCount;
+      const double before = double(lines.first) / out.lineCount;
+      const Progress part = partOf(progress, before + share * batch / batches, before + share * (batch + 1) / batches);
+      parallelFor(int(groups.size()), part, [&](int g, const Breath& breathe) {
         segments += traceGroup(space, run, groups[std::size_t(g)], batch, range.last - range.first, first, starts,
-                               workers.local(), tallies[std::size_t(batch)], out);
+                               breathe, workers.local(), tallies[std::size_t(batch)], out);
       });
     }
     parallelFor(lines.last - lines.first, {}, [&](int i) {

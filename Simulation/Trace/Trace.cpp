@@ -87,10 +87,10 @@ void traceLineByNanoVDB(const TraceSetup& setup, int index, const Breath& breath
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress, const std::vector<TargetSurface>& targets)
 {
-  const Progress preparing = progress ? Progress([&](double f) { return progress(0.3 * f); }) : Progress{};
+  const Progress preparing = partOf(progress, 0.0, 0.3);
   const TraceSetup setup(scene, lines, settings, targets, preparing,
                          runsOnDevice(settings) ? Records::All : Records::OnDemand);
-  const Progress tracing = progress ? Progress([&](double f) { return progress(0.3 + 0.7 * f); }) : Progress{};
+  const Progress tracing = partOf(progress, 0.3, 1.0);
   TracedLines out;
   out.lineCount = int(lines.size());
   out.binMm = settings.radialBinMm;

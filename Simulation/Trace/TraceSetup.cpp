@@ -106,11 +106,13 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     throw Error("the probe has no scan lines: set the number of lines to 1 or more");
   }
   const VoxelBox box = fanBox(scene, worldLines, settings.depthMm);
-  cells = settings.onTheWay ? scene.regionOnTheWay(box) : scene.regionOnDemand(box);
+  const bool bakesAll = records == Records::All || settings.march == March::NanoVDB;
+  const Progress layingOut = partOf(progress, 0.0, bakesAll ? 0.25 : 1.0);
+  cells = settings.onTheWay ? scene.regionOnTheWay(box, layingOut) : scene.regionOnDemand(box, layingOut);
   region = { cells, &cells->region() };
-  if (records == Records::All || settings.march == March::NanoVDB)
+  if (bakesAll)
   {
-    cells->bakeAll(progress);
+    cells->bakeAll(partOf(progress, 0.25, 1.0));
   }
   const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
   cornerWorldMm = scene.worldFromLocal(corner);

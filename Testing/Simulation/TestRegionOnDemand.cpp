@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace sono {
@@ -105,6 +106,28 @@ TEST(RegionOnDemand, PathsMeetAFewOfTheRecordsAndGiveTheSameBits)
   setup.cells->bakeAll();
   EXPECT_LT(met, setup.cells->bakedBlocks() / 2);
   expectSameBits(trace(*scene, lines, settings), onDemand);
+}
+
+TEST(RegionOnDemand, LayingItOutTellsOfItsProgressAndCanBeStopped)
+{
+  const auto lines = fan(5);
+  std::vector<double> told;
+  const Progress tell = [&](double fraction) {
+    told.push_back(fraction);
+    return true;
+  };
+  const TraceSetup whole(*makeBusyScene(), lines, busySettings(), {}, tell, Records::OnDemand);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.size(), 64u); // some a slice
+  const auto scene = makeBusyScene();
+  for (const std::size_t stopAt : { std::size_t(1), told.size() / 3, told.size() / 2 })
+  {
+    std::size_t asked = 0;
+    const Progress stop = [&](double) { return ++asked < stopAt; };
+    EXPECT_THROW(TraceSetup(*scene, lines, busySettings(), {}, stop, Records::OnDemand), Aborted);
+    EXPECT_EQ(asked, stopAt);
+  }
+  expectSameBits(trace(*scene, lines, busySettings()), trace(*makeBusyScene(), lines, busySettings()));
 }
 
 TEST(ProbeOnTheWay, ImageIsThatOfAFreshScene)

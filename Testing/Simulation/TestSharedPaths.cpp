@@ -2,6 +2,7 @@
 
 #include "Labels/AssignTissues.h"
 #include "Scene/ThoraxPhantom.h"
+#include "Trace/Deposit.h"
 
 #include <gtest/gtest.h>
 
@@ -192,6 +193,26 @@ TEST(SharedPaths, FewPathsAndLinesStillGiveAnImage)
       }
     }
   }
+}
+
+TEST(SharedPaths, CanBeStoppedWithinAGroup)
+{
+  const auto scene = makeBusyScene();
+  TraceSettings s = busySettings();
+  s.sampling = Sampling::SharedPaths;
+  s.pathsPerLine = 8192;
+  const auto lines = fan(4); // one group a batch
+  const int pauses = 4 * s.pathsPerLine / LineTally::pathsPerFold;
+  trace(*scene, lines, s); // so that the region is there
+  int told = 0;
+  trace(*scene, lines, s, [&](double) {
+    ++told;
+    return true;
+  });
+  EXPECT_GE(told, pauses);
+  int asked = 0;
+  EXPECT_THROW(trace(*scene, lines, s, [&](double) { return ++asked < pauses / 3; }), Aborted);
+  EXPECT_EQ(asked, pauses / 3);
 }
 
 TEST(SharedPaths, ATenthOfTheIndependentPathsIsEnoughForTheApicalView)

@@ -28,7 +28,9 @@
 // holds a float.
 
 namespace sonoInDouble {
+using ::sono::Breath;
 using ::sono::parallelFor;
+using ::sono::partOf;
 using ::sono::Progress;
 } // namespace sonoInDouble
 
