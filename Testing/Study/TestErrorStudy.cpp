@@ -8,9 +8,11 @@
 #include "RelativeRms.h"
 #include "SamplingName.h"
 #include "StabilityStudy.h"
+#include "Trace/RecordPaths.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -214,6 +216,32 @@ TEST(StabilityStudy, EveryHazardEndsInAnImageOrASentence)
     }
   }
   EXPECT_EQ(refused, 5); // no impedance, no speed, NaN, no voxels, no depth
+}
+
+TEST(StabilityStudy, GrazingLinesMeetTheVoxelFaceItself)
+{
+  const auto grazing = std::find_if(hardScenes().begin(), hardScenes().end(),
+                                    [](const HardScene& hard) { return hard.hazard == "grazing incidence"; });
+  ASSERT_NE(grazing, hardScenes().end());
+  const BenchScene bench = grazing->make();
+  int faster = 0;
+  int slower = 0;
+  for (const RecordedPath& path : recordPaths(*bench.scene, bench.lines, bench.tracing, int(bench.lines.size())))
+  {
+    ASSERT_FALSE(path.hits.empty());
+    const BoundaryHit& hit = path.hits.front();
+    EXPECT_GT(hit.incidenceCosine, 0.0f);
+    // A smoothed surface would have given 0.01 or more, as it does where it turns: where the wall's two parts meet.
+    if (std::fabs(hit.depthMm - 28.0f) > 7.0f)
+    {
+      EXPECT_LT(hit.incidenceCosine, 0.0025f);
+      const std::vector<Tissue>& tissues = bench.scene->tissues();
+      const bool slow = tissues[std::size_t(hit.to)].soundSpeedMPerS < tissues[std::size_t(hit.from)].soundSpeedMPerS;
+      (slow ? slower : faster) += 1;
+    }
+  }
+  EXPECT_GE(slower, 3);
+  EXPECT_GE(faster, 3);
 }
 
 TEST(RegionSwitches, WithoutSkipsTheImageIsTheSame)
