@@ -2,7 +2,6 @@
 #include "EchoScenes.h"
 #include "PhantomBeam.h"
 #include "PhantomLesions.h"
-#include "PhantomSpeckle.h"
 #include "PhantomWires.h"
 #include "WireEcho.h"
 
@@ -108,14 +107,6 @@ TEST(WireEcho, StandsSomeThirtyDecibelsAboveTheGel)
   EXPECT_LT(wireDb - gelDb, 40.0);
   EXPECT_LT(gelDb, -50.0);                                    // soft tissue against a mirror
   EXPECT_NEAR(wireEchoPerMm(imaging.echo, 0.1), 0.013, 5e-4); // the default of ParaView's source
-}
-
-TEST(PhantomStudy, SpeckleIsRayleigh)
-{
-  const auto samples = speckleSamples(1, 600.0);
-  EXPECT_NEAR(test::signalToNoise(samples), 1.9131, 0.03);
-  EXPECT_LE(rayleighSse(samples), 1.5e-5);
-  EXPECT_GT(rayleighSse(speckleSamples(1, 1.0)), 1e-3); // too few scatterers are told apart
 }
 
 TEST(PhantomStudy, AttenuationFallsAsTheMediumSays)
