@@ -16,7 +16,7 @@ list_stages()
     printf '  %-8s %s\n' "${name%.*}" "$(sed -n '1s,^\(//\|#\) *,,p' "$file")"
   done
   printf '  %-8s %s\n' gpu "What the stages cost on a GPU; see run-gpu.sh for a machine that only has a driver."
-  printf '  %-8s %s\n' study "The phantom study and run time against error, with a report (a quarter of an hour)."
+  printf '  %-8s %s\n' study "The phantom study and run time against error, with a report (half an hour)."
 }
 
 stage="${1:-}"

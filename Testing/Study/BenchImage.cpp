@@ -179,7 +179,52 @@ std::vector<double> inBins(const BenchImage& image, double stepMm, int count)
   return values;
 }
 
+/// An image's envelope in dB, cut off 60 dB below the reference's maximum.
+std::vector<double> decibels(const BenchImage& image, const BenchImage& reference)
+{
+  double most = 0.0;
+  for (const std::complex<double>& v : reference.iq)
+  {
+    most = std::max(most, std::abs(v));
+  }
+  std::vector<double> values;
+  for (const std::complex<double>& v : image.iq)
+  {
+    values.push_back(20.0 * std::log10(std::max(std::abs(v), 1e-3 * most)));
+  }
+  return values;
+}
+
+/// The root of the summed products of two differences, 0 where that sum is negative.
+template<class Values>
+double commonDifference(const Values& first, const Values& firstReference, const Values& second,
+                        const Values& secondReference)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i)
+  {
+    sum += std::real((first[i] - firstReference[i]) * std::conj(second[i] - secondReference[i]));
+  }
+  return std::sqrt(std::max(0.0, sum));
+}
+
+template<class Values>
+double length(const Values& values)
+{
+  double sum = 0.0;
+  for (const auto& v : values)
+  {
+    sum += std::norm(v);
+  }
+  return std::sqrt(sum);
+}
+
 } // namespace
+
+void warmUp(const BenchScene& bench, const TraceSettings& tracing)
+{
+  const TraceSetup all(*bench.scene, bench.lines, tracing, bench.targets, {});
+}
 
 BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing, Precision precision)
 {
@@ -247,22 +292,22 @@ double intensityError(const BenchImage& image, const BenchImage& reference)
 
 ImageError imageError(const BenchImage& image, const BenchImage& reference)
 {
-  ImageError result{ intensityError(image, reference), test::relativeRms(image.iq, reference.iq), 0.0 };
-  double most = 0.0;
-  for (const std::complex<double>& v : reference.iq)
-  {
-    most = std::max(most, std::abs(v));
-  }
-  const auto decibels = [&](const std::complex<double>& v) {
-    return 20.0 * std::log10(std::max(std::abs(v), 1e-3 * most));
+  const std::vector<double> is = decibels(image, reference);
+  const std::vector<double> should = decibels(reference, reference);
+  return { intensityError(image, reference), test::relativeRms(image.iq, reference.iq),
+           commonDifference(is, should, is, should) / std::sqrt(double(is.size())) };
+}
+
+ImageError errorWithoutNoise(const std::array<BenchImage, 2>& images, const std::array<BenchImage, 2>& references)
+{
+  const auto common = [&](const auto& of) {
+    return commonDifference(of(images[0]), of(references[0]), of(images[1]), of(references[1]));
   };
-  double squared = 0.0;
-  for (std::size_t i = 0; i < reference.iq.size(); ++i)
-  {
-    squared += std::pow(decibels(image.iq[i]) - decibels(reference.iq[i]), 2);
-  }
-  result.decibels = std::sqrt(squared / double(reference.iq.size()));
-  return result;
+  const auto intensity = [](const BenchImage& image) { return image.intensity; };
+  const auto iq = [](const BenchImage& image) { return image.iq; };
+  const auto inDecibels = [&](const BenchImage& image) { return decibels(image, references[0]); };
+  return { common(intensity) / length(references[0].intensity), common(iq) / length(references[0].iq),
+           common(inDecibels) / std::sqrt(double(references[0].iq.size())) };
 }
 
 } // namespace sono::study

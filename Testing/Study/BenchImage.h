@@ -2,6 +2,7 @@
 
 #include "BenchScenes.h"
 
+#include <array>
 #include <complex>
 #include <vector>
 
@@ -29,6 +30,10 @@ struct BenchImage
 
 BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing, Precision precision);
 
+/// Makes the tracer's cache of the scene with all its records, which is no cost of a path: a tracer bakes those that
+/// its paths meet while they run.
+void warmUp(const BenchScene& bench, const TraceSettings& tracing);
+
 /// The stack without noise: intensity and boundary echoes are a finite sum over the ways through the layers.
 BenchImage exactStackImage(const BenchScene& stack);
 
@@ -44,6 +49,11 @@ struct ImageError
 };
 
 ImageError imageError(const BenchImage& image, const BenchImage& reference);
+
+/// The part of the error that is no matter of chance: the root of the mean product of two differences that have nothing
+/// but that part in common, since each image and each reference has random numbers of its own. 0 where the product is
+/// negative. All on the same bins.
+ImageError errorWithoutNoise(const std::array<BenchImage, 2>& images, const std::array<BenchImage, 2>& references);
 
 /// Of the intensity alone, on the finer of the two grids of bins; the coarser bins must be made of whole finer ones.
 double intensityError(const BenchImage& image, const BenchImage& reference);

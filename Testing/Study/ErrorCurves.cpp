@@ -8,13 +8,14 @@
 
 namespace sono::study {
 
-double convergenceSlope(const std::vector<ErrorPoint>& curve, double floor)
+Slope convergenceSlope(const std::vector<ErrorPoint>& curve, double floor)
 {
   double n = 0.0;
   double x = 0.0;
   double y = 0.0;
   double xx = 0.0;
   double xy = 0.0;
+  double yy = 0.0;
   for (const ErrorPoint& p : curve)
   {
     if (p.paths >= 100.0 && p.error > 3.0 * floor && p.error > 0.0)
@@ -26,9 +27,21 @@ double convergenceSlope(const std::vector<ErrorPoint>& curve, double floor)
       y += ly;
       xx += lx * lx;
       xy += lx * ly;
+      yy += ly * ly;
     }
   }
-  return n < 2.0 ? std::numeric_limits<double>::quiet_NaN() : (n * xy - x * y) / (n * xx - x * x);
+  Slope slope{ std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN() };
+  if (n >= 2.0)
+  {
+    const double spread = xx - x * x / n;
+    slope.value = (xy - x * y / n) / spread;
+    if (n >= 3.0)
+    {
+      const double residual = std::max(0.0, yy - y * y / n - slope.value * slope.value * spread);
+      slope.error = std::sqrt(residual / (n - 2.0) / spread);
+    }
+  }
+  return slope;
 }
 
 double secondsToReach(const std::vector<ErrorPoint>& curve, double target)
@@ -80,6 +93,14 @@ BenchReference makeReference(const BenchScene& bench, int paths)
   reference.floor = { standardError(&ImageError::intensity), standardError(&ImageError::rf),
                       standardError(&ImageError::decibels) };
   return reference;
+}
+
+ImageError errorAgainst(const BenchReference& reference, const BenchImage& image)
+{
+  const ImageError all = imageError(image, reference.image);
+  const ImageError& floor = reference.floor;
+  const auto rest = [](double whole, double own) { return std::sqrt(std::max(0.0, whole * whole - own * own)); };
+  return { rest(all.intensity, floor.intensity), rest(all.rf, floor.rf), rest(all.decibels, floor.decibels) };
 }
 
 } // namespace sono::study

@@ -2,8 +2,6 @@
 
 #include "BenchImage.h"
 
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace sono::study {
@@ -16,9 +14,17 @@ struct ErrorPoint
   double error;
 };
 
+/// An exponent and its standard error, as the scatter around the line tells it.
+struct Slope
+{
+  double value;
+  double error;
+};
+
 /// Exponent of error = factor paths^slope, by least squares in logarithms over the points of at least 100 paths whose
-/// error is above three times `floor`, the reference's own. NaN when fewer than two are left.
-double convergenceSlope(const std::vector<ErrorPoint>& curve, double floor);
+/// error is above three times `floor`, the reference's own. NaN when fewer than two are left; its error is NaN when
+/// fewer than three are.
+Slope convergenceSlope(const std::vector<ErrorPoint>& curve, double floor);
 
 /// Seconds until the error stays at `target` or below, between two points by a power law; those of the first point when
 /// it is there already, infinity when the last is not.
@@ -34,5 +40,9 @@ struct BenchReference
 /// The stack's is a finite sum, without error. The others' is the mean of eight images by shared paths, `paths`
 /// altogether, whose seeds nobody else takes; how far they lie from it tells its error.
 BenchReference makeReference(const BenchScene& bench, int paths);
+
+/// An image's error with the reference's own taken out, which is of another chance, so that their squares add up. 0
+/// where nothing is left.
+ImageError errorAgainst(const BenchReference& reference, const BenchImage& image);
 
 } // namespace sono::study

@@ -43,14 +43,13 @@ struct Measured
   double seconds = 0.0; ///< of tracing
 };
 
-Measured measure(const BenchScene& bench, TraceSettings tracing, const BenchImage& reference,
-                 const Way& way = { Sampling::SharedPaths, Precision::Single, 2 })
+Measured measure(const BenchScene& bench, TraceSettings tracing, const BenchReference& reference, const Way& way)
 {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(std::max(1, way.threads)));
   tracing.sampling = way.sampling;
   tracing.device = way.threads == 0 ? Device::Cuda : Device::Cpu;
   const BenchImage image = makeBenchImage(bench, tracing, way.precision);
-  return { imageError(image, reference), image.traceSeconds };
+  return { errorAgainst(reference, image), image.traceSeconds };
 }
 
 std::vector<std::string> row(const std::string& curve, const Way& way, int paths, double seconds,
@@ -58,11 +57,6 @@ std::vector<std::string> row(const std::string& curve, const Way& way, int paths
 {
   return { curve,           way.precisionName(),     way.device(),     number(paths),
            number(seconds), number(error.intensity), number(error.rf), number(error.decibels) };
-}
-
-std::vector<std::string> row(const std::string& curve, int paths, const Measured& m)
-{
-  return row(curve, { Sampling::SharedPaths, Precision::Single, 2 }, paths, m.seconds, m.error);
 }
 
 /// A table that a reader sees before the plots: how fast each way converges, and when it is good enough.
@@ -85,14 +79,19 @@ std::vector<std::string> summaryRow(const std::string& scene, const Way& way,
                                     const std::array<std::vector<ErrorPoint>, 3>& curves, const ImageError& floor)
 {
   const auto time = [](double seconds) { return std::isfinite(seconds) ? number(seconds) : "not reached"; };
-  const auto slope = [](double value) { return std::isfinite(value) ? number(value) : "-"; };
+  const auto slope = [](const std::vector<ErrorPoint>& curve, double own) {
+    const Slope of = convergenceSlope(curve, own);
+    char text[32];
+    std::snprintf(text, sizeof text, std::isfinite(of.error) ? "%.2f +- %.2f" : "%.2f", of.value, of.error);
+    return std::isfinite(of.value) ? std::string(text) : "-";
+  };
   return { scene,
            way.sampler(),
            way.precisionName(),
            way.device(),
-           slope(convergenceSlope(curves[0], floor.intensity)),
-           slope(convergenceSlope(curves[1], floor.rf)),
-           slope(convergenceSlope(curves[2], floor.decibels)),
+           slope(curves[0], floor.intensity),
+           slope(curves[1], floor.rf),
+           slope(curves[2], floor.decibels),
            time(secondsToReach(curves[0], 0.01)),
            time(secondsToReach(curves[1], 0.01)),
            time(secondsToReach(curves[2], 1.0)),
@@ -112,7 +111,7 @@ void measureCurve(const BenchScene& bench, const BenchReference& reference, cons
   {
     TraceSettings tracing = bench.tracing;
     tracing.pathsPerLine = paths;
-    const Measured m = measure(bench, tracing, reference.image, way);
+    const Measured m = measure(bench, tracing, reference, way);
     rows.push_back(row(way.sampler(), way, paths, m.seconds, m.error));
     curves[0].push_back({ double(paths), m.seconds, m.error.intensity });
     curves[1].push_back({ double(paths), m.seconds, m.error.rf });
@@ -122,7 +121,9 @@ void measureCurve(const BenchScene& bench, const BenchReference& reference, cons
   if (way.precision == Precision::Single && (way.threads == 0 || way.threads == 2))
   {
     const std::string name = "error_" + bench.name + "_" + way.sampler() + (way.threads == 0 ? "_gpu" : "");
-    output.figure(name + "_slope", convergenceSlope(curves[0], reference.floor.intensity), "log_error/log_paths");
+    const Slope slope = convergenceSlope(curves[0], reference.floor.intensity);
+    output.figure(name + "_slope", slope.value, "log_error/log_paths");
+    output.figure(name + "_slope_std", slope.error, "log_error/log_paths");
     output.figure(name + "_to_1_percent_s", secondsToReach(curves[0], 0.01), "s");
     output.figure(name + "_to_1_db_s", secondsToReach(curves[2], 1.0), "s");
   }
@@ -153,50 +154,70 @@ void measureCurves(const BenchScene& bench, const BenchReference& reference, Out
   const int mostPaths = output.quick() ? 1000 : 1000000;
   for (const Sampling sampling : samplersOf(bench))
   {
-    // The lines are one group of shared paths, which one thread traces whatever there are: a million need not be
-    // waited for twice.
+    // The lines are one group of shared paths, which one thread traces whatever there are: a million are waited for
+    // once, and not for the twin, which is slower yet.
     const int most = sampling == Sampling::SharedPaths ? mostPaths / 10 : mostPaths;
     measureCurve(bench, reference, { sampling, Precision::Single, 1 }, most, output, rows, summary);
     measureCurve(bench, reference, { sampling, Precision::Single, 2 }, mostPaths, output, rows, summary);
-    measureCurve(bench, reference, { sampling, Precision::Double, 2 }, mostPaths, output, rows, summary);
+    measureCurve(bench, reference, { sampling, Precision::Double, 2 }, most, output, rows, summary);
   }
+}
+
+/// How what is no matter of paths is measured.
+constexpr Way otherWay{ Sampling::SharedPaths, Precision::Single, 2 };
+
+TraceSettings otherSettings(const BenchScene& bench, int paths)
+{
+  TraceSettings tracing = bench.tracing;
+  tracing.sampling = otherWay.sampling;
+  tracing.pathsPerLine = paths;
+  tracing.device = Device::Cpu;
+  return tracing;
 }
 
 /// Coarser radial bins with the same paths: nothing but the bins differs.
 void measureBins(const BenchScene& bench, int paths, Rows& rows)
 {
-  TraceSettings tracing = bench.tracing;
-  tracing.sampling = Sampling::SharedPaths;
-  tracing.pathsPerLine = paths;
+  TraceSettings tracing = otherSettings(bench, paths);
   tracing.radialBinMm = 0.05;
-  tracing.device = Device::Cpu;
-  const BenchImage reference = makeBenchImage(bench, tracing, Precision::Single);
+  const BenchReference reference{ makeBenchImage(bench, tracing, otherWay.precision), {} };
   for (const double bin : { 0.1, 0.25, 0.5, 1.0, 2.0 })
   {
     tracing.radialBinMm = bin;
-    rows.push_back(row("radial_bin_" + number(bin) + "_mm", paths, measure(bench, tracing, reference)));
+    const Measured m = measure(bench, tracing, reference, otherWay);
+    rows.push_back(row("radial_bin_" + number(bin) + "_mm", otherWay, paths, m.seconds, m.error));
   }
+}
+
+/// Two images that differ by chance alone.
+std::array<BenchImage, 2> twoImages(const BenchScene& bench, TraceSettings tracing)
+{
+  std::array<BenchImage, 2> images;
+  for (BenchImage& image : images)
+  {
+    image = makeBenchImage(bench, tracing, otherWay.precision);
+    ++tracing.seed;
+  }
+  return images;
 }
 
 /// Voxel faces instead of the smoothed surfaces, and coarser voxels, against the finest voxels.
 void measureVoxels(const std::string& name, double finestMm, const std::vector<double>& spacingsMm, int paths,
                    Rows& rows)
 {
-  const auto settings = [&](const BenchScene& bench) {
-    TraceSettings tracing = bench.tracing;
-    tracing.sampling = Sampling::SharedPaths;
-    tracing.pathsPerLine = paths;
-    tracing.device = Device::Cpu;
-    return tracing;
-  };
   const BenchScene finest = makeBenchScene(name, finestMm);
-  const BenchImage reference = makeBenchImage(finest, settings(finest), Precision::Single);
+  const std::array<BenchImage, 2> references = twoImages(finest, otherSettings(finest, paths));
+  const auto add = [&](const std::string& what, const BenchScene& bench) {
+    const std::array<BenchImage, 2> images = twoImages(bench, otherSettings(bench, paths));
+    rows.push_back(row(what, otherWay, paths, images[0].traceSeconds, errorWithoutNoise(images, references)));
+  };
   for (const double spacing : spacingsMm)
   {
     const BenchScene bench = makeBenchScene(name, spacing);
-    rows.push_back(row("voxel_" + number(spacing) + "_mm", paths, measure(bench, settings(bench), reference)));
+    warmUp(bench, bench.tracing);
+    add("voxel_" + number(spacing) + "_mm", bench);
     removeSurfaces(bench);
-    rows.push_back(row("voxel_" + number(spacing) + "_mm_faces", paths, measure(bench, settings(bench), reference)));
+    add("voxel_" + number(spacing) + "_mm_faces", bench);
   }
 }
 
@@ -216,7 +237,7 @@ void measureRatio(Output& output)
       TraceSettings tracing = bench.tracing;
       tracing.pathsPerLine = output.quick() ? 100 : 1000;
       tracing.seed = std::uint64_t(seed);
-      const Measured m = measure(bench, tracing, reference.image, { sampling, Precision::Single, 2 });
+      const Measured m = measure(bench, tracing, reference, { sampling, Precision::Single, 2 });
       squared[which] += m.error.intensity * m.error.intensity;
       seconds[which] += m.seconds;
     }
@@ -230,11 +251,19 @@ void measureOtherErrors(const std::string& name, Output& output, Rows& rows)
 {
   const int paths = output.quick() ? 100 : 4000;
   measureBins(makeBenchScene(name), paths, rows);
-  const bool thorax = name == "a4c";
-  const std::vector<double> spacings =
-    output.quick() ? std::vector<double>{ 3.0 }
-                   : (thorax ? std::vector<double>{ 3.0, 2.0, 1.5, 1.0 } : std::vector<double>{ 2.0, 1.0, 0.7, 0.5 });
-  measureVoxels(name, output.quick() ? 2.0 : (thorax ? 0.7 : 0.35), spacings, paths, rows);
+  if (output.quick())
+  {
+    measureVoxels(name, 2.0, { 4.0 }, paths, rows);
+  }
+  else if (name == "a4c")
+  {
+    measureVoxels(name, 0.5, { 3.0, 2.0, 1.5, 1.0 }, paths, rows);
+  }
+  else
+  {
+    // The rib's layers lie at 2, 8 and 22 mm: voxels that do not divide them would move its faces.
+    measureVoxels(name, 0.25, { 2.0, 1.0, 0.5 }, paths, rows);
+  }
 }
 
 void measureError(Output& output)
@@ -245,6 +274,7 @@ void measureError(Output& output)
     Rows rows;
     {
       const BenchScene bench = makeBenchScene(name, 0.0, curveLines);
+      warmUp(bench, bench.tracing);
       measureCurves(bench, referenceOf(bench, output, rows), output, rows, summary);
     }
     if (name == "a4c")
@@ -281,7 +311,7 @@ void measureErrorOnGpu(Output& output)
     {
       TraceSettings warm = bench.tracing;
       warm.pathsPerLine = 1;
-      measure(bench, warm, reference.image, { sampling, Precision::Single, 0 });
+      measure(bench, warm, reference, { sampling, Precision::Single, 0 });
       measureCurve(bench, reference, { sampling, Precision::Single, 0 }, mostPaths, output, rows, summary);
       measureCurve(bench, reference, { sampling, Precision::Single, threads }, mostPaths, output, rows, summary);
     }

@@ -16,7 +16,7 @@ struct HardScene
   std::function<BenchScene()> make; ///< throws Error where the scene is to be refused
 };
 
-/// The five bench scenes, then every hazard.
+/// The bench scenes by several settings, and a plain box, whose hazard is "none"; then every hazard.
 const std::vector<HardScene>& hardScenes();
 
 } // namespace sono::study

@@ -3,6 +3,8 @@
 #include "Progress.h"
 
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -31,6 +33,21 @@ std::string base64(const std::string& bytes)
   return text;
 }
 
+/// A table's field as the page shows it: a number with a fraction to four digits, so that a table is no wider than the
+/// page where that can be.
+std::string shown(const std::string& field)
+{
+  char* end = nullptr;
+  const double value = std::strtod(field.c_str(), &end);
+  if (field.find('.') == std::string::npos || *end != '\0')
+  {
+    return field;
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
 } // namespace
 
 std::string escapedHtml(const std::string& text)
@@ -54,8 +71,8 @@ std::string htmlParagraph(const std::string& words)
 std::string htmlTable(const CsvFile& csv, const std::string& command)
 {
   std::ostringstream text;
-  text << "<table><caption>" << escapedHtml(std::filesystem::path(csv.path).filename().string()) << ", by <code>"
-       << escapedHtml(command) << "</code></caption><tr>";
+  text << "<div class='wide'><table><caption>" << escapedHtml(std::filesystem::path(csv.path).filename().string())
+       << ", by <code>" << escapedHtml(command) << "</code></caption><tr>";
   for (const std::string& name : csv.header)
   {
     text << "<th>" << escapedHtml(name) << "</th>";
@@ -66,11 +83,11 @@ std::string htmlTable(const CsvFile& csv, const std::string& command)
     text << "<tr>";
     for (const std::string& field : row.fields)
     {
-      text << "<td>" << escapedHtml(field) << "</td>";
+      text << "<td>" << escapedHtml(shown(field)) << "</td>";
     }
     text << "</tr>\n";
   }
-  text << "</table>\n";
+  text << "</table></div>\n";
   return text.str();
 }
 

@@ -12,7 +12,8 @@ std::string escapedHtml(const std::string& text);
 
 std::string htmlParagraph(const std::string& words);
 
-/// A table with its header. `command` tells the reader what measured it.
+/// A table with its header, its fractions to four digits; it scrolls inside a page that is narrower. `command` tells
+/// the reader what measured it.
 std::string htmlTable(const CsvFile& csv, const std::string& command);
 
 /// An image element that holds the PNG itself, so that the page is one file. Throws Error when it cannot be read.

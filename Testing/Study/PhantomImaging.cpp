@@ -103,6 +103,13 @@ PhantomBench::PhantomBench(std::vector<PhantomTarget> targets, WireModel wires, 
   scene_ = sceneOf(makeCalibrationPhantom(targets_, settings_));
 }
 
+double PhantomBench::wireMm() const
+{
+  const auto wire = std::find_if(targets_.begin(), targets_.end(),
+                                 [](const PhantomTarget& t) { return t.kind == PhantomTargetKind::Wire; });
+  return wire == targets_.end() ? 0.0 : wire->diameterMm;
+}
+
 RfLines PhantomBench::image(const PhantomImaging& imaging, int view, unsigned seed, bool background) const
 {
   const auto lines = makeScanLines(imaging.geometry, phantomViewPose(settings_, view));
@@ -115,12 +122,14 @@ RfLines PhantomBench::image(const PhantomImaging& imaging, int view, unsigned se
   std::unique_ptr<PointScatterers> points;
   if (wires_ == WireModel::SurfaceOfAperture)
   {
-    points = std::make_unique<PointScatterers>(scatterersMet(
-      *scene_, surfaces_, imaging, phantomViewPose(settings_, view), phantomApertureMm(), 0.1, wireEchoPerMm(echo)));
+    points =
+      std::make_unique<PointScatterers>(scatterersMet(*scene_, surfaces_, imaging, phantomViewPose(settings_, view),
+                                                      phantomApertureMm(), wireMm(), wireEchoPerMm(echo, wireMm())));
   }
   if (wires_ == WireModel::Scatterers)
   {
-    points = std::make_unique<PointScatterers>(phantomWireScatterers(targets_, settings_, wireEchoPerMm(echo)));
+    points =
+      std::make_unique<PointScatterers>(phantomWireScatterers(targets_, settings_, wireEchoPerMm(echo, wireMm())));
   }
   return formRf({ background ? scene_.get() : nullptr, &traced, points.get() }, lines, echo);
 }

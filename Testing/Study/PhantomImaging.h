@@ -60,6 +60,8 @@ public:
   RfLines image(const PhantomImaging& imaging, int view, unsigned seed, bool background = true) const;
 
 private:
+  double wireMm() const; ///< diameter of the wires, which are all alike
+
   WireModel wires_;
   CalibrationPhantomSettings settings_;
   std::vector<PhantomTarget> targets_;

@@ -289,14 +289,16 @@ private:
 
 constexpr const char* head =
   R"(<!DOCTYPE html><html><head><meta charset="utf-8"><title>SonoVDB: the study</title><style>
-body { font-family: sans-serif; max-width: 72em; margin: 2em auto; color: #222; }
+body { font-family: sans-serif; max-width: 72em; margin: 2em auto; padding: 0 1em; color: #222; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 0.9em; }
 caption { text-align: left; color: #666; }
 td, th { border: 1px solid #ccc; padding: 0.2em 0.6em; text-align: left; }
-img { max-width: 100%; }
+img, svg { max-width: 100%; }
+.wide { overflow-x: auto; }
 </style></head><body>
 <h1>SonoVDB: the study</h1>
-<p>"The seed" is Amadou et al. 2024. Settings and their reasons stand in Testing/Study/PhantomImaging.cpp.</p>
+<p>"The seed" is Amadou et al. 2024. Settings and their reasons stand in Testing/Study/PhantomImaging.cpp.
+Tables show four digits; the files that they name hold six.</p>
 )";
 
 } // namespace

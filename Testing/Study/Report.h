@@ -8,10 +8,9 @@ namespace sono::study {
 /// the study left there; what a part has not left is named as missing. Besides the phantom's tables it shows
 ///
 /// - error_*.csv: run time against error of a scene (the name after error_), and error_*_gpu.csv, the same from a
-/// machine
-///   with a GPU. Columns `paths` and `seconds` and any number of errors, named rmse_*; the other columns (sampler,
-///   precision, device, ...) name the curve of a row. Each error is drawn against paths and against seconds on
-///   logarithmic axes, one curve for each set of names; that of `reference` as a level.
+///   machine with a GPU. Columns `paths` and `seconds` and any number of errors, named rmse_*; the other columns
+///   (sampler, precision, device, ...) name the curve of a row. Each error is drawn against paths and against seconds
+///   on logarithmic axes, one curve for each set of names; that of `reference` as a level.
 /// - convergence.csv and convergence_gpu.csv, as they are.
 /// - stability.csv and skipping.csv, as they are.
 ///

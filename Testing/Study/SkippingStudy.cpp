@@ -7,9 +7,12 @@
 #include "Trace/Deposit.h"
 #include "Trace/TraceSetup.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <ctime>
 #include <functional>
+#include <memory>
 
 namespace sono {
 
@@ -56,15 +59,19 @@ void traceRest(const TraceSetup& setup, const Beam& beam, const LineStart& start
   }
 }
 
-/// Processor seconds to trace the scene's lines by one thread; what other programs do does not count.
-double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, const ShortCuts& cuts)
+/// Processor seconds since `begin`. The study of skips keeps to one thread, so they are its time, and what other
+/// programs do does not count.
+double secondsSince(std::clock_t begin)
 {
-  const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
+  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+void traceLines(const TraceSetup& setup, const TraceSettings& tracing, const ShortCuts& cuts)
+{
   const int bins = int(tracing.depthMm / tracing.radialBinMm);
   const int echoes = int(tracing.depthMm / tracing.echoSampleMm) + 1;
   LineTally tally(bins, tracing.radialBinMm, echoes, tracing.echoSampleMm,
                   tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
-  const std::clock_t begin = std::clock();
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
     tally.start(setup.lines[i], setup.view.coherenceMm);
@@ -86,7 +93,15 @@ double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, con
       }
     }
   }
-  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+/// Of the scene's lines, with all records baked before.
+double secondsToTrace(const BenchScene& bench, const TraceSettings& tracing, const ShortCuts& cuts)
+{
+  const TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {});
+  const std::clock_t begin = std::clock();
+  traceLines(setup, tracing, cuts);
+  return secondsSince(begin);
 }
 
 /// Median ratio of two times measured alternately, so that the machine's moods cancel.
@@ -107,11 +122,33 @@ double megabytes(double bytes)
   return bytes / 1e6;
 }
 
-double secondsToBuild(const Scene& scene, const VoxelBox& box)
+std::shared_ptr<const RegionOnDemand> regionOf(const Scene& scene, const VoxelBox& box)
+{
+  const GridPlacement& grid = scene.placement();
+  return std::make_shared<RegionOnDemand>(scene.tissueVoxels().data(), grid.size, grid.spacingMm, box);
+}
+
+double secondsToLayOut(const Scene& scene, const VoxelBox& box)
 {
   const std::clock_t begin = std::clock();
-  buildTraceRegion(scene.tissueVoxels().data(), scene.placement().size, scene.placement().spacingMm, box);
-  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+  regionOf(scene, box);
+  return secondsSince(begin);
+}
+
+/// What is waited for at a probe's new place: the cache is laid out, and its records are baked beforehand, or those
+/// that paths meet while they run.
+double secondsToFirstTrace(const BenchScene& bench, const TraceSettings& tracing, Records records)
+{
+  TraceSetup setup(*bench.scene, bench.lines, tracing, bench.targets, {}, Records::OnDemand);
+  const std::clock_t begin = std::clock();
+  setup.cells = regionOf(*bench.scene, setup.region->box);
+  setup.region = { setup.cells, &setup.cells->region() };
+  if (records == Records::All)
+  {
+    setup.cells->bakeAll();
+  }
+  traceLines(setup, tracing, {});
+  return secondsSince(begin);
 }
 
 void measureScene(const std::string& name, bool quick, Rows& rows)
@@ -152,20 +189,22 @@ void measureScene(const std::string& name, bool quick, Rows& rows)
   add("records of boundary voxels alone", "memory of the cache", 1.0, dense / held);
 
   const VoxelBox whole{ Vec3i(0), bench.scene->placement().size };
-  const double full =
-    double(buildTraceRegion(bench.scene->tissueVoxels().data(), whole.last, bench.scene->placement().spacingMm, whole)
-             .bytes());
-  add("what the fan cannot reach", "building the cache (" + number(megabytes(held)) + " MB)",
-      medianRatio([&] { return secondsToBuild(*bench.scene, region.box); },
-                  [&] { return secondsToBuild(*bench.scene, whole); }),
+  const double full = double(regionOf(*bench.scene, whole)->region().bytes());
+  add("what the fan cannot reach", "laying out the cache (" + number(megabytes(held)) + " MB)",
+      medianRatio([&] { return secondsToLayOut(*bench.scene, region.box); },
+                  [&] { return secondsToLayOut(*bench.scene, whole); }),
       full / held);
+  add("records that no path meets", "cache and first trace",
+      medianRatio([&] { return secondsToFirstTrace(bench, tracing, Records::OnDemand); },
+                  [&] { return secondsToFirstTrace(bench, tracing, Records::All); }),
+      1.0);
 }
 
 double secondsToForm(const BenchScene& bench, const TracedLines& traced, const EchoSkips& skips)
 {
   const std::clock_t begin = std::clock();
   formRfBySkipping(bench, traced, skips);
-  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+  return secondsSince(begin);
 }
 
 /// The side of the scatterers, for one group of lines.
@@ -205,6 +244,7 @@ void measureEcho(const std::string& name, bool quick, Rows& rows)
 
 void measureSkipping(Output& output)
 {
+  const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
   Rows rows;
   for (const std::string name : { "stack", "cyst", "rib", "a4c", "phantom" })
   {

@@ -6,35 +6,58 @@
 
 #include "Progress.h"
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace sono::study {
 
+namespace {
+
+bool allFinite(const BenchImage& image)
+{
+  const auto number = [](double v) { return std::isfinite(v); };
+  return std::all_of(image.intensity.begin(), image.intensity.end(), number) &&
+         std::all_of(image.standardError.begin(), image.standardError.end(), number) &&
+         std::all_of(image.iq.begin(), image.iq.end(),
+                     [](const std::complex<double>& v) { return std::isfinite(v.real()) && std::isfinite(v.imag()); });
+}
+
+double medianSeconds(const BenchScene& bench, const TraceSettings& tracing)
+{
+  warmUp(bench, tracing);
+  std::array<double, 5> seconds;
+  for (double& s : seconds)
+  {
+    const auto start = std::chrono::steady_clock::now();
+    trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
+    s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return seconds[2];
+}
+
+} // namespace
+
 Difference singleAgainstDouble(const BenchScene& bench, TraceSettings tracing)
 {
-  tracing.device = Device::Cpu;  // the twin's
-  TraceSettings first = tracing; // builds the cache of the scene, which is no cost of a path
-  first.pathsPerLine = 1;
-  trace(*bench.scene, bench.lines, first, {}, bench.targets);
-  const BenchImage single = makeBenchImage(bench, tracing, Precision::Single);
+  tracing.device = Device::Cpu; // the twin's
   Difference d;
-  const double paths = double(tracing.pathsPerLine) * double(bench.lines.size());
-  d.microsecondsPerPath = 1e6 * single.traceSeconds / paths;
+  const int paths = (tracing.deterministic ? 1 : tracing.pathsPerLine) * int(bench.lines.size());
+  d.microsecondsPerPath = 1e6 * medianSeconds(bench, tracing) / paths;
+  const BenchImage single = makeBenchImage(bench, tracing, Precision::Single);
   d.segmentsPerPath = single.segments / paths;
-  for (std::size_t i = 0; i < single.intensity.size(); ++i)
-  {
-    d.finite = d.finite && std::isfinite(single.intensity[i]) && std::isfinite(single.standardError[i]);
-  }
-  for (const std::complex<double>& v : single.iq)
-  {
-    d.finite = d.finite && std::isfinite(v.real()) && std::isfinite(v.imag());
-  }
+  d.finite = allFinite(single);
   if (bench.echo.field)
   {
     return d;
   }
   const BenchImage twice = makeBenchImage(bench, tracing, Precision::Double);
   d.of = imageError(single, twice);
+  d.finite = d.finite && allFinite(twice) && std::isfinite(d.of.intensity) && std::isfinite(d.of.rf) &&
+             std::isfinite(d.of.decibels);
   double noise = 0.0;
   double power = 0.0;
   for (std::size_t i = 0; i < twice.intensity.size(); ++i)
@@ -56,7 +79,7 @@ std::vector<std::string> rowOf(const HardScene& hard, bool quick, double& worst)
     TraceSettings tracing = bench.tracing;
     tracing.pathsPerLine = std::min(tracing.pathsPerLine, quick ? 40 : 1000000);
     const Difference d = singleAgainstDouble(bench, tracing);
-    worst = std::max(worst, d.finite ? d.of.intensity : 1.0);
+    worst = std::max(worst, d.finite ? d.of.intensity : std::numeric_limits<double>::infinity());
     const auto twin = [&](double value) { return bench.echo.field ? std::string("-") : number(value); };
     return { hard.hazard,
              hard.name,

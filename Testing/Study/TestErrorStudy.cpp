@@ -8,10 +8,13 @@
 #include "RelativeRms.h"
 #include "SamplingName.h"
 #include "StabilityStudy.h"
+#include "Trace/RecordPaths.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace {
 
@@ -72,14 +75,63 @@ TEST(ErrorStudy, ASlopeAndTheTimeToAnErrorFollowAPowerLaw)
   {
     curve.push_back({ paths, 1e-3 * paths, 0.5 / std::sqrt(paths) });
   }
-  EXPECT_NEAR(convergenceSlope(curve, 0.0), -0.5, 1e-9);
+  EXPECT_NEAR(convergenceSlope(curve, 0.0).value, -0.5, 1e-9);
+  EXPECT_NEAR(convergenceSlope(curve, 0.0).error, 0.0, 1e-6);
   // 0.5 / sqrt(n) = 0.01 at n = 2500.
   EXPECT_NEAR(secondsToReach(curve, 0.01), 2.5, 1e-9);
   EXPECT_NEAR(secondsToReach(curve, 0.9), 1e-3, 1e-12);
   EXPECT_TRUE(std::isinf(secondsToReach(curve, 1e-4)));
   // A floor of the reference bends the curve where it counts no more.
   curve.back().error = 1e-3;
-  EXPECT_NEAR(convergenceSlope(curve, 5e-4), -0.5, 1e-9);
+  EXPECT_NEAR(convergenceSlope(curve, 5e-4).value, -0.5, 1e-9);
+}
+
+TEST(ErrorStudy, ASlopesErrorIsItsScatterOverManyCurves)
+{
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0.0, 0.2);
+  constexpr int curves = 2000;
+  double variance = 0.0;
+  double said = 0.0;
+  for (int c = 0; c < curves; ++c)
+  {
+    std::vector<ErrorPoint> curve;
+    for (double paths = 100.0; paths <= 1e6; paths *= 10.0)
+    {
+      curve.push_back({ paths, 1.0, std::exp(normal(random)) / std::sqrt(paths) });
+    }
+    const Slope slope = convergenceSlope(curve, 0.0);
+    variance += std::pow(slope.value + 0.5, 2) / curves;
+    said += slope.error * slope.error / curves;
+  }
+  EXPECT_NEAR(said / variance, 1.0, 0.1);
+}
+
+TEST(ErrorStudy, WithoutNoiseADifferenceIsWhatItIsOnAverage)
+{
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  constexpr int count = 200000;
+  std::vector<BenchImage> images(4);
+  for (std::size_t which = 0; which < images.size(); ++which)
+  {
+    // Of amplitude 10 in phase, 11 in the two images that are judged; as much noise again as they differ.
+    const double amplitude = which < 2 ? 11.0 : 10.0;
+    BenchImage& image = images[which];
+    image.lineCount = 1;
+    image.binCount = count;
+    image.binMm = 1.0;
+    for (int i = 0; i < count; ++i)
+    {
+      image.intensity.push_back(amplitude + normal(random));
+      image.iq.push_back(amplitude + 0.1 * normal(random));
+    }
+  }
+  EXPECT_GT(imageError(images[0], images[2]).intensity, 0.15);
+  const ImageError error = errorWithoutNoise({ images[0], images[1] }, { images[2], images[3] });
+  EXPECT_NEAR(error.intensity, 0.1, 2e-3);
+  EXPECT_NEAR(error.rf, 0.1, 2e-3);
+  EXPECT_NEAR(error.decibels, 20.0 * std::log10(1.1), 2e-3);
 }
 
 TEST(ErrorStudy, AReferenceIsAsFarOffAsItSays)
@@ -90,6 +142,30 @@ TEST(ErrorStudy, AReferenceIsAsFarOffAsItSays)
   EXPECT_NEAR(intensityError(few.image, many.image) / few.floor.intensity, 1.0, 0.5);
   EXPECT_NEAR(imageError(few.image, many.image).rf / few.floor.rf, 1.0, 0.5);
   EXPECT_LT(many.floor.intensity, 0.5 * few.floor.intensity);
+}
+
+TEST(ErrorStudy, AReferencesOwnErrorIsTakenOut)
+{
+  BenchReference reference;
+  reference.image.lineCount = 1;
+  reference.image.binMm = 1.0;
+  reference.image.intensity = { 1.0, 2.0 };
+  reference.image.binCount = 2;
+  reference.image.iq = { 1.0, { 0.0, 1.0 } };
+  reference.floor = { 0.03, 0.06, 0.0 };
+  BenchImage image = reference.image;
+  for (double& v : image.intensity)
+  {
+    v *= 1.05;
+  }
+  for (std::complex<double>& v : image.iq)
+  {
+    v *= 1.05;
+  }
+  const ImageError error = errorAgainst(reference, image);
+  EXPECT_NEAR(error.intensity, 0.04, 1e-12); // 3, 4, 5
+  EXPECT_EQ(error.rf, 0.0);
+  EXPECT_NEAR(error.decibels, 20.0 * std::log10(1.05), 1e-12);
 }
 
 TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
@@ -140,6 +216,32 @@ TEST(StabilityStudy, EveryHazardEndsInAnImageOrASentence)
     }
   }
   EXPECT_EQ(refused, 5); // no impedance, no speed, NaN, no voxels, no depth
+}
+
+TEST(StabilityStudy, GrazingLinesMeetTheVoxelFaceItself)
+{
+  const auto grazing = std::find_if(hardScenes().begin(), hardScenes().end(),
+                                    [](const HardScene& hard) { return hard.hazard == "grazing incidence"; });
+  ASSERT_NE(grazing, hardScenes().end());
+  const BenchScene bench = grazing->make();
+  int faster = 0;
+  int slower = 0;
+  for (const RecordedPath& path : recordPaths(*bench.scene, bench.lines, bench.tracing, int(bench.lines.size())))
+  {
+    ASSERT_FALSE(path.hits.empty());
+    const BoundaryHit& hit = path.hits.front();
+    EXPECT_GT(hit.incidenceCosine, 0.0f);
+    // A smoothed surface would have given 0.01 or more, as it does where it turns: where the wall's two parts meet.
+    if (std::fabs(hit.depthMm - 28.0f) > 7.0f)
+    {
+      EXPECT_LT(hit.incidenceCosine, 0.0025f);
+      const std::vector<Tissue>& tissues = bench.scene->tissues();
+      const bool slow = tissues[std::size_t(hit.to)].soundSpeedMPerS < tissues[std::size_t(hit.from)].soundSpeedMPerS;
+      (slow ? slower : faster) += 1;
+    }
+  }
+  EXPECT_GE(slower, 3);
+  EXPECT_GE(faster, 3);
 }
 
 TEST(RegionSwitches, WithoutSkipsTheImageIsTheSame)

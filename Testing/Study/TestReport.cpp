@@ -48,13 +48,15 @@ TEST(StudyReport, DrawsErrorsOverPathsAndSecondsAndSaysWhatIsMissing)
                { { "independent", "10", "0.1", "0.3" },
                  { "independent", "1000", "10", "0.03" },
                  { "sobol", "10", "0.1", "0.2" } });
-  output.table("stability.csv", { "case", "result" }, { { "depth 0", "refused <clearly>" } });
+  output.table("stability.csv", { "case", "result", "a", "b", "c" },
+               { { "depth 0", "refused <clearly>", "0.000123456", "1234567", "12.3456 +- 1" } });
   writeReport(folder);
   const std::string html = textOf(folder / "report.html");
   sono::testing::expectContains(html, "Intensity: error over paths");
   sono::testing::expectContains(html, "Intensity: error over seconds");
   sono::testing::expectContains(html, ">sobol<");
   sono::testing::expectContains(html, "refused &lt;clearly&gt;");
+  sono::testing::expectContains(html, "<td>0.0001235</td><td>1234567</td><td>12.3456 +- 1</td>");
   sono::testing::expectContains(html, "skipping.csv is missing");
 }
 

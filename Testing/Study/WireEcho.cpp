@@ -67,13 +67,13 @@ double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio)
   return std::abs(sum);
 }
 
-double wireEchoPerMm(const EchoSettings& echo)
+double wireEchoPerMm(const EchoSettings& echo, double diameterMm)
 {
   const TissueTable tissues = bundledTissues();
   const Tissue& gel = *tissues.find("phantom_gel");
   const Tissue& nylon = *tissues.find("phantom_nylon");
   const double k = waveNumberPerMm(echo);
-  const double scattered = cylinderBackscatter(k * 0.05, nylon.impedanceMRayl / gel.impedanceMRayl,
+  const double scattered = cylinderBackscatter(0.5 * k * diameterMm, nylon.impedanceMRayl / gel.impedanceMRayl,
                                                nylon.soundSpeedMPerS / gel.soundSpeedMPerS);
   return 2.0 * scattered / (k * focusWeightMm2(*echo.field));
 }

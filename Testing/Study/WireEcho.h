@@ -11,10 +11,10 @@ namespace sono::study {
 /// compressibilities.
 double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio);
 
-/// Echo of a millimetre of a nylon wire of 0.1 mm across the beam's focus, against a perfect plane reflector there.
-/// By reciprocity a source of strength s per area echoes as the integral of s w with the beam's two-way weight w; a
-/// plane reflector radiates as 2 k per area, the wire as 4 |F| per length.
-double wireEchoPerMm(const EchoSettings& echo);
+/// Echo of a millimetre of a nylon wire of that diameter across the beam's focus, against a perfect plane reflector
+/// there. By reciprocity a source of strength s per area echoes as the integral of s w with the beam's two-way weight
+/// w; a plane reflector radiates as 2 k per area, the wire as 4 |F| per length.
+double wireEchoPerMm(const EchoSettings& echo, double diameterMm);
 
 /// EchoSettings::scattererLevelDb at which the phantom's gel, at the focus, has the backscatter of soft tissue: the
 /// power of incoherent echoes is 4 pi^2 BSC (integral of w^2 over the beam) (integral of g^2 over the pulse) / (k

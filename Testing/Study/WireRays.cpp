@@ -2,6 +2,7 @@
 
 #include "Trace/RecordPaths.h"
 
+#include <array>
 #include <cmath>
 
 namespace sono::study {
@@ -39,18 +40,20 @@ std::vector<TargetSurface> transparent(std::vector<TargetSurface> wires)
   return wires;
 }
 
-/// The corners of a path where it crosses a boundary.
-std::vector<Vec3d> crossings(const RecordedPath& path)
+/// Where a path enters a wire and leaves it; media from `firstWire` on are wires.
+std::vector<std::array<Vec3d, 2>> passages(const RecordedPath& path, int firstWire)
 {
-  std::vector<Vec3d> points;
-  for (std::size_t i = 0; i + 1 < path.bounce.size(); ++i)
+  std::vector<std::array<Vec3d, 2>> found;
+  for (std::size_t i = 0; i + 1 < path.hits.size(); ++i)
   {
-    if (path.bounce[i + 1] > path.bounce[i])
+    const BoundaryHit& in = path.hits[i];
+    const BoundaryHit& out = path.hits[i + 1];
+    if (in.to >= firstWire && out.from == in.to)
     {
-      points.push_back(path.pointMm[i]);
+      found.push_back({ in.pointMm, out.pointMm });
     }
   }
-  return points;
+  return found;
 }
 
 } // namespace
@@ -71,12 +74,11 @@ std::vector<PointScatterer> scatterersMet(const Scene& scene, const std::vector<
   std::vector<PointScatterer> met;
   for (const RecordedPath& path : recordPaths(scene, lines, tracing, int(lines.size()), transparent(wires)))
   {
-    const std::vector<Vec3d> points = crossings(path);
-    for (std::size_t i = 0; i + 1 < points.size(); i += 2)
+    for (const auto& [in, out] : passages(path, int(scene.tissues().size())))
     {
-      const Vec3d middle = 0.5 * (points[i] + points[i + 1]);
+      const Vec3d middle = 0.5 * (in + out);
       const double covered =
-        glm::length(middle - lines[std::size_t(path.line)].originMm) * angle * glm::length(points[i + 1] - points[i]);
+        glm::length(middle - lines[std::size_t(path.line)].originMm) * angle * glm::length(out - in);
       const double amplitude = amplitudePerMm * rays.stepMm * covered / area / rays.places;
       for (int c = 0; c < copies; ++c)
       {
