@@ -212,6 +212,7 @@ class TestUltrasound(unittest.TestCase):
         """A bold outline of the probe; paths and hits in colours that lie over 80 dB until a person sets others."""
         ultrasound = make_ultrasound(NumberofShownPaths=5)
         view = simple.CreateView("RenderView")
+        self.addCleanup(simple.Delete, view)  # the animation would render it
 
         def show(port):
             return simple.Show(simple.OutputPort(ultrasound, port), view)
