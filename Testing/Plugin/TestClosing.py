@@ -1,4 +1,4 @@
-"""Deleting the filter, disconnecting or leaving ParaView while a simulation runs ends quietly."""
+"""Deleting the filter, switching its input, disconnecting or leaving ParaView while a simulation runs ends quietly."""
 import subprocess
 import unittest
 
@@ -22,7 +22,8 @@ ultrasound.UpdatePipeline()
 
 class TestClosing(unittest.TestCase):
     def test_closing_during_a_run(self):
-        for action in ("simple.Delete(ultrasound)", "simple.Disconnect()", "sys.exit(0)"):
+        for action in ("simple.Delete(ultrasound)", "ultrasound.Input = simple.ThoraxPhantom(VoxelSizemm=5)",
+                       "simple.Disconnect()", "sys.exit(0)"):
             with self.subTest(action=action):
                 done = subprocess.run(["pvpython", "-c", SCRIPT.format(action=action)], stdout=subprocess.PIPE,
                                       stderr=subprocess.STDOUT, text=True, timeout=60)
