@@ -233,13 +233,6 @@ std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box,
   });
 }
 
-std::shared_ptr<const TraceRegion> Scene::traceRegion(const VoxelBox& box, const Progress& progress) const
-{
-  const SharedRegion region = regionOnDemand(box);
-  region->bakeAll(progress);
-  return { region, &region->region() };
-}
-
 std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box, const Progress& progress) const
 {
   const auto making = makingOnTheWay(box, false);

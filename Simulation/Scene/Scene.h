@@ -59,8 +59,6 @@ public:
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
-  /// The same with all of its records.
-  std::shared_ptr<const TraceRegion> traceRegion(const VoxelBox& box, const Progress& progress = {}) const;
 
   /// For a probe on its way: the cache of a box around this one whose faces lie at multiples of 512 voxels or at the
   /// volume's end. A volume up to that size is one box, so that all poses share it; of a longer one it takes what is

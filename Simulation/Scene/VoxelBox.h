@@ -11,10 +11,6 @@ struct VoxelBox
   Vec3i last{ 0, 0, 0 };
   Vec3i size() const { return last - first; }
   bool empty() const { return last.x <= first.x || last.y <= first.y || last.z <= first.z; }
-  bool contains(const VoxelBox& o) const
-  {
-    return glm::all(glm::lessThanEqual(first, o.first)) && glm::all(glm::greaterThanEqual(last, o.last));
-  }
   bool operator==(const VoxelBox& o) const { return first == o.first && last == o.last; }
 };
 

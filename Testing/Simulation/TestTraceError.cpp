@@ -160,4 +160,32 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
   }
 }
 
+TEST(TraceError, ATraceOfManyLikePathsIsThatOfAFew)
+{
+  // Straight through a boundary that does not reflect: every path leaves the same.
+  const auto scene =
+    makeScene(Vec3i(20, 20, 40), Vec3d(1.0), { makeTissue("a", 1.5, 1540, 0.5), makeTissue("b", 1.5, 1600, 0.5) },
+              [](const Vec3d& p) { return p.z < 10.0 ? 0 : 1; });
+  const std::vector<ScanLine> lines = { makeLine({ 10.2, 10.3, 0.0 }, { 0.0, 0.0, 1.0 }) };
+  TraceSettings s;
+  s.depthMm = 35.0;
+  s.radialBinMm = 1.0;
+  s.coherenceMm = 1e6;
+  s.frequencyMHz = 2.0;
+  s.lobeSigmaRad = 1e-4; // for shared paths it must not be 0
+  for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::SharedPaths })
+  {
+    s.sampling = sampling;
+    s.pathsPerLine = 8; // one a batch
+    const TracedLines few = trace(*scene, lines, s);
+    s.pathsPerLine = 1000000;
+    const TracedLines many = trace(*scene, lines, s);
+    for (std::size_t b = 12; b < 33; ++b)
+    {
+      // Sums of 512 floats, each rounded to 2^-24 of at most the whole.
+      EXPECT_NEAR(double(many.intensity[b]) / few.intensity[b], 1.0, 512.0 / (1 << 24)) << b;
+    }
+  }
+}
+
 } // namespace

@@ -43,12 +43,13 @@ void measureScene()
     Stopwatch watch;
     const auto scene = makeTorsoScene(volume);
     const double constructed = watch.lap();
-    const auto region = scene->traceRegion(torsoFanBox(*scene));
+    const auto region = scene->regionOnDemand(torsoFanBox(*scene));
+    region->bakeAll();
     const double seconds = watch.lap();
-    const Vec3i n = region->box.size();
+    const Vec3i n = region->region().box.size();
     printFigure("scene_roi_s", constructed + seconds, "s");
     printFigure("scene_roi_share", double(n.x) * n.y * n.z / double(volume.voxels.size()), "1");
-    printFigure("scene_roi_mb", double(region->bytes()) / 1e6, "MB");
+    printFigure("scene_roi_mb", double(region->region().bytes()) / 1e6, "MB");
   }
 
   Stopwatch watch;
@@ -64,7 +65,8 @@ void measureScene()
     surfaceBytes += scene->surface(label.id).sdf.bytes();
   }
   watch.lap();
-  const auto region = scene->traceRegion({ Vec3i(0), size });
+  const auto region = scene->regionOnDemand({ Vec3i(0), size });
+  region->bakeAll();
   const double records = watch.lap();
 
   printFigure("scene_build_s", constructed + labels + surfaces + records, "s");
@@ -76,7 +78,7 @@ void measureScene()
   printFigure("scene_records_s", records, "s");
   printFigure("scene_label_grid_mb", double(labelBytes) / 1e6, "MB");
   printFigure("scene_surface_mb_per_label", double(surfaceBytes) / 1e6 / double(scene->volume().labels.size()), "MB");
-  printFigure("scene_records_mb", double(region->bytes()) / 1e6, "MB");
+  printFigure("scene_records_mb", double(region->region().bytes()) / 1e6, "MB");
 
   measureCache(scene->volume());
 
