@@ -155,7 +155,7 @@ std::string errorSection(const std::filesystem::path& folder)
     "from that of each error). Slopes are of one seed, with the error that the scatter around the line tells. "
     "Intensity and RF are relative to their rms, the envelope's dB are cut off 60 dB below "
     "the maximum. Double precision is a twin for this study alone, kernels compiled again, down to the RF; its time "
-    "says nothing. A million shared paths run once, not for the twin, since four lines are one group, which one thread "
+    "says nothing. A million shared paths run with two threads only, since four lines are one group, which one thread "
     "traces. The seed has no such table: it names 1000 rays an element and 300 ms an image.");
   text << htmlParagraph(
     "Dots are errors that more paths do not lessen, at the place of the 4000 shared paths they were measured with, on "

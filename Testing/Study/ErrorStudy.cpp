@@ -155,11 +155,11 @@ void measureCurves(const BenchScene& bench, const BenchReference& reference, Out
   for (const Sampling sampling : samplersOf(bench))
   {
     // The lines are one group of shared paths, which one thread traces whatever there are: a million are waited for
-    // once, and not for the twin, which is slower yet.
+    // once.
     const int most = sampling == Sampling::SharedPaths ? mostPaths / 10 : mostPaths;
     measureCurve(bench, reference, { sampling, Precision::Single, 1 }, most, output, rows, summary);
     measureCurve(bench, reference, { sampling, Precision::Single, 2 }, mostPaths, output, rows, summary);
-    measureCurve(bench, reference, { sampling, Precision::Double, 2 }, most, output, rows, summary);
+    measureCurve(bench, reference, { sampling, Precision::Double, 2 }, mostPaths, output, rows, summary);
   }
 }
 
