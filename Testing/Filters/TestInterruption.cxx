@@ -255,9 +255,9 @@ TEST(Interruption, ALongLineStopsInItsMiddle)
     chain.probe->SetLineCount(1);
     chain.tracer->SetPathsPerLine(100000);
     chain.tracer->SetSampling(sampling);
-    chain.scene->Update();
     button.leaveAlone();
     button.stopped.clear();
+    chain.scene->Update();
     auto start = Clock::now();
     chain.tracer->Update();
     const auto whole = Clock::now() - start;
