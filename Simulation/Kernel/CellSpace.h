@@ -37,9 +37,7 @@ struct CellSpace
   SONO_HD int tissueAt(const Vec3i& cell) const { return cells.tissueAt(cell); }
   SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
   {
-    const CellHit hit = marchToBoundary(cells, ray, current, ignored, ignoreUntil, tMax);
-    const bool isPastIt = hit.tissue >= 0 && hit.tissue == ignored && tissueAt(hit.before) == ignored;
-    return isPastIt ? lastEntrance(cells, ray, current, hit) : hit;
+    return marchToBoundary(cells, ray, current, ignored, ignoreUntil, tMax);
   }
   SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit) const { return refineBoundary(cells, ray, hit); }
 };

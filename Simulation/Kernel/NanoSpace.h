@@ -41,7 +41,7 @@ struct NanoSpace
     return accessor.probeLeaf(at) ? 1 : int(accessor.getDim(at, nanovdb::Ray<float>()));
   }
 
-  /// As that of CellSpace.
+  /// As marchToBoundary.
   SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
   {
     const Accessor accessor = labels->getAccessor();
@@ -50,7 +50,6 @@ struct NanoSpace
                                 { ray.position.z * cells.perMm.z, ray.direction.z * cells.perMm.z } };
     Vec3i c = ray.cell;
     float t = 0.0f;
-    CellHit entrance{ 0.0f, c, c, -1, 0 }; // into the ignored cells that the ray is among
     const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
     for (int count = 0; count < maxSteps; ++count)
     {
@@ -87,13 +86,9 @@ struct NanoSpace
         return { t, before, before, -1, axis };
       }
       const int tissue = tissueAt(accessor, c);
-      if (tissue != ignored || tissueAt(accessor, before) == current)
-      {
-        entrance = { t, before, c, tissue, axis };
-      }
       if (tissue != current && (tissue != ignored || t >= ignoreUntil))
       {
-        return entrance.tissue == tissue ? entrance : CellHit{ t, before, c, tissue, axis };
+        return { t, before, c, tissue, axis };
       }
     }
     return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };

@@ -202,8 +202,8 @@ constexpr int worthJumping = 5;
 
 /// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
 /// t < ignoreUntil (hysteresis after a boundary; -1: none), and are passed one by one: what is left of them then is met
-/// at the next face (see lastEntrance). Walks cell by cell, so that the next address does not wait for the last word (a
-/// processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
+/// at the next face. Walks cell by cell, so that the next address does not wait
+/// for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
 template<class Cells>
 SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, int ignored,
                                        float ignoreUntil, float tMax)
@@ -273,20 +273,6 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
     }
   }
   return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
-}
-
-/// For a march that was still among ignored cells when they began to count: the ray has been through the boundary
-/// meanwhile, as one that grazes a hollow surface from within is. Gives the face where it entered them for the last
-/// time, found backwards from `hit`. Rare, so apart.
-template<class Cells>
-SONO_HD __attribute__((noinline)) CellHit lastEntrance(const Cells& cells, const CellRay& ray, int current,
-                                                       const CellHit& hit)
-{
-  const CellRay back{ ray.position + ray.direction * hit.t, -ray.direction, hit.before };
-  // To the cell that it started in, where it leaves that at once.
-  const CellHit way = marchToBoundary(cells, back, hit.tissue, -1, 0.0f, hit.t + cells.meanSpacing);
-  return way.tissue == current ? CellHit{ larger(0.0f, hit.t - way.t), way.after, way.before, hit.tissue, way.axis }
-                               : hit;
 }
 
 /// The refined boundary between two face-adjacent cells.

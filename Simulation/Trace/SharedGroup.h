@@ -262,8 +262,7 @@ private:
       const BoundarySide& from = j.boundary.before;
       const BoundarySide& to = j.boundary.after;
       const Vec3f face = j.boundary.voxelFace ? Vec3f(to.cell - from.cell) : j.boundary.surface.normal;
-      // A path that grazes its own boundary may be joined where it starts, by itself alone.
-      j.density *= std::fabs(glm::dot(direction, face)) / larger(glm::dot(across, across), 1e-12f);
+      j.density *= std::fabs(glm::dot(direction, face)) / glm::dot(across, across);
       if (path_.leaves)
       {
         j.density *= scatterDensity(view_.lobe, direction, j.boundary.surface.normal, j.boundary.cosine,
