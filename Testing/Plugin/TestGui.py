@@ -219,17 +219,19 @@ class TestGui(GuiCase):
         self.assertEqual(depth, [160])
 
     def test_probe_is_dragged_along_the_skin(self):
-        """With real mouse events: it slides, the picture follows, a button tilts it, undo takes that back."""
+        """With real mouse events: it slides, the picture follows, a button tilts it. Undo takes back that and the
+        drag, and redo drags again."""
         with tempfile.TemporaryDirectory() as folder:
-            states = [pathlib.Path(folder, name + ".pvsm") for name in ("dragged", "tilted", "undone")]
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("dragged", "tilted", "before", "undone")]
             seen = pathlib.Path(folder, "drag_probe.png")
             with self.look_after(states[-1], seen):
                 errors = self.play("drag_probe.xml", folder, f"--script={PLAYBACKS / 'drag_probe.py'}")
             self.assertEqual(errors, [])
-            dragged, tilted, undone = map(self.probe_of, states)
+            dragged, tilted, before, undone = map(self.probe_of, states)
             self.compare(seen, "-fail", "0.15", "-failpercent", "1", "-hardfail", "2")
         self.assertEqual(undone, dragged)
-        self.assertNotEqual(dragged["PositionMm"], [87.8, -86.5, -45])
+        self.assertEqual(before["PositionMm"], [87.8, -86.5, -45])
+        self.assertNotEqual(dragged["PositionMm"], before["PositionMm"])
         self.assertEqual(tilted["PositionMm"], dragged["PositionMm"])
         self.assertAlmostEqual(sum(a * b for a, b in zip(tilted["Axial"], dragged["Axial"])),
                                math.cos(math.radians(5)), places=6)
@@ -245,8 +247,10 @@ class TestGui(GuiCase):
                 errors = self.play("drag_ultrasound.xml", folder, f"--script={PLAYBACKS / 'drag_ultrasound.py'}")
             self.assertEqual(errors, [])
             moving, rested = (self.probe_of(state, "SonoUltrasound") for state in states)
+            prepared = set(pathlib.Path(folder, "prepared.txt").read_text().splitlines())
             for picture in seen:
                 self.compare(picture, "-fail", "0.15", "-failpercent", "1", "-hardfail", "2")
+        self.assertEqual(len(prepared), 1)  # the anatomy was made ready to be drawn for the first pose only
         self.assertEqual((moving.pop("Preview"), rested.pop("Preview")), ([1], [0]))
         self.assertEqual(moving, rested)
         self.assertNotEqual(rested["PositionMm"], [87.8, -86.5, -45])

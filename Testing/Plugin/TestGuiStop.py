@@ -1,5 +1,5 @@
-"""Stops a simulation in ParaView by the abort button and by closing the window, with the events of a real mouse and
-keyboard. Needs Xvfb and python3-xlib; run by ctest -L gui."""
+"""Stops a simulation in ParaView by the abort button and by closing the window, or clicks elsewhere meanwhile, with the
+events of a real mouse and keyboard. Needs Xvfb and python3-xlib; run by ctest -L gui."""
 import pathlib
 import sys
 import tempfile
@@ -15,6 +15,7 @@ from Xlib.protocol import event
 from guicase import PLAYBACKS, GuiCase, read_screen
 
 VIEW = (300, 205, 720, 520)  # left, top, width, height of the inside of the 3-D view
+THORAX = (85, 197)  # its row in the pipeline browser
 
 
 class Person:
@@ -52,6 +53,16 @@ class Person:
                 if red > 180 and green < 80 and blue < 80:
                     return x, y
         return None
+
+    def sees_progress(self):
+        """Whether the status bar is filled, in blue, to the right of the abort button."""
+        button = self.find_button()
+        width, _, pixels = read_screen(self.frame_buffer)
+        filled = 0
+        for x in range(button[0] + 20, button[0] + 200) if button else ():
+            red, _, blue = pixels[3 * (width * button[1] + x):3 * (width * button[1] + x) + 3]
+            filled += blue > 150 and red < 110
+        return filled > 20
 
     def await_button(self):
         """On a busy machine it takes a while until it is drawn."""
@@ -153,6 +164,33 @@ class TestGuiStop(GuiCase):
         """Of the only Simulate Ultrasound in a state file."""
         (proxy,) = (p for p in ElementTree.parse(state).iter("Proxy") if p.get("type") == "SonoUltrasound")
         return proxy.find(f"Property[@name='{name}']/Element").get("value")
+
+    def test_clicks_wait_for_the_end_of_the_run(self):
+        """Another source is clicked on: the run goes on, its picture appears, then the panel is the other source's."""
+        seen = {}
+
+        def act(person):
+            person.await_file("begun.pvsm")
+            person.move(1390, 890)
+            seen["before"] = person.picture()
+            person.await_button()
+            person.click(*THORAX)
+            person.move(1390, 890)
+            time.sleep(1.5)
+            seen["goes on"] = person.sees_progress()
+            seen["meanwhile"] = person.picture()
+            person.await_file("ended.pvsm")
+            time.sleep(1.5)
+            seen["after"] = person.picture()
+
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.play_with("click.xml", folder, act)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("ERR|", done.stdout)
+        self.assertNotIn("Stopped", done.stdout)
+        self.assertTrue(seen["goes on"])
+        self.assertEqual(seen["meanwhile"], seen["before"])
+        self.assertNotEqual(seen["after"], seen["before"])
 
     def test_leaving_during_a_run(self):
         """ParaView ends at once and quietly, by its key and by the window's cross."""

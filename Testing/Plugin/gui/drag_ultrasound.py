@@ -1,12 +1,17 @@
-"""The one filter on a small thorax, its anatomy and its image in the first view, as ParaView's --script."""
+"""The one filter on a small thorax, its anatomy and its image in the first view, as ParaView's --script. Writes down for
+which poses the anatomy is made ready to be drawn, into prepared.txt in the home folder."""
+import pathlib
+
 from paraview.simple import *
 
 view = GetActiveViewOrCreate("RenderView")
 thorax = ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
 ultrasound = SimulateUltrasound(registrationName="ultrasound", Input=thorax, NumberofLines=48, PathsperLine=300)
-for port in (0, 4):  # the image and the anatomy
-    Show(OutputPort(ultrasound, port), view)
-view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = (400, -700, 120), (20, 0, 0), (0, 0, 1)
+Show(OutputPort(ultrasound, 0), view)
+anatomy = Show(OutputPort(ultrasound, 4), view).SMProxy.GetSubProxy("SurfaceRepresentation").GetClientSideObject()
+prepared = open(pathlib.Path.home() / "prepared.txt", "w", encoding="utf-8", buffering=1)
+anatomy.AddObserver("UpdateDataEvent", lambda *_: print(*ultrasound.Positionmm, file=prepared))
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = (250, -650, 330), (20, 0, 0), (0, 0, 1)
 view.OrientationAxesVisibility = 0
 SetActiveSource(thorax)
 Render()
