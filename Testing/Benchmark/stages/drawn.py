@@ -62,7 +62,7 @@ try:
         done = GuiCase().paraview(folder, f"--script={files['watch.py']}", f"--test-script={files['drag.xml']}", "--exit")
         if done.returncode:
             raise SystemExit("drawn: ParaView failed:\n" + done.stdout)
-        drawn = [line.split() for line in files["drawn"].read_text().splitlines()]
+        drawn = [line.replace("'", "").split() for line in files["drawn"].read_text().splitlines()]
 finally:
     GuiCase.tearDownClass()
 
