@@ -67,12 +67,13 @@ vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyG
   return all;
 }
 
-/// Whether some source waits for Apply.
-bool hasChanges()
+/// Whether a source waits for Apply, apart from the one that moves.
+bool hasChangesBeside(vtkSMProxy* moving)
 {
   const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
-  return std::any_of(sources.begin(), sources.end(),
-                     [](pqPipelineSource* source) { return source->modifiedState() != pqProxy::UNMODIFIED; });
+  return std::any_of(sources.begin(), sources.end(), [moving](pqPipelineSource* source) {
+    return source->getProxy() != moving && source->modifiedState() != pqProxy::UNMODIFIED;
+  });
 }
 
 } // namespace
@@ -333,13 +334,13 @@ void pqSonoProbeWidget::showMoving()
     this->Frame.start(); // not while something runs
     return;
   }
-  {
-    SCOPED_UNDO_EXCLUDE();
-    this->push(this->pose(), true);
-  }
   if (!this->Shown)
   {
     this->Shown = std::make_unique<SonoMovingViews>(this->proxy());
+  }
+  {
+    SCOPED_UNDO_EXCLUDE();
+    this->push(this->pose(), true);
   }
   this->Shown->draw();
 }
@@ -362,7 +363,7 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
-  if (shown && hasChanges())
+  if (shown && hasChangesBeside(this->proxy()))
   {
     shown.reset(); // what is applied with the pose may change the anatomy
   }
