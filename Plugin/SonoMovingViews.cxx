@@ -58,13 +58,13 @@ void drawLightly(vtkSMViewProxy* view)
 } // namespace
 
 SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
+  : Source(source)
 {
   for (pqView* view : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>())
   {
     if (view->widget()->isVisible())
     {
       this->Views.append(view);
-      this->keepAnatomy(view, source);
     }
   }
   for (pqView* view : this->Views)
@@ -75,7 +75,11 @@ SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
       this->Slow.append(view);
     }
   }
-  if (!this->Slow.empty())
+  if (this->Slow.empty())
+  {
+    this->keepAnatomy();
+  }
+  else
   {
     this->lighten();
   }
@@ -84,6 +88,29 @@ SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
 SonoMovingViews::~SonoMovingViews()
 {
   this->drawInFull();
+  this->letGo();
+}
+
+void SonoMovingViews::keepAnatomy()
+{
+  for (pqView* view : this->Views)
+  {
+    auto* drawn = view ? vtkPVView::SafeDownCast(view->getProxy()->GetClientSideObject()) : nullptr;
+    for (pqRepresentation* each : drawn ? view->getRepresentations() : QList<pqRepresentation*>())
+    {
+      auto* shown = qobject_cast<pqDataRepresentation*>(each);
+      if (isAnatomy(shown, this->Source))
+      {
+        tell(shown->getProxy(), "SetForcedCacheKey", drawn->GetCacheKey());
+        tell(shown->getProxy(), "SetForceUseCache", 1);
+        this->Kept.append(shown);
+      }
+    }
+  }
+}
+
+void SonoMovingViews::letGo()
+{
   for (const auto& shown : this->Kept)
   {
     if (shown)
@@ -91,21 +118,7 @@ SonoMovingViews::~SonoMovingViews()
       tell(shown->getProxy(), "SetForceUseCache", 0);
     }
   }
-}
-
-void SonoMovingViews::keepAnatomy(pqView* view, vtkSMProxy* source)
-{
-  auto* drawn = vtkPVView::SafeDownCast(view->getProxy()->GetClientSideObject());
-  for (pqRepresentation* each : view->getRepresentations())
-  {
-    auto* shown = qobject_cast<pqDataRepresentation*>(each);
-    if (drawn && isAnatomy(shown, source))
-    {
-      tell(shown->getProxy(), "SetForcedCacheKey", drawn->GetCacheKey());
-      tell(shown->getProxy(), "SetForceUseCache", 1);
-      this->Kept.append(shown);
-    }
-  }
+  this->Kept.clear();
 }
 
 void SonoMovingViews::lighten()
@@ -144,6 +157,10 @@ void SonoMovingViews::drawInFull()
       drawOnInteraction(view, true);
     }
   }
+  if (!this->Slow.empty())
+  {
+    this->letGo(); // so that the few triangles are replaced
+  }
   this->Slow.clear();
 }
 
@@ -168,5 +185,9 @@ void SonoMovingViews::draw()
     {
       view->forceRender();
     }
+  }
+  if (!this->Slow.empty() && this->Kept.empty())
+  {
+    this->keepAnatomy(); // now that its few triangles are made
   }
 }

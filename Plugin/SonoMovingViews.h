@@ -32,9 +32,11 @@ public:
 private:
   Q_DISABLE_COPY(SonoMovingViews)
 
-  void keepAnatomy(pqView* view, vtkSMProxy* source);
+  void keepAnatomy();
+  void letGo();
   void lighten();
 
+  vtkSMProxy* Source;
   QList<QPointer<pqDataRepresentation>> Kept;
   QList<QPointer<pqView>> Views;
   QList<QPointer<pqView>> Slow; // of them
