@@ -140,6 +140,10 @@ void SonoMovingViews::lighten()
 
 void SonoMovingViews::drawInFull()
 {
+  if (this->Slow.empty())
+  {
+    return; // nothing was lightened
+  }
   for (pqView* view : this->Views)
   {
     for (const char* name : { "DepthPeeling", "UseFXAA", "LODResolution" })
@@ -157,22 +161,19 @@ void SonoMovingViews::drawInFull()
       drawOnInteraction(view, true);
     }
   }
-  if (!this->Slow.empty())
-  {
-    this->letGo(); // so that the few triangles are replaced
-  }
+  this->letGo(); // so that the few triangles are replaced
   this->Slow.clear();
 }
 
 void SonoMovingViews::draw()
 {
-  this->IsEven = !this->IsEven;
+  const int picture = this->Pictures++;
   for (pqView* view : this->Views)
   {
     const bool isSolid = view && vtkSMRenderViewProxy::SafeDownCast(view->getProxy());
     if (view && this->Slow.contains(view))
     {
-      if (this->IsEven || this->Views.size() == 1)
+      if (picture % 2 == 0 || this->Views.size() == 1)
       {
         drawLightly(view->getViewProxy());
       }
@@ -186,7 +187,7 @@ void SonoMovingViews::draw()
       view->forceRender();
     }
   }
-  if (!this->Slow.empty() && this->Kept.empty())
+  if (!this->Slow.empty() && picture == 0)
   {
     this->keepAnatomy(); // now that its few triangles are made
   }
