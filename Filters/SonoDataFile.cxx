@@ -1,6 +1,6 @@
 #include "SonoDataFile.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <algorithm>
 #include <dlfcn.h>

@@ -1,7 +1,7 @@
 #include "SonoFieldImage.h"
 
+#include "Core/Progress.h"
 #include "Kernel/Vec.h"
-#include "Progress.h"
 #include "SonoLineImage.h"
 
 #include "vtkDataObject.h"

@@ -1,6 +1,6 @@
 #include "SonoLabelImage.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"

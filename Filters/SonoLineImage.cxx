@@ -1,6 +1,6 @@
 #include "SonoLineImage.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"

@@ -1,6 +1,6 @@
 #include "SonoProbeField.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 class vtkMultiBlockDataSet;
 

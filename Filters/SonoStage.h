@@ -1,7 +1,7 @@
 #pragma once
 
-#include "Device.h"
-#include "Progress.h"
+#include "Core/Device.h"
+#include "Core/Progress.h"
 
 #include <functional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "SonoStageChain.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 #include "SonoStage.h"
 
 #include "vtkAlgorithm.h"

@@ -1,6 +1,6 @@
 #include "SonoTargets.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"

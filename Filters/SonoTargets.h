@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Scene/TissueTable.h"
+#include "Labels/TissueTable.h"
 #include "Trace/Targets.h"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "SonoVtkImageFile.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include "vtkExecutive.h"
 #include "vtkImageData.h"

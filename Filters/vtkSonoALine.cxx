@@ -1,6 +1,6 @@
 #include "vtkSonoALine.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 #include "SonoImagePlacement.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"

@@ -1,8 +1,8 @@
 #include "vtkSonoPhantomSource.h"
 
-#include "Require.h"
-#include "Scene/CalibrationPhantom.h"
-#include "Scene/TestObjects.h"
+#include "Core/Require.h"
+#include "Phantoms/CalibrationPhantom.h"
+#include "Phantoms/TestObjects.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoProbeField.h"

@@ -1,7 +1,7 @@
 #include "vtkSonoProbePresets.h"
 
+#include "Core/Progress.h"
 #include "Probe/ScanGeometry.h"
-#include "Progress.h"
 #include "SonoDataFile.h"
 #include "SonoStage.h"
 

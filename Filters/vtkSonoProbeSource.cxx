@@ -1,6 +1,6 @@
 #include "vtkSonoProbeSource.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 #include "SonoDataFile.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"

@@ -6,7 +6,7 @@
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
-#include "Trace/FacePlace.h"
+#include "Trace/ProbeContact.h"
 #include "Trace/RecordPaths.h"
 #include "Trace/Trace.h"
 #include "vtkSonoSceneHandle.h"
@@ -120,7 +120,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.model = static_cast<sono::InterfaceModel>(this->InterfaceModel);
   settings.sampling = static_cast<sono::Sampling>(this->Sampling);
   settings.pathsPerLine = probe.preview ? std::min(this->PathsPerLine, previewPaths) : this->PathsPerLine;
-  settings.onTheWay = probe.preview;
+  settings.interactive = probe.preview;
   settings.maxCollisions = this->MaxCollisions;
   settings.coherenceMm = this->CoherenceMm;
   settings.deterministic = this->Deterministic;
@@ -172,7 +172,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const sono::TraceSettings settings = this->Settings(probe);
     sono::announceDevice(settings.device);
     const std::vector<sono::ScanLine> scanLines = sono::makeScanLines(probe.geometry, probe.pose);
-    const std::string warning = probe.preview ? std::string() : sono::facePlaceWarning(*scene, scanLines);
+    const std::string warning = probe.preview ? std::string() : sono::probeContactWarning(*scene, scanLines);
     if (!warning.empty())
     {
       vtkWarningMacro(<< warning);
@@ -180,7 +180,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
     if (!probe.preview)
     {
-      sono::prepareForTheWay(*scene, scanLines, settings);
+      sono::prepareInteractive(*scene, scanLines, settings);
     }
     if (this->NumberOfShownPaths != 0)
     {

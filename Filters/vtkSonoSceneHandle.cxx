@@ -1,6 +1,6 @@
 #include "vtkSonoSceneHandle.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 #include "Scene/Scene.h"
 
 #include "vtkFieldData.h"

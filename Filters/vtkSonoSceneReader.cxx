@@ -1,7 +1,7 @@
 #include "vtkSonoSceneReader.h"
 
+#include "Labels/TissueTable.h"
 #include "Scene/SceneFile.h"
-#include "Scene/TissueTable.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoSceneBlocks.h"

@@ -1,6 +1,6 @@
 #include "vtkSonoThoraxSource.h"
 
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "SonoLabelImage.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"

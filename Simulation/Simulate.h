@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Device.h"
+#include "Core/Device.h"
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Cuda/ImageJob.h"
-#include "Progress.h"
 
 #include <complex>
 #include <cstdint>
@@ -31,7 +31,7 @@ struct DeviceResult
   std::vector<float> grey;
   std::vector<double> referenceAmplitude; ///< of each image
   std::vector<std::vector<float>> pixels; ///< of each image
-  std::vector<std::uint8_t> mask; ///< one for all images
+  std::vector<std::uint8_t> mask;         ///< one for all images
 };
 
 /// Device times of a run's stages, ms, from events.

@@ -1,5 +1,6 @@
 #include "Cuda/MakeImageJob.h"
 
+#include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
 #include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"

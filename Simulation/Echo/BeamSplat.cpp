@@ -1,6 +1,6 @@
 #include "Echo/BeamSplat.h"
 
-#include "Simd.h"
+#include "Core/Simd.h"
 
 #include <algorithm>
 #include <cmath>

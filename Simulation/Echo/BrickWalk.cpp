@@ -8,7 +8,7 @@ namespace sono {
 namespace {
 
 /// A beam with what the tests of a brick's centre need.
-struct Seer
+struct BeamCulling
 {
   BeamReach reach;
   std::size_t index;
@@ -33,22 +33,22 @@ Vec3f seenRadius(const BeamReach& reach, float edge)
   return Vec3f(beamCutSigma * std::max(b.lateralSigmaMm, b.elevationalSigmaMm) + 0.5f * edge * std::sqrt(3.0f));
 }
 
-std::vector<Seer> makeSeers(const std::vector<BeamReach>& group, float edge)
+std::vector<BeamCulling> makeBeamCulling(const std::vector<BeamReach>& group, float edge)
 {
-  std::vector<Seer> seers;
+  std::vector<BeamCulling> beams;
   for (std::size_t i = 0; i < group.size(); ++i)
   {
     const Beam& b = group[i].beam;
     if (group[i].depthMm > 0.0f)
     {
-      seers.push_back({ group[i], i, seenRadius(group[i], edge), halfExtent(b.axis, edge), halfExtent(b.lateral, edge),
+      beams.push_back({ group[i], i, seenRadius(group[i], edge), halfExtent(b.axis, edge), halfExtent(b.lateral, edge),
                         halfExtent(b.elevation, edge) });
     }
   }
-  return seers;
+  return beams;
 }
 
-bool sees(const Seer& s, const Vec3f& centre)
+bool sees(const BeamCulling& s, const Vec3f& centre)
 {
   const Beam& b = s.reach.beam;
   const Vec3f q = centre - b.origin;
@@ -69,10 +69,10 @@ bool sees(const Seer& s, const Vec3f& centre)
 }
 
 /// The axis that the beams follow most.
-int mainAxis(const std::vector<Seer>& seers)
+int mainAxis(const std::vector<BeamCulling>& beams)
 {
   Vec3f heading(0.0f);
-  for (const Seer& s : seers)
+  for (const BeamCulling& s : beams)
   {
     heading += glm::abs(s.reach.beam.axis);
   }
@@ -80,11 +80,11 @@ int mainAxis(const std::vector<Seer>& seers)
 }
 
 /// The box around all that the beams see, inside the grid's.
-void clipBox(const std::vector<Seer>& seers, Vec3f& low, Vec3f& high)
+void clipBox(const std::vector<BeamCulling>& beams, Vec3f& low, Vec3f& high)
 {
   Vec3f seenLow(1e30f);
   Vec3f seenHigh(-1e30f);
-  for (const Seer& s : seers)
+  for (const BeamCulling& s : beams)
   {
     const Vec3f from = s.reach.beam.origin;
     const Vec3f to = from + s.reach.beam.axis * s.reach.depthMm;
@@ -115,20 +115,20 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
                    const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit)
 {
   const float edge = grid.edgeMm;
-  const std::vector<Seer> seers = makeSeers(group, edge);
-  const int axis = mainAxis(seers);
+  const std::vector<BeamCulling> beams = makeBeamCulling(group, edge);
+  const int axis = mainAxis(beams);
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   Vec3f low = grid.lowMm;
   Vec3f high = grid.highMm;
-  clipBox(seers, low, high);
+  clipBox(beams, low, high);
 
   std::vector<std::size_t> seeing;
   for (int layer = int(std::floor(low[axis] / edge)); float(layer) * edge < high[axis]; ++layer)
   {
     Vec2f first(1e30f);
     Vec2f last(-1e30f);
-    for (const Seer& s : seers)
+    for (const BeamCulling& s : beams)
     {
       const Vec2f part =
         clipToSlab(s.reach, axis, float(layer) * edge - s.radius[axis], float(layer + 1) * edge + s.radius[axis]);
@@ -152,7 +152,7 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
         brick[v] = k;
         const Vec3f centre = (Vec3f(brick) + 0.5f) * edge;
         seeing.clear();
-        for (const Seer& s : seers)
+        for (const BeamCulling& s : beams)
         {
           if (sees(s, centre))
           {

@@ -1,8 +1,9 @@
 #include "Echo/FormRf.h"
 
+#include "Core/ParallelFor.h"
+#include "Core/SoundSpeed.h"
 #include "Cuda/RunOnDevice.h"
 #include "Echo/EchoSetup.h"
-#include "ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>

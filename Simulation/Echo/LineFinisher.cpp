@@ -1,4 +1,5 @@
 #include "Echo/LineFinisher.h"
+#include "Core/SoundSpeed.h"
 
 #include <algorithm>
 #include <cmath>

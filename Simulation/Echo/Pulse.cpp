@@ -1,8 +1,9 @@
 #include "Echo/Pulse.h"
 
+#include "Core/Progress.h"
+#include "Core/Simd.h"
+#include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
-#include "Progress.h"
-#include "Simd.h"
 #include "Trace/Trace.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "Echo/TissueScatterers.h"
 
-#include "Simd.h"
+#include "Core/Simd.h"
 
 #include <cmath>
 

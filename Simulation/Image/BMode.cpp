@@ -1,7 +1,7 @@
 #include "Image/BMode.h"
 
+#include "Core/Require.h"
 #include "Image/ReceiverNoise.h"
-#include "Progress.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -13,25 +13,9 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <sstream>
 
 namespace sono {
 namespace {
-
-void require(bool good, const char* parameter, double value, const char* range)
-{
-  if (!good)
-  {
-    std::ostringstream message;
-    message << parameter << " is " << value << " but must be " << range << ".";
-    throw Error(message.str());
-  }
-}
-
-bool within(double value, double low, double high)
-{
-  return value >= low && value <= high; // false for NaN
-}
 
 double curveGainDb(const std::vector<std::pair<double, double>>& curve, double depthMm)
 {
@@ -155,9 +139,9 @@ double automaticReference(const std::vector<float>& envelope, int lineCount, con
 
 void validateSizes(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm)
 {
-  require(lineCount >= 1, "lineCount", lineCount, "at least 1");
-  require(sampleCount >= 1, "sampleCount", sampleCount, "at least 1");
-  require(sampleMm > 0.0 && std::isfinite(sampleMm), "sampleMm", sampleMm, "positive and finite");
+  requireInRange(lineCount >= 1, "lineCount", lineCount, "at least 1");
+  requireInRange(sampleCount >= 1, "sampleCount", sampleCount, "at least 1");
+  requireInRange(sampleMm > 0.0 && std::isfinite(sampleMm), "sampleMm", sampleMm, "positive and finite");
   if (envelope.size() != std::size_t(lineCount) * sampleCount)
   {
     throw Error(
@@ -167,27 +151,6 @@ void validateSizes(const std::vector<float>& envelope, int lineCount, int sample
 }
 
 } // namespace
-
-void BModeSettings::validate() const
-{
-  require(within(tgcDbPerCm, -100.0, 100.0), "tgcDbPerCm", tgcDbPerCm, "in [-100, 100] dB/cm");
-  require(within(gainDb, -300.0, 300.0), "gainDb", gainDb, "in [-300, 300] dB");
-  require(automaticReference || (referenceAmplitude >= smallestNormalFloat && referenceAmplitude <= largestFiniteFloat),
-          "referenceAmplitude", referenceAmplitude, "in [1.2e-38, 3.4e38]");
-  require(dynamicRangeDb > 0.0 && dynamicRangeDb <= 300.0, "dynamicRangeDb", dynamicRangeDb, "in (0, 300] dB");
-  require(rejectDb >= 0.0 && rejectDb < dynamicRangeDb, "rejectDb", rejectDb, "in [0, dynamicRangeDb) dB");
-  require(greyMap == GreyMap::Linear || greyMap == GreyMap::SquareRoot || greyMap == GreyMap::Sigmoid, "greyMap",
-          double(int(greyMap)), "linear (0), square root (1) or sigmoid (2)");
-  require(noiseDb <= 200.0, "noiseDb", noiseDb, "at most 200 dB, or minus infinity for none");
-  double previousMm = -std::numeric_limits<double>::infinity();
-  for (const auto& [depthMm, gain] : tgcCurve)
-  {
-    require(std::isfinite(depthMm) && depthMm > previousMm, "A depth of tgcCurve", depthMm,
-            "finite and greater than the depth before it, in mm");
-    require(within(gain, -300.0, 300.0), "A gain of tgcCurve", gain, "in [-300, 300] dB");
-    previousMm = depthMm;
-  }
-}
 
 std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm)
 {

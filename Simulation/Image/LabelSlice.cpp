@@ -1,6 +1,6 @@
 #include "Image/LabelSlice.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <cmath>
 

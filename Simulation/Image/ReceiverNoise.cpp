@@ -1,8 +1,8 @@
 #include "Image/ReceiverNoise.h"
 
+#include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Kernel/GreyLevel.h"
-#include "ParallelFor.h"
-#include "Simd.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include "Image/ScanConvert.h"
 
+#include "Core/Progress.h"
 #include "Kernel/PlaneScan.h"
-#include "Progress.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,7 +1,7 @@
 #include "Image/ScanConvertVolume.h"
 
+#include "Core/ParallelFor.h"
 #include "Kernel/PixelMath.h"
-#include "ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Kernel/Vec.h"
 #include "Probe/ScanGeometry.h"
-#include "Progress.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "Labels/AssignTissues.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
-#include "Progress.h"
 
 #include <cctype>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Labels/LabelVolume.h"
-#include "Scene/TissueTable.h"
+#include "Labels/TissueTable.h"
 
 #include <string>
 #include <utility>

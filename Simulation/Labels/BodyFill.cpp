@@ -1,7 +1,7 @@
 #include "Labels/BodyFill.h"
 
+#include "Core/ParallelFor.h"
 #include "Labels/DistanceField.h"
-#include "ParallelFor.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Labels/LabelVolume.h"
-#include "Progress.h"
 
 namespace sono {
 

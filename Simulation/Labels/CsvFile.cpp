@@ -1,6 +1,6 @@
 #include "Labels/CsvFile.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <algorithm>
 #include <charconv>

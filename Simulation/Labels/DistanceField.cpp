@@ -1,6 +1,6 @@
 #include "Labels/DistanceField.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <cmath>
 #include <cstddef>

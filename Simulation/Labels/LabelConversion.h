@@ -1,7 +1,7 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Kernel/Vec.h"
-#include "Progress.h"
 
 #include <cmath>
 #include <cstddef>

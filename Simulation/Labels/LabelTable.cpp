@@ -1,7 +1,7 @@
 #include "Labels/LabelTable.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
-#include "Progress.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "Labels/LabelVolume.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <algorithm>
 #include <cmath>

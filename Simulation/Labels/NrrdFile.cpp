@@ -1,6 +1,6 @@
 #include "Labels/NrrdFile.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <teem/biff.h>
 

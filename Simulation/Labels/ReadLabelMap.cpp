@@ -1,11 +1,11 @@
 #include "Labels/ReadLabelMap.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadMeta.h"
 #include "Labels/ReadNifti.h"
 #include "Labels/ReadNrrd.h"
-#include "Progress.h"
 
 #include <algorithm>
 #include <cctype>

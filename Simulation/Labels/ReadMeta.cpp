@@ -1,8 +1,8 @@
 #include "Labels/ReadMeta.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
 #include "Labels/LabelConversion.h"
-#include "Progress.h"
 
 #include <zlib.h>
 

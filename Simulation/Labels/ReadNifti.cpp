@@ -1,7 +1,7 @@
 #include "Labels/ReadNifti.h"
 
+#include "Core/Progress.h"
 #include "Labels/LabelConversion.h"
-#include "Progress.h"
 
 #include <nifti/nifti2_io.h>
 #include <zlib.h>

@@ -1,9 +1,9 @@
 #include "Labels/ReadNrrd.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
 #include "Labels/LabelConversion.h"
 #include "Labels/NrrdFile.h"
-#include "Progress.h"
 
 #include <algorithm>
 #include <cstdlib>

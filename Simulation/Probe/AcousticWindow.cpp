@@ -1,7 +1,7 @@
 #include "Probe/AcousticWindow.h"
 
-#include "ParallelFor.h"
-#include "Progress.h"
+#include "Core/ParallelFor.h"
+#include "Core/Progress.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "Probe/ArrayBeam.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Probe/ApertureElements.h"
 #include "Probe/ElevationProfile.h"
-#include "Simd.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Probe/ArrayAperture.h"
 #include "Probe/PulseEchoField.h"
-#include "Progress.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "Probe/ElevationProfile.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>

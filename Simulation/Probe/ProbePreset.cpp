@@ -1,5 +1,5 @@
+#include "Core/Progress.h"
 #include "Probe/ScanGeometry.h"
-#include "Progress.h"
 
 #include <nlohmann/json.hpp>
 

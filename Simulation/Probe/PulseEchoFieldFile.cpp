@@ -1,7 +1,7 @@
 #include "Probe/PulseEchoFieldFile.h"
 
+#include "Core/Progress.h"
 #include "Labels/NrrdFile.h"
-#include "Progress.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "Probe/PulseFile.h"
 
+#include "Core/Error.h"
+#include "Core/SoundSpeed.h"
 #include "Labels/CsvFile.h"
-#include "Progress.h"
-#include "Trace/Trace.h"
 
 #include <algorithm>
 #include <cmath>

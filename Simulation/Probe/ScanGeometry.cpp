@@ -1,6 +1,6 @@
 #include "Probe/ScanGeometry.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <algorithm>
 #include <cmath>

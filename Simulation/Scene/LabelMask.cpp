@@ -1,6 +1,6 @@
 #include "Scene/LabelMask.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 #include "Scene/GridTransform.h"
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoGridStorage.h"

@@ -1,7 +1,7 @@
 #include "Scene/NanoFile.h"
 
-#include "Hash64.h"
-#include "ParallelFor.h"
+#include "Core/Hash64.h"
+#include "Core/ParallelFor.h"
 #include "Scene/NanoGridStorage.h"
 
 #include <nanovdb/util/GridChecksum.h>

@@ -1,6 +1,6 @@
 #include "Scene/RegionOnDemand.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 #include "Scene/RecordBaker.h"
 
 #include <tbb/enumerable_thread_specific.h>

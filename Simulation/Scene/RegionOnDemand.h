@@ -1,7 +1,7 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Kernel/TissueCells.h"
-#include "Progress.h"
 #include "Scene/TraceRegion.h"
 #include "Scene/VoxelBox.h"
 

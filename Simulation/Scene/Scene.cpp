@@ -1,6 +1,6 @@
 #include "Scene/Scene.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <tbb/task_arena.h>
 
@@ -16,7 +16,7 @@ namespace sono {
 
 namespace {
 
-constexpr int edgeOnTheWay = 512; // voxels: their words take 270 MB
+constexpr int interactiveEdge = 512; // voxels: their words take 270 MB
 
 std::uint64_t nextId()
 {
@@ -185,9 +185,9 @@ void Scene::buildAll(const Progress& progress) const
     {
       buildSurfaceAt(0, {}); // the boxes as well
     }
-    parallelFor(int(surfaces_.size()), rest, [&](int label, const Breath& breathe) {
+    parallelFor(int(surfaces_.size()), rest, [&](int label, const YieldPoint& yieldPoint) {
       const Progress ofLabel = [&](double) {
-        breathe();
+        yieldPoint();
         return true;
       };
       buildSurfaceAt(std::size_t(label), ofLabel);
@@ -225,17 +225,17 @@ std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box,
     if (!region_ || !(region_->region().box == wanted))
     {
       const bool isThere =
-        onTheWay_ && onTheWay_->region.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        interactive_ && interactive_->region.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
       region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
-                                                 progress, isThere ? onTheWay_->region.get() : nullptr);
+                                                 progress, isThere ? interactive_->region.get() : nullptr);
     }
     return region_;
   });
 }
 
-std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box, const Progress& progress) const
+std::shared_ptr<const RegionOnDemand> Scene::interactiveRegion(const VoxelBox& box, const Progress& progress) const
 {
-  const auto making = makingOnTheWay(box, false);
+  const auto making = makingInteractive(box, false);
   while (making->region.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
   {
     report(progress, making->done);
@@ -243,32 +243,32 @@ std::shared_ptr<const RegionOnDemand> Scene::regionOnTheWay(const VoxelBox& box,
   if (!making->region.get())
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (onTheWay_ == making)
+    if (interactive_ == making)
     {
-      onTheWay_ = nullptr; // there may be more memory next time
+      interactive_ = nullptr; // there may be more memory next time
     }
     throw std::bad_alloc();
   }
   return making->region.get();
 }
 
-void Scene::beginRegionOnTheWay(const VoxelBox& box, bool allRecords) const
+void Scene::beginInteractiveRegion(const VoxelBox& box, bool allRecords) const
 {
-  makingOnTheWay(box, allRecords);
+  makingInteractive(box, allRecords);
 }
 
-std::shared_ptr<const Scene::Making> Scene::makingOnTheWay(const VoxelBox& box, bool allRecords) const
+std::shared_ptr<const Scene::Making> Scene::makingInteractive(const VoxelBox& box, bool allRecords) const
 {
   const VoxelBox inside = clipped(box);
-  const VoxelBox wanted = clipped(
-    { inside.first / edgeOnTheWay * edgeOnTheWay, (inside.last + (edgeOnTheWay - 1)) / edgeOnTheWay * edgeOnTheWay });
+  const VoxelBox wanted = clipped({ inside.first / interactiveEdge * interactiveEdge,
+                                    (inside.last + (interactiveEdge - 1)) / interactiveEdge * interactiveEdge });
   std::shared_ptr<const Making> before; // goes after the lock, since its end is waited for
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!onTheWay_ || !(onTheWay_->box == wanted))
+  if (!interactive_ || !(interactive_->box == wanted))
   {
-    before = std::exchange(onTheWay_, std::make_shared<Making>(*this, wanted, allRecords));
+    before = std::exchange(interactive_, std::make_shared<Making>(*this, wanted, allRecords));
   }
-  return onTheWay_;
+  return interactive_;
 }
 
 } // namespace sono

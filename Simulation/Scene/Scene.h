@@ -1,10 +1,10 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Labels/LabelVolume.h"
-#include "Progress.h"
+#include "Labels/TissueTable.h"
 #include "Scene/RegionOnDemand.h"
 #include "Scene/SurfaceField.h"
-#include "Scene/TissueTable.h"
 #include "Scene/VoxelBox.h"
 
 #include <cstdint>
@@ -63,17 +63,17 @@ public:
   /// For a probe on its way: the cache of a box around this one whose faces lie at multiples of 512 voxels or at the
   /// volume's end. A volume up to that size is one box, so that all poses share it; of a longer one it takes what is
   /// near. Kept beside the other.
-  std::shared_ptr<const RegionOnDemand> regionOnTheWay(const VoxelBox& box, const Progress& progress = {}) const;
+  std::shared_ptr<const RegionOnDemand> interactiveRegion(const VoxelBox& box, const Progress& progress = {}) const;
   /// Begins to make that, in the background, where it is not there yet; with all of its records if wanted. The making
   /// of another that nobody waits for is given up.
-  void beginRegionOnTheWay(const VoxelBox& box, bool allRecords) const;
+  void beginInteractiveRegion(const VoxelBox& box, bool allRecords) const;
 
 private:
   using SharedRegion = std::shared_ptr<const RegionOnDemand>;
 
   VoxelBox clipped(const VoxelBox& box) const;
   struct Making;
-  std::shared_ptr<const Making> makingOnTheWay(const VoxelBox& box, bool allRecords) const;
+  std::shared_ptr<const Making> makingInteractive(const VoxelBox& box, bool allRecords) const;
   void buildSurfaceAt(std::size_t label, const Progress& progress) const;
 
   std::uint64_t id_;
@@ -88,7 +88,7 @@ private:
   mutable std::vector<VoxelBox> boxes_;                         // parallel to volume_.labels, empty until needed
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable SharedRegion region_;
-  mutable std::shared_ptr<const Making> onTheWay_; // the last, since its end is waited for and needs the rest
+  mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest
 };
 
 } // namespace sono

@@ -1,7 +1,7 @@
 #include "Scene/SceneFile.h"
 
-#include "Hash64.h"
-#include "ParallelFor.h"
+#include "Core/Hash64.h"
+#include "Core/ParallelFor.h"
 #include "Scene/LabelMask.h"
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoFile.h"

@@ -1,6 +1,6 @@
 #include "Scene/SmoothedMask.h"
 
-#include "Simd.h"
+#include "Core/Simd.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "Scene/TraceRegion.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Scene/RegionOnDemand.h"
-#include "Simd.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "Trace/Deposit.h"
 
+#include "Core/Simd.h"
 #include "Kernel/BeamDeposit.h"
-#include "Simd.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 #include "Trace/Deposit.h"
 
 #include <algorithm>
@@ -146,7 +146,7 @@ public:
 
   /// One batch of `paths` paths of every line; the key's path is replaced. All the paths of the group are one
   /// low-discrepancy set. Returns the number of segments traced.
-  std::uint64_t trace(PathKey key, int paths, const Breath& breathe)
+  std::uint64_t trace(PathKey key, int paths, const YieldPoint& yieldPoint)
   {
     std::uint64_t segments = 0;
     for (int owner = 0; owner < int(lines_.size()); ++owner)
@@ -157,7 +157,7 @@ public:
         if (key.path > 0 && key.path % LineTally::pathsPerFold == 0)
         {
           fold();
-          breathe();
+          yieldPoint();
         }
         path_.owner = owner;
         segments += follow(key);

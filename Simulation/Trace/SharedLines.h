@@ -1,7 +1,8 @@
 #pragma once
 
-#include "ParallelFor.h"
-#include "Simd.h"
+#include "Core/ParallelFor.h"
+#include "Core/Simd.h"
+#include "Core/SoundSpeed.h"
 #include "Trace/BatchMeans.h"
 #include "Trace/PathBatches.h"
 #include "Trace/SharedGroup.h"
@@ -99,8 +100,9 @@ inline std::vector<LineRange> makeGroups(const SharedRun& run, const std::vector
 /// One group of one batch. `starts` and `batchTallies` are by line, from `first` on.
 template<class Space>
 inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, const LineRange& group, int batch,
-                                  int paths, int first, const std::vector<LineStart>& starts, const Breath& breathe,
-                                  GroupWorker& worker, std::vector<BatchTally>& batchTallies, TracedLines& out)
+                                  int paths, int first, const std::vector<LineStart>& starts,
+                                  const YieldPoint& yieldPoint, GroupWorker& worker,
+                                  std::vector<BatchTally>& batchTallies, TracedLines& out)
 {
   const TraceView& view = run.view;
   worker.lines.clear();
@@ -122,7 +124,7 @@ inline std::uint64_t traceGroupIn(const Space& space, const SharedRun& run, cons
     worker.scrambles[std::size_t(b)] = makeBounceScramble(view.seed, key.line, key.batch, std::uint32_t(b));
   }
   const std::uint64_t segments =
-    SharedGroup<Space>(view, space, worker.lines, worker.scratch).trace(key, paths, breathe);
+    SharedGroup<Space>(view, space, worker.lines, worker.scratch).trace(key, paths, yieldPoint);
   for (int i = group.first; i < group.last; ++i)
   {
     const GroupLine& line = worker.lines[std::size_t(i - group.first)];
@@ -141,11 +143,11 @@ template<class Space>
 SONO_SIMD_CLONES __attribute__((flatten)) std::uint64_t traceGroup(const Space& space, const SharedRun& run,
                                                                    const LineRange& group, int batch, int paths,
                                                                    int first, const std::vector<LineStart>& starts,
-                                                                   const Breath& breathe, GroupWorker& worker,
+                                                                   const YieldPoint& yieldPoint, GroupWorker& worker,
                                                                    std::vector<BatchTally>& batchTallies,
                                                                    TracedLines& out)
 {
-  return traceGroupIn(space, run, group, batch, paths, first, starts, breathe, worker, batchTallies, out);
+  return traceGroupIn(space, run, group, batch, paths, first, starts, yieldPoint, worker, batchTallies, out);
 }
 
 /// The batches' means of a line. The weights of a branch add up to its probability on average but not in each batch:
@@ -223,9 +225,9 @@ void traceSharedLines(const Space& space, const SharedRun& run, TracedLines& out
       const double share = double(lines.last - lines.first) / out.lineCount;
       const double before = double(lines.first) / out.lineCount;
       const Progress part = partOf(progress, before + share * batch / batches, before + share * (batch + 1) / batches);
-      parallelFor(int(groups.size()), part, [&](int g, const Breath& breathe) {
+      parallelFor(int(groups.size()), part, [&](int g, const YieldPoint& yieldPoint) {
         segments += traceGroup(space, run, groups[std::size_t(g)], batch, range.last - range.first, first, starts,
-                               breathe, workers.local(), tallies[std::size_t(batch)], out);
+                               yieldPoint, workers.local(), tallies[std::size_t(batch)], out);
       });
     }
     parallelFor(lines.last - lines.first, {}, [&](int i) {

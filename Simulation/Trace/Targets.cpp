@@ -1,6 +1,6 @@
 #include "Trace/Targets.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <embree3/rtcore.h> // the one place that includes Embree
 

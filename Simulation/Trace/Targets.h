@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Kernel/TargetBvh.h"
-#include "Scene/TissueTable.h"
+#include "Labels/TissueTable.h"
 
 #include <array>
 #include <memory>

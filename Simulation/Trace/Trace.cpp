@@ -1,10 +1,11 @@
 #include "Trace/Trace.h"
 
+#include "Core/ParallelFor.h"
+#include "Core/Simd.h"
+#include "Core/SoundSpeed.h"
 #include "Cuda/RunOnDevice.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
-#include "ParallelFor.h"
-#include "Simd.h"
 #include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
 #include "Trace/SharedPaths.h"
@@ -21,8 +22,8 @@ namespace {
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
-inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const Breath& breathe, LineTally& tally,
-                        TracedLines& out)
+inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
+                        LineTally& tally, TracedLines& out)
 {
   const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   const TraceView& view = setup.view;
@@ -62,7 +63,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       if (path < last)
       {
         tally.fold();
-        breathe();
+        yieldPoint();
       }
     }
     means.push_back(tally.takeBins(last - first));
@@ -71,15 +72,17 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   addBatchMeans(means, index, out);
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, const Breath& breathe,
-                                                         LineTally& tally, TracedLines& out)
+SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index,
+                                                         const YieldPoint& yieldPoint, LineTally& tally,
+                                                         TracedLines& out)
 {
-  traceLineIn(setup.space(), setup, index, breathe, tally, out);
+  traceLineIn(setup.space(), setup, index, yieldPoint, tally, out);
 }
 
-void traceLineByNanoVDB(const TraceSetup& setup, int index, const Breath& breathe, LineTally& tally, TracedLines& out)
+void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yieldPoint, LineTally& tally,
+                        TracedLines& out)
 {
-  traceLineIn(setup.nanoSpace(), setup, index, breathe, tally, out);
+  traceLineIn(setup.nanoSpace(), setup, index, yieldPoint, tally, out);
 }
 
 } // namespace
@@ -126,14 +129,14 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     return LineTally(out.binCount, out.binMm, out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);
   });
-  parallelFor(out.lineCount, tracing, [&](int i, const Breath& breathe) {
+  parallelFor(out.lineCount, tracing, [&](int i, const YieldPoint& yieldPoint) {
     if (settings.march == March::NanoVDB)
     {
-      traceLineByNanoVDB(setup, i, breathe, tallies.local(), out);
+      traceLineByNanoVDB(setup, i, yieldPoint, tallies.local(), out);
     }
     else
     {
-      traceLine(setup, i, breathe, tallies.local(), out);
+      traceLine(setup, i, yieldPoint, tallies.local(), out);
     }
   });
   for (const LineTally& tally : tallies)
@@ -143,9 +146,9 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   return out;
 }
 
-void prepareForTheWay(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
+void prepareInteractive(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
 {
-  scene.beginRegionOnTheWay(fanBox(scene, lines, settings.depthMm), runsOnDevice(settings));
+  scene.beginInteractiveRegion(fanBox(scene, lines, settings.depthMm), runsOnDevice(settings));
 }
 
 } // namespace sono

@@ -1,7 +1,7 @@
 #include "PhantomScene.h"
 
+#include "Core/Progress.h"
 #include "Labels/AssignTissues.h"
-#include "Progress.h"
 
 #include <cstdlib>
 #include <string>

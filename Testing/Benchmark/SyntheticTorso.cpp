@@ -1,6 +1,6 @@
 #include "SyntheticTorso.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 #include "Scene/SceneFile.h"
 
 #include <algorithm>

@@ -2,13 +2,14 @@
 //
 // Each test takes its settings apart by name, which compiles only while every member has one. So a new member stops the
 // build here: give it a property in the filter's header, PrintSelf, XML and .cxx, and compare its default below.
+#include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
 #include "Labels/BodyFill.h"
+#include "Phantoms/CalibrationPhantom.h"
+#include "Phantoms/TestObjects.h"
 #include "Probe/ArrayAperture.h"
 #include "Probe/ScanGeometry.h"
-#include "Scene/CalibrationPhantom.h"
-#include "Scene/TestObjects.h"
 #include "Trace/Trace.h"
 
 #include "vtkDataArray.h"
@@ -35,8 +36,8 @@ constexpr double degrees = 57.29577951308232;
 TEST(FilterDefaults, RayTracerEqualsTraceSettings)
 {
   const auto [device, march, model, sampling, pathsPerLine, maxCollisions, coherenceMm, deterministic, lobeMeanRad,
-              lobeSigmaRad, lobeMinRad, lobeMaxRad, frequencyMHz, depthMm, radialBinMm, echoSampleMm, rouletteDb,
-              seed, onTheWay] = sono::TraceSettings();
+              lobeSigmaRad, lobeMinRad, lobeMaxRad, frequencyMHz, depthMm, radialBinMm, echoSampleMm, rouletteDb, seed,
+              interactive] = sono::TraceSettings();
   vtkNew<vtkSonoRayTracer> tracer;
   EXPECT_EQ(tracer->GetDevice(), static_cast<int>(device));
   EXPECT_EQ(tracer->GetInterfaceModel(), static_cast<int>(model));
@@ -57,7 +58,7 @@ TEST(FilterDefaults, RayTracerEqualsTraceSettings)
   // The probe sets these two.
   EXPECT_EQ(vtkNew<vtkSonoProbeSource>()->GetCentreFrequencyMHz(), frequencyMHz);
   EXPECT_EQ(vtkNew<vtkSonoProbeSource>()->GetDepthMm(), depthMm);
-  EXPECT_FALSE(onTheWay); // the probe says when it is on its way
+  EXPECT_FALSE(interactive); // the probe says when it is on its way
   // The filter offers no choice of the march: both give the same image, and this is the fast one.
   EXPECT_EQ(march, sono::March::RegionCache);
 }

@@ -1,6 +1,6 @@
 #include "JobFile.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <fstream>
 #include <type_traits>

@@ -1,6 +1,6 @@
-#include "Device.h"
+#include "Core/Device.h"
+#include "Core/Progress.h"
 #include "GpuOrSkip.h"
-#include "Progress.h"
 
 namespace {
 

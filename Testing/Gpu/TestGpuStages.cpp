@@ -1,8 +1,8 @@
 #include "FieldScenes.h"
 #include "GpuParity.h"
 #include "PhantomScene.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Probe/PulseFile.h"
-#include "Scene/ThoraxPhantom.h"
 
 namespace {
 

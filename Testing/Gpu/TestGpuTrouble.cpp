@@ -1,6 +1,6 @@
 #include "GpuOrSkip.h"
 #include "PhantomScene.h"
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Simulate.h"
 #include "SpoilDevice.h"
 

@@ -5,7 +5,7 @@
 #include "EchoScenes.h"
 #include "JobFile.h"
 #include "PhantomScene.h"
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Simulate.h"
 
 #include <cmath>

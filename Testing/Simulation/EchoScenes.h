@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "Echo/Pulse.h"
 #include "Probe/ScanGeometry.h"

@@ -1,14 +1,13 @@
 #pragma once
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <string>
 
-namespace sono::testing
-{
+namespace sono::testing {
 
 /// The message of the Error that `action` throws; "no error" when it throws none.
 inline std::string errorOf(const std::function<void()>& action)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/SoundSpeed.h"
 #include "EchoScenes.h"
 #include "Probe/ArrayBeam.h"
 #include "TestScenes.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace sono
-{
+namespace sono {
 
 /// The message must name the parameter.
 inline void expectError(const std::function<void()>& call, const std::string& parameter)

@@ -2,7 +2,7 @@
 
 #include "ErrorText.h"
 #include "Labels/AssignTissues.h"
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "TestScenes.h"
 
 #include <gtest/gtest.h>

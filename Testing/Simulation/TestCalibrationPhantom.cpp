@@ -1,8 +1,8 @@
 #include "ErrorText.h"
 #include "Labels/AssignTissues.h"
-#include "Scene/CalibrationPhantom.h"
+#include "Phantoms/CalibrationPhantom.h"
+#include "Phantoms/TestObjects.h"
 #include "Scene/Scene.h"
-#include "Scene/TestObjects.h"
 
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+#include "Core/SoundSpeed.h"
 #include "ErrorText.h"
 #include "FieldScenes.h"
 

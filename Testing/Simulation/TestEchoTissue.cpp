@@ -1,3 +1,4 @@
+#include "Core/SoundSpeed.h"
 #include "EchoScenes.h"
 #include "TestScenes.h"
 

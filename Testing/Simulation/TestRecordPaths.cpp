@@ -1,4 +1,5 @@
 #include "BusyScene.h"
+#include "Core/SoundSpeed.h"
 #include "TargetScenes.h"
 #include "TestScenes.h"
 

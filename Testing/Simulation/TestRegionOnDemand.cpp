@@ -1,7 +1,7 @@
 // Records that are baked on demand are those of the whole region, and a probe on its way has one region for all poses.
 #include "BusyScene.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 #include "Trace/TraceSetup.h"
 
 #include <gtest/gtest.h>
@@ -130,19 +130,19 @@ TEST(RegionOnDemand, LayingItOutTellsOfItsProgressAndCanBeStopped)
   expectSameBits(trace(*scene, lines, busySettings()), trace(*makeBusyScene(), lines, busySettings()));
 }
 
-TEST(ProbeOnTheWay, ImageIsThatOfAFreshScene)
+TEST(InteractiveProbe, ImageIsThatOfAFreshScene)
 {
   TraceSettings settings = busySettings();
   settings.pathsPerLine = 32;
-  settings.onTheWay = true;
+  settings.interactive = true;
   for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::SharedPaths })
   {
     settings.sampling = sampling;
     const auto scene = makeBusyScene();
     TraceSettings atRest = settings;
-    atRest.onTheWay = false;
+    atRest.interactive = false;
     trace(*scene, fan(9), atRest);
-    prepareForTheWay(*scene, fan(9), atRest);
+    prepareInteractive(*scene, fan(9), atRest);
     TracedLines last;
     for (int step = 0; step <= 40; ++step)
     {
@@ -155,25 +155,25 @@ TEST(ProbeOnTheWay, ImageIsThatOfAFreshScene)
   }
 }
 
-TEST(ProbeOnTheWay, OneRegionIsPreparedForAllPoses)
+TEST(InteractiveProbe, OneRegionIsPreparedForAllPoses)
 {
   const auto scene = makeBusyScene();
   std::set<std::shared_ptr<const RegionOnDemand>> regions;
   for (int step = 0; step <= 40; ++step)
   {
     const auto lines = movedFan(-20.0 + step, 0.01 * step);
-    regions.insert(scene->regionOnTheWay(fanBox(*scene, lines, 30.0)));
+    regions.insert(scene->interactiveRegion(fanBox(*scene, lines, 30.0)));
   }
   EXPECT_EQ(regions.size(), 1u);
 }
 
-TEST(ProbeOnTheWay, ALongVolumeIsCutAtTheSamePlacesForEveryPose)
+TEST(InteractiveProbe, ALongVolumeIsCutAtTheSamePlacesForEveryPose)
 {
   const std::vector<Tissue> tissues = { test::makeTissue("a", 1.5, 1540, 0.4), test::makeTissue("b", 2.4, 1700, 0.6) };
   const auto scene =
     test::makeScene(Vec3i(4, 4, 1300), Vec3d(1.0), tissues, [](const Vec3d& p) { return int(p.z / 7.0) % 2; });
   const auto boxAround = [&](int first, int last) {
-    return scene->regionOnTheWay({ Vec3i(0, 0, first), Vec3i(4, 4, last) })->region().box;
+    return scene->interactiveRegion({ Vec3i(0, 0, first), Vec3i(4, 4, last) })->region().box;
   };
   const auto expectBox = [&](const VoxelBox& box, int first, int last) {
     EXPECT_EQ(box.first, Vec3i(0, 0, first));
@@ -185,20 +185,20 @@ TEST(ProbeOnTheWay, ALongVolumeIsCutAtTheSamePlacesForEveryPose)
   expectBox(boxAround(1100, 1290), 1024, 1300);
 }
 
-TEST(ProbeOnTheWay, SeesWhatAProbeAtRestSees)
+TEST(InteractiveProbe, SeesWhatAProbeAtRestSees)
 {
   const auto scene = makeBusyScene();
   TraceSettings settings = busySettings();
   settings.depthMm = 25.0; // so that the regions differ
   const auto lines = movedFan(3.0, 0.1);
   const TracedLines atRest = trace(*scene, lines, settings);
-  settings.onTheWay = true;
-  const TracedLines onTheWay = trace(*scene, lines, settings);
+  settings.interactive = true;
+  const TracedLines interactive = trace(*scene, lines, settings);
   double error = 0.0;
   double total = 0.0;
   for (std::size_t i = 0; i < atRest.intensity.size(); ++i)
   {
-    error += std::pow(double(atRest.intensity[i]) - onTheWay.intensity[i], 2);
+    error += std::pow(double(atRest.intensity[i]) - interactive.intensity[i], 2);
     total += std::pow(double(atRest.intensity[i]), 2);
   }
   EXPECT_LT(std::sqrt(error / total), 1e-3); // rounding, which takes a path in a hundred thousand elsewhere

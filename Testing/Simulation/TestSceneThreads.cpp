@@ -1,7 +1,7 @@
 // Several tasks and threads may ask one scene for what it builds on first need.
 #include "TestScenes.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -103,7 +103,7 @@ const Vec3i longSize(64, 64, 1024);
 const VoxelBox firstHalf{ Vec3i(0), Vec3i(64, 64, 500) };
 const VoxelBox secondHalf{ Vec3i(0, 0, 520), Vec3i(64, 64, 1000) };
 
-TEST(ProbeOnTheWay, DoesNotWaitForTheBoxThatItLeaves)
+TEST(InteractiveProbe, DoesNotWaitForTheBoxThatItLeaves)
 {
   double whole = 0.0;
   double crossing = 0.0;
@@ -111,52 +111,52 @@ TEST(ProbeOnTheWay, DoesNotWaitForTheBoxThatItLeaves)
   {
     const auto scene = makeNoise(longSize);
     const auto start = Clock::now();
-    scene->beginRegionOnTheWay(firstHalf, true);
+    scene->beginInteractiveRegion(firstHalf, true);
     if (crosses)
     {
       std::this_thread::sleep_for(10ms);
-      EXPECT_EQ(scene->regionOnTheWay(secondHalf)->region().box.first.z, 512);
+      EXPECT_EQ(scene->interactiveRegion(secondHalf)->region().box.first.z, 512);
     }
     else
     {
-      scene->regionOnTheWay(firstHalf);
+      scene->interactiveRegion(firstHalf);
     }
     (crosses ? crossing : whole) = std::chrono::duration<double>(Clock::now() - start).count();
   }
   EXPECT_LT(crossing, whole / 3.0);
 }
 
-TEST(ProbeOnTheWay, WhoWaitsForABoxGetsItThoughAnotherLeavesIt)
+TEST(InteractiveProbe, WhoWaitsForABoxGetsItThoughAnotherLeavesIt)
 {
   const auto scene = makeNoise(longSize);
-  scene->beginRegionOnTheWay(firstHalf, true);
+  scene->beginInteractiveRegion(firstHalf, true);
   std::atomic<bool> waits{ false };
   auto waiting = std::async(std::launch::async, [&] {
-    return scene->regionOnTheWay(firstHalf, [&](double) {
+    return scene->interactiveRegion(firstHalf, [&](double) {
       waits = true;
       return true;
     });
   });
   ASSERT_TRUE(waitFor(waits));
-  scene->beginRegionOnTheWay(secondHalf, false);
+  scene->beginInteractiveRegion(secondHalf, false);
   const auto region = waiting.get();
   ASSERT_NE(region, nullptr);
   EXPECT_EQ(region->region().box.last.z, 512);
 }
 
-TEST(ProbeOnTheWay, WaitingCanBeStopped)
+TEST(InteractiveProbe, WaitingCanBeStopped)
 {
   const auto scene = makeNoise(longSize);
-  scene->beginRegionOnTheWay(firstHalf, true);
+  scene->beginInteractiveRegion(firstHalf, true);
   std::vector<double> fractions;
-  EXPECT_THROW(scene->regionOnTheWay(firstHalf,
-                                     [&](double fraction) {
-                                       fractions.push_back(fraction);
-                                       return fractions.size() < 3;
-                                     }),
+  EXPECT_THROW(scene->interactiveRegion(firstHalf,
+                                        [&](double fraction) {
+                                          fractions.push_back(fraction);
+                                          return fractions.size() < 3;
+                                        }),
                Aborted);
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
-  EXPECT_EQ(scene->regionOnTheWay(secondHalf)->region().box.first.z, 512);
+  EXPECT_EQ(scene->interactiveRegion(secondHalf)->region().box.first.z, 512);
 }
 
 } // namespace

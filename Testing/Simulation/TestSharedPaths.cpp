@@ -1,7 +1,7 @@
 #include "BusyScene.h"
 
 #include "Labels/AssignTissues.h"
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Trace/Deposit.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace
-{
+namespace {
 
 using namespace sono;
 
@@ -264,41 +263,18 @@ TEST(ThoraxPhantom, WallsAndValvesEncloseTheBlood)
 {
   const std::map<std::string, std::set<std::string>> allowed{
     { "left_ventricle_blood",
-      { "left_ventricle_myocardium",
-        "interventricular_septum",
-        "mitral_valve",
-        "aortic_valve",
-        "aorta_wall",
-        "papillary_muscle_lv_anterolateral",
-        "papillary_muscle_lv_posteromedial",
-        "left_atrium_wall",
+      { "left_ventricle_myocardium", "interventricular_septum", "mitral_valve", "aortic_valve", "aorta_wall",
+        "papillary_muscle_lv_anterolateral", "papillary_muscle_lv_posteromedial", "left_atrium_wall",
         "left_atrium_blood" } },
     { "right_ventricle_blood",
-      { "right_ventricle_myocardium",
-        "interventricular_septum",
-        "left_ventricle_myocardium",
-        "tricuspid_valve",
-        "papillary_muscle_rv",
-        "right_atrium_wall",
-        "right_atrium_blood",
-        "aorta_wall" } },
+      { "right_ventricle_myocardium", "interventricular_septum", "left_ventricle_myocardium", "tricuspid_valve",
+        "papillary_muscle_rv", "right_atrium_wall", "right_atrium_blood", "aorta_wall" } },
     { "left_atrium_blood",
-      { "left_atrium_wall",
-        "interatrial_septum",
-        "mitral_valve",
-        "left_ventricle_myocardium",
-        "interventricular_septum",
-        "aorta_wall",
-        "left_ventricle_blood" } },
+      { "left_atrium_wall", "interatrial_septum", "mitral_valve", "left_ventricle_myocardium",
+        "interventricular_septum", "aorta_wall", "left_ventricle_blood" } },
     { "right_atrium_blood",
-      { "right_atrium_wall",
-        "interatrial_septum",
-        "tricuspid_valve",
-        "right_ventricle_myocardium",
-        "left_ventricle_myocardium",
-        "interventricular_septum",
-        "aorta_wall",
-        "right_ventricle_blood" } },
+      { "right_atrium_wall", "interatrial_septum", "tricuspid_valve", "right_ventricle_myocardium",
+        "left_ventricle_myocardium", "interventricular_septum", "aorta_wall", "right_ventricle_blood" } },
   };
   for (const int spacing : { 1, 2 })
   {

@@ -1,6 +1,6 @@
 #include "ErrorText.h"
 #include "Labels/AssignTissues.h"
-#include "Scene/TissueTable.h"
+#include "Labels/TissueTable.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,7 @@ using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 
-namespace
-{
+namespace {
 
 const std::string header =
   "tissue,impedance_MRayl,sound_speed_m_per_s,attenuation_dB_per_cm_MHz,mu0,sigma0,mu1,tau,gamma,"

@@ -1,3 +1,4 @@
+#include "Core/SoundSpeed.h"
 #include "TestScenes.h"
 
 #include "Trace/Trace.h"
@@ -6,8 +7,7 @@
 
 #include <cmath>
 
-namespace
-{
+namespace {
 
 using namespace sono;
 using namespace sono::test;
@@ -23,19 +23,15 @@ struct Stack
     : tissues(std::move(t))
     , thicknessMm(std::move(thickness))
   {
-    scene = makeScene(size,
-                      Vec3d(1.0),
-                      tissues,
-                      [this](const Vec3d& p)
-                      {
-                        int layer = 0;
-                        double z = 0.0;
-                        while (layer < int(thicknessMm.size()) && p.z > (z += thicknessMm[std::size_t(layer)]))
-                        {
-                          ++layer;
-                        }
-                        return layer;
-                      });
+    scene = makeScene(size, Vec3d(1.0), tissues, [this](const Vec3d& p) {
+      int layer = 0;
+      double z = 0.0;
+      while (layer < int(thicknessMm.size()) && p.z > (z += thicknessMm[std::size_t(layer)]))
+      {
+        ++layer;
+      }
+      return layer;
+    });
   }
 };
 
@@ -68,10 +64,8 @@ double echoAt(const TracedLines& traced, double depthMm, double frequencyMHz)
 
 TEST(TracePlanarStack, EveryEchoFollowsTheProductFormula)
 {
-  const Stack stack({ makeTissue("a", 1.38, 1450, 0.6),
-                      makeTissue("b", 1.70, 1580, 1.1),
-                      makeTissue("c", 1.61, 1570, 0.2),
-                      makeTissue("d", 7.8, 4080, 5.0),
+  const Stack stack({ makeTissue("a", 1.38, 1450, 0.6), makeTissue("b", 1.70, 1580, 1.1),
+                      makeTissue("c", 1.61, 1570, 0.2), makeTissue("d", 7.8, 4080, 5.0),
                       makeTissue("e", 1.65, 1550, 0.7) },
                     { 20.0, 15.0, 30.0, 4.0 });
   const double f = 3.6;
@@ -125,8 +119,7 @@ TEST(TraceOblique, RefractsBySnellAndEchoesAtTheHit)
   const double c1 = 1450.0;
   const double c2 = 1580.0;
   const Stack stack({ makeTissue("a", 1.38, c1, 0.0), makeTissue("b", 1.70, c2, 0.0), makeTissue("c", 7.8, 4080, 0.0) },
-                    { 20.0, 40.0 },
-                    Vec3i(120, 40, 100));
+                    { 20.0, 40.0 }, Vec3i(120, 40, 100));
   const double t1 = 0.5;
   const double t2 = std::asin(std::sin(t1) * c2 / c1);
   const auto line = makeLine({ 10.0, 20.2, 0.0 }, { std::sin(t1), 0.0, std::cos(t1) });
@@ -146,8 +139,8 @@ TEST(TraceOblique, RefractsBySnellAndEchoesAtTheHit)
 
 TEST(TraceOblique, ReflectsTotallyBeyondTheCriticalAngle)
 {
-  const Stack stack(
-    { makeTissue("a", 1.5, 1500, 0.0), makeTissue("b", 3.0, 3000, 0.0) }, { 20.0 }, Vec3i(120, 40, 100));
+  const Stack stack({ makeTissue("a", 1.5, 1500, 0.0), makeTissue("b", 3.0, 3000, 0.0) }, { 20.0 },
+                    Vec3i(120, 40, 100));
   const double critical = std::asin(0.5);
   for (const double t : { critical - 0.01, critical + 0.01 })
   {
@@ -190,10 +183,9 @@ TEST(TraceSkips, EqualAcousticsAreNoBoundary)
 
 TEST(TraceDeterminism, SameSeedSameBitsOtherSeedOthers)
 {
-  const auto scene = makeScene(Vec3i(60),
-                               Vec3d(1.0),
-                               { makeTissue("a", 1.5, 1500, 0.5), makeTissue("b", 1.7, 1600, 0.5) },
-                               [](const Vec3d& p) { return glm::length(p - Vec3d(30.0)) < 15.0 ? 1 : 0; });
+  const auto scene =
+    makeScene(Vec3i(60), Vec3d(1.0), { makeTissue("a", 1.5, 1500, 0.5), makeTissue("b", 1.7, 1600, 0.5) },
+              [](const Vec3d& p) { return glm::length(p - Vec3d(30.0)) < 15.0 ? 1 : 0; });
   std::vector<ScanLine> lines;
   for (int i = 0; i < 9; ++i)
   {
@@ -213,11 +205,8 @@ TEST(TraceDeterminism, SameSeedSameBitsOtherSeedOthers)
 TEST(TraceCoupling, AirBeforeTheSkinNeitherReflectsNorAttenuates)
 {
   const auto scene = makeScene(
-    Vec3i(40, 40, 60),
-    Vec3d(1.0),
-    { makeTissue("air", 0.0004, 330, 1.6), makeTissue("muscle", 1.7, 1580, 1.0) },
-    [](const Vec3d& p) { return p.z < 10.0 ? 0 : 1; },
-    "air");
+    Vec3i(40, 40, 60), Vec3d(1.0), { makeTissue("air", 0.0004, 330, 1.6), makeTissue("muscle", 1.7, 1580, 1.0) },
+    [](const Vec3d& p) { return p.z < 10.0 ? 0 : 1; }, "air");
   const auto traced = trace(*scene, { makeLine({ 20.3, 20.2, -5.0 }, { 0, 0, 1 }) }, straightSettings(50.0, 2.0));
   EXPECT_FLOAT_EQ(traced.intensity[std::size_t(12.0 / traced.binMm)], 1.0f);
   EXPECT_NEAR(traced.intensity[std::size_t(25.125 / traced.binMm)], std::pow(10.0, -1.0 * 2.0 * 1.0125 / 10.0), 1e-4);

@@ -1,9 +1,10 @@
 #include "BenchScenes.h"
+#include "Core/SoundSpeed.h"
 
+#include "Core/Progress.h"
 #include "PhantomImaging.h"
-#include "Progress.h"
-#include "Scene/TestObjects.h"
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/TestObjects.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Study.h"
 #include "TestScenes.h"
 

@@ -1,3 +1,4 @@
+#include "Core/SoundSpeed.h"
 #include "KernelsInDouble.h"
 // Apart, since that one redefines the types of the kernels.
 #include "DoubleTrace.h"

@@ -1,6 +1,6 @@
 #include "ErrorCurves.h"
 
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>

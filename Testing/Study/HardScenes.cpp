@@ -1,9 +1,9 @@
 #include "HardScenes.h"
 
+#include "Core/Progress.h"
 #include "PhantomImaging.h"
 #include "Probe/ArrayAperture.h"
 #include "Probe/ArrayBeam.h"
-#include "Progress.h"
 #include "Study.h"
 #include "TestScenes.h"
 

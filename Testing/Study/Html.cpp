@@ -1,6 +1,6 @@
 #include "Html.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "ParallelFor.h"
-#include "Progress.h"
-#include "Simd.h"
+#include "Core/ParallelFor.h"
+#include "Core/Progress.h"
+#include "Core/Simd.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -28,10 +28,10 @@
 // holds a float.
 
 namespace sonoInDouble {
-using ::sono::Breath;
 using ::sono::parallelFor;
 using ::sono::partOf;
 using ::sono::Progress;
+using ::sono::YieldPoint;
 } // namespace sonoInDouble
 
 #define float double

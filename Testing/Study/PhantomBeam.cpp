@@ -1,5 +1,6 @@
 // The beam and the medium: attenuation slope, width of a wire's echo against depth.
 #include "PhantomBeam.h"
+#include "Core/SoundSpeed.h"
 
 #include "Probe/ArrayAperture.h"
 #include "Study.h"

@@ -1,9 +1,9 @@
 // The seed's parameter figure and its artefact figure, and the three views of the phantom.
 #include "PhantomImaging.h"
+#include "Phantoms/TestObjects.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Picture.h"
 #include "Probe/ArrayBeam.h"
-#include "Scene/TestObjects.h"
-#include "Scene/ThoraxPhantom.h"
 #include "Study.h"
 
 #include "Labels/AssignTissues.h"

@@ -1,9 +1,9 @@
 #include "PhantomImaging.h"
 
+#include "Core/Progress.h"
 #include "Echo/FieldLevel.h"
 #include "Labels/AssignTissues.h"
 #include "Probe/ArrayBeam.h"
-#include "Progress.h"
 #include "Study.h"
 #include "WireEcho.h"
 #include "WireRays.h"

@@ -3,8 +3,8 @@
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"
+#include "Phantoms/CalibrationPhantom.h"
 #include "Probe/ArrayAperture.h"
-#include "Scene/CalibrationPhantom.h"
 #include "Scene/Scene.h"
 #include "Trace/Trace.h"
 

@@ -1,8 +1,8 @@
 // Detectability of five lesions over ten seeds, beside the seed's real and simulated ones and what theory allows.
 #include "PhantomLesions.h"
 
+#include "Core/Progress.h"
 #include "Image/ReceiverNoise.h"
-#include "Progress.h"
 #include "Study.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "Picture.h"
 
+#include "Core/Progress.h"
 #include "Image/LabelSlice.h"
-#include "Progress.h"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>

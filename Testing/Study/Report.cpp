@@ -1,9 +1,9 @@
 #include "Report.h"
 
+#include "Core/Progress.h"
 #include "Detectability.h"
 #include "ErrorReport.h"
 #include "Html.h"
-#include "Progress.h"
 #include "SvgPlot.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // What each skip buys: time and memory of a scene with one of them switched off at a time.
+#include "Core/SoundSpeed.h"
 #include "EchoSkips.h"
 #include "PhantomImaging.h"
 #include "RegionSwitches.h"

@@ -4,7 +4,7 @@
 #include "HardScenes.h"
 #include "Study.h"
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "Study.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
-#include "Progress.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,5 @@
 #include "WireEcho.h"
+#include "Core/SoundSpeed.h"
 
 #include "Echo/FieldLevel.h"
 #include "Echo/Pulse.h"

@@ -1,12 +1,13 @@
 // Image formation: scene S1 on one thread and its error, A4C of the bundled thorax with a Gaussian beam and with the
 // field of a P4-2, a change of gain, speckle statistics.
+#include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "EchoScenes.h"
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"
 #include "PhantomScene.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Probe/ArrayBeam.h"
-#include "Scene/ThoraxPhantom.h"
 #include "Stage.h"
 #include "Trace/Trace.h"
 

@@ -3,14 +3,12 @@
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"
 #include "PhantomScene.h"
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "Stage.h"
 #include "Trace/Trace.h"
 
-namespace sono
-{
-namespace
-{
+namespace sono {
+namespace {
 
 struct Workload
 {

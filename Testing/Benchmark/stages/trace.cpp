@@ -1,13 +1,14 @@
 // Tracing, A4C of the bundled thorax at 1 mm: time, growth with what lies outside the fan, error against paths, closed
 // forms.
 #include "Trace/Trace.h"
+#include "Core/Progress.h"
+#include "Core/SoundSpeed.h"
 #include "FalseRehits.h"
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
-#include "Progress.h"
+#include "Phantoms/ThoraxPhantom.h"
 #include "RelativeRms.h"
 #include "SamplingName.h"
-#include "Scene/ThoraxPhantom.h"
 #include "Stage.h"
 #include "TestScenes.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "Progress.h"
+#include "Core/Error.h"
 
+#include <sstream>
 #include <string>
 
 namespace sono {
@@ -11,7 +12,9 @@ inline void requireInRange(bool ok, const std::string& parameter, double value, 
 {
   if (!ok)
   {
-    throw Error(parameter + " is " + std::to_string(value) + ": it must be " + range);
+    std::ostringstream sentence;
+    sentence << parameter << " is " << value << ": it must be " << range;
+    throw Error(sentence.str());
   }
 }
 

@@ -12,6 +12,6 @@ namespace sono {
 /// way out, or nothing. A face is in the wrong place where most of it is in a tissue that reflects more than 0.3 of the
 /// intensity that comes from water (bone, lung, gas other than the scene's outside), or where it is more than 10 mm off
 /// the body: what lies between is then taken for coupling gel.
-std::string facePlaceWarning(const Scene& scene, const std::vector<ScanLine>& lines);
+std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>& lines);
 
 } // namespace sono

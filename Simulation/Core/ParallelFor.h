@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Progress.h"
+#include "Core/Progress.h"
 
 #include <functional>
 
@@ -13,9 +13,9 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
 
 /// For a body that takes long: it calls this now and then, every few milliseconds, so that a stop need not wait for its
 /// end. Throws Aborted, which the body lets pass.
-using Breath = std::function<void()>;
+using YieldPoint = std::function<void()>;
 
 /// The same for bodies that take long.
-void parallelFor(int count, const Progress& progress, const std::function<void(int, const Breath&)>& body);
+void parallelFor(int count, const Progress& progress, const std::function<void(int, const YieldPoint&)>& body);
 
 } // namespace sono

@@ -1,4 +1,4 @@
-#include "Device.h"
+#include "Core/Device.h"
 
 #include "Cuda/DeviceImager.h"
 

@@ -1,9 +1,9 @@
-#include "Scene/ThoraxPhantom.h"
+#include "Phantoms/ThoraxPhantom.h"
 
-#include "Progress.h"
-#include "Scene/ThoraxAorta.h"
-#include "Scene/ThoraxChest.h"
-#include "Scene/ThoraxHeart.h"
+#include "Core/Progress.h"
+#include "Phantoms/ThoraxAorta.h"
+#include "Phantoms/ThoraxChest.h"
+#include "Phantoms/ThoraxHeart.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,6 +1,6 @@
-#include "Scene/ThoraxAorta.h"
+#include "Phantoms/ThoraxAorta.h"
 
-#include "Scene/ThoraxShapes.h"
+#include "Phantoms/ThoraxShapes.h"
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>

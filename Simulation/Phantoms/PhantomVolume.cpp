@@ -1,7 +1,7 @@
-#include "Scene/PhantomVolume.h"
+#include "Phantoms/PhantomVolume.h"
 
-#include "ParallelFor.h"
-#include "Require.h"
+#include "Core/ParallelFor.h"
+#include "Core/Require.h"
 
 #include <glm/common.hpp>
 

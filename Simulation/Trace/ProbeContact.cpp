@@ -1,4 +1,4 @@
-#include "Trace/FacePlace.h"
+#include "Trace/ProbeContact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ double gapMm(const Scene& scene, const ScanLine& line)
 
 } // namespace
 
-std::string facePlaceWarning(const Scene& scene, const std::vector<ScanLine>& lines)
+std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>& lines)
 {
   std::map<const LabelInfo*, std::size_t> blocking;
   double gap = INFINITY;

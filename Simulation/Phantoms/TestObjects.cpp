@@ -1,7 +1,7 @@
-#include "Scene/TestObjects.h"
+#include "Phantoms/TestObjects.h"
 
-#include "Require.h"
-#include "Scene/PhantomVolume.h"
+#include "Core/Require.h"
+#include "Phantoms/PhantomVolume.h"
 
 #include <string>
 

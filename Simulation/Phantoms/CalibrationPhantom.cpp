@@ -1,7 +1,7 @@
-#include "Scene/CalibrationPhantom.h"
+#include "Phantoms/CalibrationPhantom.h"
 
-#include "Require.h"
-#include "Scene/PhantomVolume.h"
+#include "Core/Require.h"
+#include "Phantoms/PhantomVolume.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Kernel/Vec.h"
-#include "Scene/ThoraxLabels.h"
+#include "Phantoms/ThoraxLabels.h"
 
 namespace sono {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "Kernel/Vec.h"
-#include "Scene/ThoraxHeart.h"
-#include "Scene/ThoraxLabels.h"
+#include "Phantoms/ThoraxHeart.h"
+#include "Phantoms/ThoraxLabels.h"
 
 namespace sono {
 

@@ -1,7 +1,7 @@
-#include "Scene/PhantomTargets.h"
+#include "Phantoms/PhantomTargets.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
-#include "Progress.h"
 
 #include <cmath>
 

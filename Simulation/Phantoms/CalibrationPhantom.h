@@ -2,8 +2,8 @@
 
 #include "Echo/PointScatterers.h"
 #include "Labels/LabelVolume.h"
+#include "Phantoms/PhantomTargets.h"
 #include "Probe/ScanGeometry.h"
-#include "Scene/PhantomTargets.h"
 #include "Trace/Targets.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
-#include "Scene/ThoraxHeart.h"
+#include "Phantoms/ThoraxHeart.h"
 
-#include "Scene/ThoraxShapes.h"
+#include "Phantoms/ThoraxShapes.h"
 
 namespace sono {
 

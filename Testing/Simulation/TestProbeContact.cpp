@@ -1,6 +1,6 @@
 #include "TestScenes.h"
 
-#include "Trace/FacePlace.h"
+#include "Trace/ProbeContact.h"
 
 #include <gtest/gtest.h>
 
@@ -21,42 +21,42 @@ std::unique_ptr<Scene> makeLayers()
 
 std::string at(double x, const Vec3d& axis = { 1.0, 0.0, 0.0 })
 {
-  return facePlaceWarning(*makeLayers(), { makeLine({ x, 10.0, 10.0 }, axis) });
+  return probeContactWarning(*makeLayers(), { makeLine({ x, 10.0, 10.0 }, axis) });
 }
 
-TEST(FacePlace, OnAndInTheBodyThereIsNothingToSay)
+TEST(ProbeContact, OnAndInTheBodyThereIsNothingToSay)
 {
   EXPECT_EQ(at(19.5), "");
   EXPECT_EQ(at(20.5), "");
   EXPECT_EQ(at(35.0), ""); // as a catheter's
 }
 
-TEST(FacePlace, InsideBoneAndLung)
+TEST(ProbeContact, InsideBoneAndLung)
 {
   EXPECT_NE(at(50.0).find("inside 'label_2' (bone)"), std::string::npos) << at(50.0);
   EXPECT_NE(at(70.0).find("inside 'label_3' (lung)"), std::string::npos) << at(70.0);
   EXPECT_NE(at(50.0).find("move the probe onto the skin"), std::string::npos);
 }
 
-TEST(FacePlace, OffTheBody)
+TEST(ProbeContact, OffTheBody)
 {
   EXPECT_EQ(at(12.0), "");
   EXPECT_NE(at(5.0).find("15 mm off the body"), std::string::npos) << at(5.0);
   EXPECT_NE(at(-35.0).find("55 mm off the body"), std::string::npos) << at(-35.0); // beyond the volume
 }
 
-TEST(FacePlace, LookingAwayIsTheTracersToSay)
+TEST(ProbeContact, LookingAwayIsTheTracersToSay)
 {
   EXPECT_EQ(at(5.0, { -1.0, 0.0, 0.0 }), "");
 }
 
-TEST(FacePlace, MostOfTheFaceDecides)
+TEST(ProbeContact, MostOfTheFaceDecides)
 {
   const auto scene = makeLayers();
   const ScanLine inSoft = makeLine({ 30.0, 10.0, 10.0 }, { 1.0, 0.0, 0.0 });
   const ScanLine inBone = makeLine({ 50.0, 10.0, 10.0 }, { 1.0, 0.0, 0.0 });
-  EXPECT_EQ(facePlaceWarning(*scene, { inSoft, inBone }), "");
-  EXPECT_NE(facePlaceWarning(*scene, { inSoft, inBone, inBone }), "");
+  EXPECT_EQ(probeContactWarning(*scene, { inSoft, inBone }), "");
+  EXPECT_NE(probeContactWarning(*scene, { inSoft, inBone, inBone }), "");
 }
 
 } // namespace

@@ -1,6 +1,6 @@
-#include "Scene/ThoraxChest.h"
+#include "Phantoms/ThoraxChest.h"
 
-#include "Scene/ThoraxShapes.h"
+#include "Phantoms/ThoraxShapes.h"
 
 namespace sono {
 

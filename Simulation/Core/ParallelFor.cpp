@@ -1,4 +1,4 @@
-#include "ParallelFor.h"
+#include "Core/ParallelFor.h"
 
 #include <tbb/parallel_for.h>
 
@@ -7,7 +7,7 @@
 
 namespace sono {
 
-void parallelFor(int count, const Progress& progress, const std::function<void(int, const Breath&)>& body)
+void parallelFor(int count, const Progress& progress, const std::function<void(int, const YieldPoint&)>& body)
 {
   std::atomic<int> done{ 0 };
   std::atomic<bool> stop{ false };
@@ -19,7 +19,7 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
       stop = true;
     }
   };
-  const Breath breathe = [&] {
+  const YieldPoint yieldPoint = [&] {
     reportDone();
     if (stop)
     {
@@ -29,7 +29,7 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
   tbb::parallel_for(0, count, [&](int i) {
     if (!stop)
     {
-      body(i, breathe);
+      body(i, yieldPoint);
       ++done;
       reportDone();
     }
@@ -42,7 +42,7 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
 
 void parallelFor(int count, const Progress& progress, const std::function<void(int)>& body)
 {
-  parallelFor(count, progress, [&](int i, const Breath&) { body(i); });
+  parallelFor(count, progress, [&](int i, const YieldPoint&) { body(i); });
 }
 
 } // namespace sono

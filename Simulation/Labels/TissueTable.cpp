@@ -1,7 +1,7 @@
-#include "Scene/TissueTable.h"
+#include "Labels/TissueTable.h"
 
+#include "Core/Progress.h"
 #include "Labels/CsvFile.h"
-#include "Progress.h"
 
 #include <cmath>
 #include <limits>
