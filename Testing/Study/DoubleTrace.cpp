@@ -1,4 +1,3 @@
-#include "Core/SoundSpeed.h"
 #include "KernelsInDouble.h"
 // Apart, since that one redefines the types of the kernels.
 #include "DoubleTrace.h"
