@@ -23,17 +23,17 @@ namespace {
 
 std::atomic<Interrupter*> current{ nullptr };
 
-/// What the filter has made last, one data object a port.
-vtkInformationObjectBaseKey* madeKey()
+/// The outputs of the filter's last complete run, one data object a port.
+vtkInformationObjectBaseKey* keptKey()
 {
-  static auto* const key = vtkInformationObjectBaseKey::MakeKey("MADE", "SonoVDB");
+  static auto* const key = vtkInformationObjectBaseKey::MakeKey("KEPT_OUTPUTS", "SonoVDB");
   return key;
 }
 
-/// The state of the pipeline in which the filter was stopped or failed.
-vtkInformationUnsignedLongKey* standsAtKey()
+/// The state of the pipeline (see stateOf) in which the filter was suspended: stopped, or failed.
+vtkInformationUnsignedLongKey* suspendedAtKey()
 {
-  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("STANDS_AT", "SonoVDB");
+  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("SUSPENDED_AT", "SonoVDB");
   return key;
 }
 
@@ -72,17 +72,17 @@ unsigned long stateOf(vtkAlgorithm* filter)
   return state;
 }
 
-void showMade(vtkAlgorithm* filter, vtkInformationVector* outputs)
+void copyKept(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
-  auto* made = vtkDataObjectCollection::SafeDownCast(filter->GetInformation()->Get(madeKey()));
-  if (!made)
+  auto* kept = vtkDataObjectCollection::SafeDownCast(filter->GetInformation()->Get(keptKey()));
+  if (!kept)
   {
     filter->SetAbortOutput(true); // empty, and so is what is downstream
     return;
   }
-  for (int port = 0; port < made->GetNumberOfItems(); ++port)
+  for (int port = 0; port < kept->GetNumberOfItems(); ++port)
   {
-    vtkDataObject::GetData(outputs, port)->ShallowCopy(made->GetItem(port));
+    vtkDataObject::GetData(outputs, port)->ShallowCopy(kept->GetItem(port));
   }
 }
 
@@ -90,7 +90,7 @@ void rememberState(vtkAlgorithm* filter)
 {
   // Marking the outputs as aborted counts as a change of the filter.
   const unsigned long state = std::max<unsigned long>(stateOf(filter), filter->GetMTime());
-  filter->GetInformation()->Set(standsAtKey(), state);
+  filter->GetInformation()->Set(suspendedAtKey(), state);
 }
 
 } // namespace
@@ -108,28 +108,28 @@ bool stopIsWanted()
   return interrupter && interrupter->wantsStop();
 }
 
-void keepMade(vtkAlgorithm* filter, vtkInformationVector* outputs)
+void keepOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   Interrupter* const interrupter = current;
   if (!interrupter)
   {
     return;
   }
-  vtkNew<vtkDataObjectCollection> made;
+  vtkNew<vtkDataObjectCollection> kept;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* output = vtkDataObject::GetData(outputs, port);
     const auto copy = vtk::TakeSmartPointer(output->NewInstance());
     copy->ShallowCopy(output);
-    made->AddItem(copy);
+    kept->AddItem(copy);
   }
-  filter->GetInformation()->Set(madeKey(), made);
+  filter->GetInformation()->Set(keptKey(), kept);
   interrupter->hasFinished(filter);
 }
 
-void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
+void restoreOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
-  showMade(filter, outputs);
+  copyKept(filter, outputs);
   rememberState(filter);
   if (Interrupter* const interrupter = current)
   {
@@ -137,26 +137,26 @@ void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
   }
 }
 
-void standEmpty(vtkAlgorithm* filter)
+void abortOutputs(vtkAlgorithm* filter)
 {
-  filter->GetInformation()->Remove(madeKey());
+  filter->GetInformation()->Remove(keptKey());
   filter->SetAbortOutput(true);
   rememberState(filter);
 }
 
-bool standsStill(vtkAlgorithm* filter, vtkInformationVector* outputs)
+bool staysSuspended(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   vtkInformation* memory = filter->GetInformation();
-  if (!memory->Has(standsAtKey()))
+  if (!memory->Has(suspendedAtKey()))
   {
     return false;
   }
-  if (memory->Get(standsAtKey()) != stateOf(filter))
+  if (memory->Get(suspendedAtKey()) != stateOf(filter))
   {
-    memory->Remove(standsAtKey());
+    memory->Remove(suspendedAtKey());
     return false;
   }
-  showMade(filter, outputs);
+  copyKept(filter, outputs);
   rememberState(filter);
   return true;
 }

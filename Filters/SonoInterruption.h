@@ -29,18 +29,20 @@ VTKSONOFILTERS_EXPORT void setInterrupter(Interrupter* interrupter);
 /// Whether the interrupter, if there is one, wants work to stop.
 bool stopIsWanted();
 
-/// Keeps what a filter has just made, for the case that its next run is stopped; only while there is an interrupter.
-void keepMade(vtkAlgorithm* filter, vtkInformationVector* outputs);
+/// Keeps shallow copies of what a filter has just made, for the case that its next run is stopped; only while there is
+/// an interrupter.
+void keepOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs);
 
-/// After a stop: puts back what the filter made before, or marks its outputs as aborted where that is nothing, and has
-/// it stand still.
-void standStill(vtkAlgorithm* filter, vtkInformationVector* outputs);
+/// After a stop: puts back the outputs that were kept, or marks them as aborted where none were, and suspends the
+/// filter.
+void restoreOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs);
 
-/// After a failure: marks the outputs as aborted, which empties them and all downstream without a word, and has the
-/// filter stand still.
-void standEmpty(vtkAlgorithm* filter);
+/// After a failure: marks the outputs as aborted, which empties them and all downstream without a word, and suspends
+/// the filter.
+void abortOutputs(vtkAlgorithm* filter);
 
-/// Whether the filter stands still and nothing has changed since; its outputs are put back as they were left then.
-bool standsStill(vtkAlgorithm* filter, vtkInformationVector* outputs);
+/// Whether the filter is suspended and nothing has changed since, so that it need not run; its outputs are then put
+/// back as they were left.
+bool staysSuspended(vtkAlgorithm* filter, vtkInformationVector* outputs);
 
 } // namespace sono

@@ -195,20 +195,20 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
       return 1;
     }
   }
-  if (algorithm->GetAbortOutput() || standsStill(algorithm, outputVector))
+  if (algorithm->GetAbortOutput() || staysSuspended(algorithm, outputVector))
   {
     return 1; // its input was stopped or failed, or it was or did itself
   }
   if (algorithm->GetInformation()->Has(refusedKey()))
   {
-    standEmpty(algorithm);
+    abortOutputs(algorithm);
     return 1;
   }
   const bool isInner = isQuiet(algorithm);
   const Outcome outcome = attempt(algorithm, work);
   if (outcome == Outcome::Done && !isInner)
   {
-    keepMade(algorithm, outputVector);
+    keepOutputs(algorithm, outputVector);
   }
   else if (outcome == Outcome::Stopped && !algorithm->GetAbortOutput()) // not by VTK, which empties the outputs
   {
@@ -219,7 +219,7 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
     }
     else
     {
-      standStill(algorithm, outputVector);
+      restoreOutputs(algorithm, outputVector);
     }
   }
   else if (outcome == Outcome::Failed)
@@ -228,7 +228,7 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
     {
       return 0;
     }
-    standEmpty(algorithm);
+    abortOutputs(algorithm);
   }
   return 1;
 }
