@@ -34,13 +34,13 @@ struct EchoSources
   const PointScatterers* points = nullptr; ///< explicit scatterers; their amplitudes are not scaled by scattererLevelDb
 };
 
-/// COLE on the analytic signal (PHYSICS section 4; Gao 2009, Storve 2017): scatterers weighted by the beam and the
-/// traced intensity, plus the traced boundary echoes, convolved with the pulse. What lies behind the transducer does
-/// not echo. At 50 MHz the result is within 0.1 % (NRMSE) of the sum over all scatterers at their exact places: each is
-/// split linearly between two samples, which costs a band b MHz wide about (b / samplingMHz)^2 of its amplitude; that
-/// loss is undone on average over the places between two samples. The result depends on the arguments and the
-/// device alone, to the bit, not on the threads. Throws Error naming the parameter that is out of range, Aborted when
-/// asked to stop.
+/// COLE on the analytic signal (Data/docs/physics.md section 4; Gao 2009, Storve 2017): scatterers weighted by the beam
+/// and the traced intensity, plus the traced boundary echoes, convolved with the pulse. What lies behind the transducer
+/// does not echo. At 50 MHz the result is within 0.1 % (NRMSE) of the sum over all scatterers at their exact places:
+/// each is split linearly between two samples, which costs a band b MHz wide about (b / samplingMHz)^2 of its
+/// amplitude; that loss is undone on average over the places between two samples. The result depends on the arguments
+/// and the device alone, to the bit, not on the threads. Throws Error naming the parameter that is out of range,
+/// Aborted when asked to stop.
 RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
                const Progress& progress = {});
 

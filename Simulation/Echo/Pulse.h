@@ -9,7 +9,7 @@ struct EchoSettings;
 
 /// Standard deviation, in mm of depth, of the round trip's Gaussian envelope exp(-r^2 / (2 sigma^2)) for a pulse
 /// exp(-k t^2) cos(2 pi f t) with fractional bandwidth b at -6 dB: k = (pi f b)^2 / (4 ln 10^0.3), r = c0 t / 2
-/// (PHYSICS section 4).
+/// (Data/docs/physics.md section 4).
 double pulseSigmaMm(double centreFrequencyMHz, double fractionalBandwidth);
 
 /// Integral over depth, mm, of the squared envelope of the settings' pulse. Throws as PulseKernel.

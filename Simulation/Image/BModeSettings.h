@@ -9,7 +9,7 @@
 
 namespace sono {
 
-/// Depth-dependent gain and log compression (PHYSICS section 6).
+/// Depth-dependent gain and log compression (Data/docs/physics.md section 6).
 struct BModeSettings
 {
   double tgcDbPerCm = 5.0; ///< gain slope per cm of depth, [-100, 100]; evens out tissue under the widest lobe

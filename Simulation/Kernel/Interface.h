@@ -73,7 +73,7 @@ SONO_HD inline Vec3f branchDirection(const Vec3f& direction, const Vec3f& normal
 }
 
 /// Draws the branch and its direction from the lobe around the mirror or refracted direction. A direction on the
-/// wrong side of the surface is mirrored across the tangent plane (PHYSICS section 2).
+/// wrong side of the surface is mirrored across the tangent plane (Data/docs/physics.md section 2).
 SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const Vec3f& direction, const Vec3f& normal,
                                    float cos1, const Reflection& r, const BounceSample& u)
 {

@@ -25,8 +25,9 @@ struct ScattererSeed
   float deviate;  ///< uniform (0, 1): mapped to a standard normal deviate
 };
 
-/// A pure function of (seed, cell): the same anatomy shows the same speckle wherever the probe stands (PHYSICS section
-/// 4). 21 bits a coordinate, 24 for presence, 32 - 8 for the deviate, out of one Philox block.
+/// A pure function of (seed, cell): the same anatomy shows the same speckle wherever the probe stands
+/// (Data/docs/physics.md section 4). 21 bits a coordinate, 24 for presence, 32 - 8 for the deviate, out of one Philox
+/// block.
 SONO_HD inline ScattererSeed scattererSeed(std::uint64_t seed, const Vec3i& cell)
 {
   const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z), 0x5ca77e4u);

@@ -42,7 +42,7 @@ struct TraceView
   std::uint64_t seed = 1;
 };
 
-/// w_R = C0 / (C0 + distance) (PHYSICS section 3). A micrometre is on the axis: C0 = 0 keeps exactly that.
+/// w_R = C0 / (C0 + distance) (Data/docs/physics.md section 3). A micrometre is on the axis: C0 = 0 keeps exactly that.
 SONO_HD inline float coherenceWeight(float c0, float distance)
 {
   return distance < 1e-3f ? 1.0f : c0 / (c0 + distance);

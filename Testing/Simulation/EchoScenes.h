@@ -14,8 +14,8 @@
 
 namespace sono::test {
 
-/// IQ of a line by PHYSICS section 4's sum in double precision: every scatterer in front of the transducer into every
-/// sample, the pulse evaluated there, no grid. Terms below exp(-40) of a scatterer's amplitude are left out.
+/// IQ of a line by Data/docs/physics.md section 4's sum in double precision: every scatterer in front of the transducer
+/// into every sample, the pulse evaluated there, no grid. Terms below exp(-40) of a scatterer's amplitude are left out.
 inline std::vector<std::complex<double>> directIq(
   const std::vector<PointScatterer>& points, const ScanLine& line, const EchoSettings& s,
   const std::function<double(double)>& intensity = [](double) { return 1.0; })
@@ -63,7 +63,7 @@ inline double nrmse(const std::complex<float>* got, const std::vector<std::compl
   return std::sqrt(error / power);
 }
 
-/// Scene S1 of PHYSICS section 4: 10^6 scatterers, 128 lines over +-37.5 degrees, 7792 samples a line.
+/// Scene S1 of Data/docs/physics.md section 4: 10^6 scatterers, 128 lines over +-37.5 degrees, 7792 samples a line.
 struct SceneS1
 {
   EchoSettings settings;

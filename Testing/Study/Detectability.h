@@ -4,7 +4,7 @@
 
 namespace sono::study {
 
-/// How well a lesion is told from its surroundings (PHYSICS section 9).
+/// How well a lesion is told from its surroundings (Data/docs/physics.md section 9).
 struct Detectability
 {
   double gcnr = 0.0;      ///< of the envelope: no display hides it

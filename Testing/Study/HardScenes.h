@@ -8,7 +8,7 @@
 
 namespace sono::study {
 
-/// A way to make things hard, by the hazard that PHYSICS section 8 names.
+/// A way to make things hard, by the hazard that Data/docs/physics.md section 8 names.
 struct HardScene
 {
   std::string hazard;

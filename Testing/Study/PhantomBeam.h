@@ -21,7 +21,7 @@ struct EchoWidth
 /// Of a wire on the axis at a depth, without speckle, lines 0.05 degrees apart.
 EchoWidth wireEchoWidth(const PhantomImaging& imaging, double depthMm);
 
-/// The closed form of the axial width for the Gaussian pulse (PHYSICS section 4): c sqrt(ln 2 / k) with
+/// The closed form of the axial width for the Gaussian pulse (Data/docs/physics.md section 4): c sqrt(ln 2 / k) with
 /// k = (pi f b)^2 / (4 ln 10^0.3).
 double pulseWidthMm(double centreFrequencyMHz, double fractionalBandwidth);
 

@@ -270,7 +270,8 @@ private:
   {
     heading("Stability");
     paragraph(
-      "Every hazard that PHYSICS section 8 names, a scene for each: what comes out, what it costs, how far single "
+      "Every hazard that Data/docs/physics.md section 8 names, a scene for each: what comes out, what it costs, how "
+      "far single "
       "precision lies from double down to the B-mode, beside the standard error of the paths. What single "
       "precision decides otherwise at a hit (along a wall, on an edge) sends a path elsewhere. A computed field "
       "has no twin. The seed tells nothing of its stability.");

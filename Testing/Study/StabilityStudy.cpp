@@ -1,4 +1,5 @@
-// Single against double precision on every scene, and cost and error as scenes degrade (PHYSICS section 8).
+// Single against double precision on every scene, and cost and error as scenes degrade (Data/docs/physics.md section
+// 8).
 #include "StabilityStudy.h"
 
 #include "HardScenes.h"

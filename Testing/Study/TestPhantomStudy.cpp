@@ -45,7 +45,7 @@ TEST(Detectability, GcnrOfSpeckleIsTheClosedFormAndWhatSamplesShow)
     }
   }
   EXPECT_EQ(gcnrOfSpeckle(0.0), 0.0);
-  EXPECT_NEAR(gcnrOfSpeckle(6.0), 0.471, 0.0005); // PHYSICS section 9
+  EXPECT_NEAR(gcnrOfSpeckle(6.0), 0.471, 0.0005); // Data/docs/physics.md section 9
 }
 
 TEST(Detectability, OfFewPixelsTheHistogramIsBiasedAndTheThresholdHardly)
@@ -117,7 +117,7 @@ TEST(PhantomStudy, AttenuationFallsAsTheMediumSays)
 
 TEST(PhantomStudy, EchoWidthIsThatOfPulseAndAperture)
 {
-  EXPECT_NEAR(pulseWidthMm(3.6, 0.6), 0.3140, 1e-4); // PHYSICS section 4, to its last digit
+  EXPECT_NEAR(pulseWidthMm(3.6, 0.6), 0.3140, 1e-4); // Data/docs/physics.md section 4, to its last digit
   const PhantomImaging imaging = phantomImaging(64);
   const EchoWidth width = wireEchoWidth(imaging, 50.0);
   EXPECT_NEAR(width.axialMm, pulseWidthMm(3.6, imaging.echo.fractionalBandwidth), 0.003);
