@@ -18,7 +18,7 @@ struct TraceMedium
   float gamma = 0.0f;
 };
 
-/// One main beam in the region's local millimetres, with what its paths share.
+/// One main beam (see ScanLine) in the region's local millimetres; the axis is a unit vector.
 struct TraceLine
 {
   Vec3f origin;

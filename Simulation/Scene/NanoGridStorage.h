@@ -1,6 +1,7 @@
 #pragma once
 
-// The one place that includes NanoVDB.
+// What NanoGrid hides, for the .cpp files of Scene/ and for the march through the grid itself (Kernel/NanoSpace.h).
+// NanoVDB is included here, there, and by the .cpp files that convert or store grids (NanoConvert, NanoFile).
 #include "Scene/SurfaceField.h"
 
 #include <nanovdb/NanoVDB.h>

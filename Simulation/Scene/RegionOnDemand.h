@@ -21,14 +21,14 @@ struct CellsOnDemand : TissueCells
   std::uint32_t recordOf(int x, int y, int z, std::uint32_t word) const;
 };
 
-/// A region of which only those records are baked that somebody asks for: laying out the words takes a tenth of the
-/// time, and the paths of a fan meet a small part of the records. What is asked for is what buildTraceRegion gives, to
-/// the bit, whoever asks first; several threads may ask.
+/// A region with lazy evaluation: a record is baked, with its block, when it is first read. Laying out the words takes
+/// a tenth of the time, and the paths of a fan meet a small part of the records. A record is what buildTraceRegion
+/// gives, to the bit, whichever thread reads it first; several may at the same time.
 class RegionOnDemand
 {
 public:
   /// As buildTraceRegion. The voxels must outlive this. What `other`, a region of the same voxels, has baked is copied
-  /// for as long as somebody keeps that.
+  /// while that exists.
   RegionOnDemand(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const VoxelBox& box,
                  const Progress& progress = {}, std::weak_ptr<const RegionOnDemand> other = {});
   ~RegionOnDemand();
@@ -45,7 +45,7 @@ public:
   /// Blocks that were baked so far.
   int bakedBlocks() const;
 
-  /// The region itself, of which nobody asks any more.
+  /// Moves the region out, once nothing reads from this any more.
   TraceRegion take() && { return std::move(region_); }
 
 private:

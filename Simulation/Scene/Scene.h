@@ -15,8 +15,9 @@
 
 namespace sono {
 
-/// The anatomy as the simulator sees it: the label grid, the tissues of its labels, and, built on first need and
-/// kept, one narrow-band signed distance field per label and the tracer's cache of a region.
+/// The anatomy as the simulator sees it: the label map's voxels, the tissues of its labels, and, built on first need
+/// and kept, the label grid and one narrow-band signed distance field per label (to show, to write, to check against),
+/// and the region of dense cells that the tracer reads (TraceRegion).
 /// Immutable to its users; the lazy parts are guarded, so several filters may share one Scene.
 ///
 /// "Local" coordinates are millimetres along the grid's own axes with 0 at the outer corner of voxel (0,0,0):
@@ -60,12 +61,12 @@ public:
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
 
-  /// For a probe on its way: the cache of a box around this one whose faces lie at multiples of 512 voxels or at the
-  /// volume's end. A volume up to that size is one box, so that all poses share it; of a longer one it takes what is
-  /// near. Kept beside the other.
+  /// For interactive use, while a probe is moved: the cache of a box around this one whose faces lie at multiples of
+  /// 512 voxels or at the volume's end. A volume up to that size is one box, so that all poses share it; of a longer
+  /// one it takes what is near. Kept beside the other.
   std::shared_ptr<const RegionOnDemand> interactiveRegion(const VoxelBox& box, const Progress& progress = {}) const;
-  /// Begins to make that, in the background, where it is not there yet; with all of its records if wanted. The making
-  /// of another that nobody waits for is given up.
+  /// Begins to build that in the background, where it is not there yet; with all of its records if wanted. The build of
+  /// another one that nobody waits for is cancelled.
   void beginInteractiveRegion(const VoxelBox& box, bool allRecords) const;
 
 private:

@@ -11,7 +11,7 @@
 
 namespace sono {
 
-/// Opaque owner of one NanoVDB grid; NanoVDB itself is included by the .cpp files of Scene/ only.
+/// Opaque owner of one NanoVDB grid, so that no header needs NanoVDB to name one (see NanoGridStorage.h).
 class NanoGrid
 {
 public:

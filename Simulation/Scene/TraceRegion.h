@@ -10,7 +10,14 @@
 
 namespace sono {
 
-/// The tracer's cache of a box of the scene (what a probe's fan can reach): see TissueCells. Boundary records come from
+/// What the tracer reads of the scene: a box of dense cells (see TissueCells) instead of the NanoVDB grids. Some 10^5
+/// paths cross the same voxels again and again, and each boundary needs a normal: a word a voxel and a record a
+/// boundary voxel give them in one read each, several times as fast as the march through the label grid, which stays
+/// the reference (NanoSpace). The box is what visibility culling leaves (fanBox): nothing beyond the depth before the
+/// lines can echo in time.
+///
+/// Words are baked from the tissue indices of the voxels. Boundary records are baked from the same voxels, by the same
+/// smoothing as the labels' signed distance fields (SurfaceField), of which they hold distance, normal and gradient:
 /// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic in mm
 /// (a voxel being the cube root of its volume), at voxels that touch another tissue with a face. In voxels that are
 /// long along one axis the normal's Gaussian is 1.35 of that length, up to three voxels: slices' terraces are wide
