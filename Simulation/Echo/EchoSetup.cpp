@@ -19,7 +19,7 @@ double gaussianAreaMm2(const EchoSettings& s)
 
 /// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
 /// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * A * integral of g^2, with the beam's area
-/// A = pi sL sE for a Gaussian and that at the focus for a field.
+/// A = pi sL sE for a Gaussian and that at the focus for a field (Data/docs/physics.md eq. 4.7).
 double scattererScale(const EchoSettings& s, double areaMm2)
 {
   const double seen = areaMm2 * pulseEnergyMm(s) / (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);

@@ -8,7 +8,7 @@ namespace sono {
 
 /// How strongly a beam echoes what is wider than itself. Scatterers all over a depth, or a rough surface across it, add
 /// up as A(z) = integral of w^2 over the lateral and elevational axes: their rms echo goes with its root. On its axis
-/// alone a beam falls faster behind its focus, since it widens there.
+/// alone a beam falls faster behind its focus, since it widens there. Data/docs/physics.md section 4.4.
 class FieldLevel
 {
 public:

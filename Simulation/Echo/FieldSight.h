@@ -8,9 +8,9 @@
 
 namespace sono {
 
-/// Where a field matters: tells a brick that a beam must visit from one whose scatterers do not count. Left out are the
-/// faintest parts of each depth, which together hold 2.5e-7 of its sum of squares: in a uniform tissue they make
-/// 0.05 % of the RF.
+/// Culling map of a pulse-echo field: tells a brick that a beam must visit from one whose scatterers do not count. Left
+/// out are the faintest parts of each depth, which together hold 2.5e-7 of its sum of squares: in a uniform tissue they
+/// make 0.05 % of the RF.
 class FieldSight
 {
 public:

@@ -10,6 +10,26 @@
 #include <complex>
 #include <vector>
 
+// From traced lines to RF. A tissue's scatterers are never stored: they are generated brick by brick where a beam sees
+// them, and bricks that neighbouring lines see are generated once for a group of them.
+//
+//   scatterers of the tissues            explicit scatterers
+//   TissueScatterers (4^3 cells)         PointScatterers (sorted once)
+//           \                                  /
+//            bricks that a beam sees: forSeenBricks; with a field, FieldSight culls those that do not matter
+//                              |
+//            LineSum: w a exp(-i 2k (r - r_s)) on the RF's samples (splat, BeamSplat.h), w the beam's weight
+//                              |
+//            LineFinisher:  times I(r) of the traced line
+//                           plus the boundary echoes of the traced line, which carry their intensity already
+//                           demodulated with the centre frequency
+//                           convolved with the pulse's envelope (PulseKernel)
+//                              |
+//            RfLines: IQ of each line
+//
+// EchoSetup is made once for all lines; the CPU's loop over groups of lines is in FormRf.cpp, the GPU's in
+// Cuda/DeviceEcho.cu. Both run the same kernels (Kernel/Scatterer.h, EchoSplat.h).
+
 namespace sono {
 
 /// RF lines as demodulated IQ: the real RF at depth r is Re(iq exp(i 2 k r)), k = 2 pi f / c0; |iq| is the envelope.

@@ -7,7 +7,7 @@
 
 namespace sono {
 
-/// The blocks of a beam's map of what matters, along one axis.
+/// The blocks of a beam's culling map (see FieldSight) along one axis.
 struct SightBlocks
 {
   float lowMm;
@@ -37,7 +37,7 @@ struct SightBlocks
   }
 };
 
-/// Where a field matters (see FieldSight), for one brick size. Trivially copyable; the map is owned elsewhere.
+/// A view of a field's culling map (see FieldSight) for one brick size. Trivially copyable.
 struct BeamSightView
 {
   SightBlocks lateral;

@@ -10,7 +10,7 @@ namespace sono {
 
 /// What happens at a boundary: fluid acoustics, or the equations of Amadou et al. 2024 to the letter.
 /// The latter do not conserve energy: the branch's R or T is applied although the choice carries it already, and
-/// cos(theta)/p(omega) averages to pi over the hemisphere.
+/// cos(theta)/p(omega) averages to pi over the hemisphere. Data/docs/physics.md section 1.
 enum class InterfaceModel
 {
   Acoustic,

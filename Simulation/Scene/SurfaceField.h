@@ -48,7 +48,8 @@ std::vector<VoxelBox> labelBoxes(const LabelVolume& volume);
 /// One label's surface: a narrow-band signed distance field in mm, negative inside, as a NanoVDB grid over the voxel
 /// centres (Fp8: 8 bits a voxel between a leaf's extremes, so rounded to a hundredth of the band at most). It is the
 /// distance of the label's occupancy smoothed by a Gaussian of one voxel (isotropic in mm, sigma = cube root of the
-/// voxel's volume): d = -sigma probit(occupancy), exact for a plane.
+/// voxel's volume): d = -sigma probit(occupancy), exact for a plane (Data/docs/physics.md
+/// section 5).
 struct SurfaceField
 {
   int labelId = 0;
