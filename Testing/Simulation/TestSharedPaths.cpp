@@ -202,7 +202,7 @@ TEST(SharedPaths, CanBeStoppedWithinAGroup)
   s.sampling = Sampling::SharedPaths;
   s.pathsPerLine = 8192;
   const auto lines = fan(4); // one group a batch
-  const int pauses = 4 * s.pathsPerLine / LineTally::pathsPerFold;
+  const int pauses = 4 * s.pathsPerLine / pathsPerFold;
   trace(*scene, lines, s); // so that the region is there
   int told = 0;
   trace(*scene, lines, s, [&](double) {
