@@ -102,6 +102,7 @@ struct DrawnPath
   bool reflected;  ///< at its first boundary
   Vec3f direction; ///< from there
   bool meets;      ///< a second boundary
+  bool alone;      ///< meets it where it left the first one
   Vec3f joint;     ///< where it crosses that
   bool leaves;     ///< the second boundary again, not ending there
   bool reflectedAgain;
@@ -251,7 +252,7 @@ private:
     PathJoin& own = joins_[std::size_t(path_.owner)];
     own.way.pieces.clear();
     path_.rest.pieces.clear();
-    path_.meets = path_.leaves = false;
+    path_.meets = path_.leaves = path_.alone = false;
     PathState path = start.path;
     leaveBoundary(view_, space_, start.boundary, firstBounceSample(key.scrambles[0], key.path), path);
     path_.reflected = path.tissue == start.boundary.before.medium;
@@ -262,7 +263,18 @@ private:
     {
       goesOn = stepPath(view_, space_, beams_, key, path, sink);
     }
+    path_.alone = startsAtJoint(lines_[std::size_t(path_.owner)]);
     return own.way.pieces.size() + path_.rest.pieces.size();
+  }
+
+  /// Where three tissues meet a path may find its second boundary in the very point in which it leaves the first one.
+  /// Per area of the joint its density is then beyond all bounds, and against it no other line's counts: it stands for
+  /// itself alone. A line whose own paths start in the joint of another's cannot lead there.
+  bool startsAtJoint(const GroupLine& line) const
+  {
+    constexpr float coincidentMm = 1e-6f;
+    const Vec3f across = path_.joint - line.restart;
+    return path_.meets && glm::dot(across, across) < coincidentMm * coincidentMm;
   }
 
   /// Line k's way to the joint, or along the same direction when the path meets no second boundary, and the density of
@@ -272,6 +284,11 @@ private:
     const GroupLine& line = lines_[std::size_t(k)];
     PathJoin& j = joins_[std::size_t(k)];
     const bool owner = k == path_.owner;
+    if (path_.alone || startsAtJoint(line))
+    {
+      j.density = owner ? 1.0f : 0.0f;
+      return 0;
+    }
     const Vec3f across = path_.joint - line.restart;
     const Vec3f direction = owner || !path_.meets ? path_.direction : glm::normalize(across);
     const PathBoundary& first = line.start->boundary;
