@@ -19,6 +19,7 @@
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <set>
 #include <thread>
 
 namespace sono {
@@ -233,13 +234,14 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
   return 1;
 }
 
-void announceDevice(Device device)
+void announceDevice(const DeviceChoice& choice)
 {
-  const DeviceChoice choice = chooseDevice(device);
-  static std::once_flag once;
-  if (!choice.note.empty())
+  static std::mutex mutex;
+  static std::set<std::string> said;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (!choice.note.empty() && said.insert(choice.note).second)
   {
-    std::call_once(once, [&] { vtkOutputWindowDisplayText((choice.note + "\n").c_str()); });
+    vtkOutputWindowDisplayText((choice.note + "\n").c_str());
   }
 }
 

@@ -34,8 +34,8 @@ void keepQuiet(vtkAlgorithm* algorithm);
 /// What a quiet stage said in its last pass; empty where that went well.
 std::string saidBy(vtkAlgorithm* algorithm);
 
-/// Says, once in a process, when Auto has no GPU and why. Throws Error when the GPU is asked for and cannot be used.
-void announceDevice(Device device);
+/// Says, once in a process, why Auto does not take a GPU.
+void announceDevice(const DeviceChoice& choice);
 
 /// RequestUpdateExtent for a stage that needs the whole image of a port, whatever part of its output is asked for.
 int requestWholeImage(vtkInformationVector** inputVector, int port = 0);

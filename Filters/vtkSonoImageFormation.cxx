@@ -142,7 +142,7 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
     vtkImageData* input0 = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(input0->GetFieldData());
     sono::EchoSettings settings = this->Settings(input0->GetFieldData());
-    sono::announceDevice(settings.device);
+    sono::announceDevice(sono::chooseDevice(settings.device));
     if (vtkImageData* field = vtkImageData::GetData(input[2]))
     {
       settings.field = std::make_shared<const sono::PulseEchoField>(sono::fieldFromImage(field));

@@ -9,6 +9,7 @@
 #include "Trace/ProbeContact.h"
 #include "Trace/RecordPaths.h"
 #include "Trace/Trace.h"
+#include "Trace/TraceDevice.h"
 #include "vtkSonoSceneHandle.h"
 
 #include "vtkDataObject.h"
@@ -25,7 +26,6 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <cmath>
 
 vtkStandardNewMacro(vtkSonoRayTracer);
 
@@ -148,13 +148,12 @@ int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector**
     sono::writeNumber("SamplingMHz", samplingMHz, acquisition);
     const sono::TraceSettings settings = this->Settings(probe);
     const int lineCount = probe.geometry.totalLineCount();
-    const int binCount = static_cast<int>(std::ceil(settings.depthMm / settings.radialBinMm));
-    const int echoCount = rfGrid(samplingMHz, settings.depthMm).sampleCount();
 
     vtkInformation* lines = output->GetInformationObject(0);
     vtkInformation* echoes = output->GetInformationObject(1);
-    sono::announceLineImage({ binCount, lineCount, settings.radialBinMm / 2.0, settings.radialBinMm }, 1, lines);
-    sono::announceLineImage({ echoCount, lineCount, 0.0, settings.echoSampleMm }, 2, echoes);
+    sono::announceLineImage({ settings.binCount(), lineCount, settings.radialBinMm / 2.0, settings.radialBinMm }, 1,
+                            lines);
+    sono::announceLineImage({ settings.echoCount(), lineCount, 0.0, settings.echoSampleMm }, 2, echoes);
     sono::announceFields(acquisition, lines);
     sono::announceFields(acquisition, echoes);
   });
@@ -170,21 +169,25 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const std::vector<sono::TargetSurface> targets =
       sono::targetSurfaces(vtkPolyData::GetData(input[2]), this->TargetTissue, *tissues);
     const sono::TraceSettings settings = this->Settings(probe);
-    sono::announceDevice(settings.device);
+    sono::announceDevice(sono::chooseDevice(settings));
     const std::vector<sono::ScanLine> scanLines = sono::makeScanLines(probe.geometry, probe.pose);
     const std::string warning = probe.preview ? std::string() : sono::probeContactWarning(*scene, scanLines);
     if (!warning.empty())
     {
       vtkWarningMacro(<< warning);
     }
-    const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
+    const sono::Progress progress = sono::progressOf(this);
+    const double share = this->NumberOfShownPaths != 0 ? 0.9 : 1.0;
+    const sono::TracedLines traced =
+      sono::trace(*scene, scanLines, settings, sono::partOf(progress, 0.0, share), targets);
     if (!probe.preview)
     {
       sono::prepareInteractive(*scene, scanLines, settings);
     }
     if (this->NumberOfShownPaths != 0)
     {
-      const auto paths = sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets);
+      const auto paths = sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets,
+                                           sono::partOf(progress, share, 1.0));
       sono::fillPaths(paths, vtkPolyData::GetData(output, 2));
       sono::fillHits(paths, mediaNames(*scene, targets), vtkPolyData::GetData(output, 3));
     }

@@ -137,10 +137,8 @@ struct DeviceImager::Work
   /// Images that go through the stages together: at most what fits in a quarter of the device's memory.
   int imagesAtOnce(const ImageJob& job, const DeviceWants& wants) const
   {
-    std::size_t free = 0;
-    std::size_t total = 0;
-    check(cudaMemGetInfo(&free, &total), "asking for its memory");
-    const double fitting = std::min(0.25 * double(total) / std::max(1.0, bytesPerImage(job)), 65535.0); // of a grid
+    const double total = double(cudaStatus().memoryBytes);
+    const double fitting = std::min(0.25 * total / std::max(1.0, bytesPerImage(job)), 65535.0); // of a grid
     const int together = wants.image ? std::min(job.images, picturesTogether) : job.images;
     return std::max(1, std::min(together, int(fitting)));
   }
@@ -347,7 +345,9 @@ struct DeviceImager::Work
   }
 };
 
-DeviceStatus cudaStatus()
+namespace {
+
+DeviceStatus askForStatus()
 {
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
@@ -369,7 +369,16 @@ DeviceStatus cudaStatus()
     return { false, std::string("the ") + properties.name + " is older than CUDA " +
                       std::to_string(CUDART_VERSION / 1000) + " serves" };
   }
-  return { true, std::string(properties.name) + ", " + std::to_string(properties.totalGlobalMem >> 20) + " MiB" };
+  return { true, std::string(properties.name) + ", " + std::to_string(properties.totalGlobalMem >> 20) + " MiB",
+           properties.totalGlobalMem };
+}
+
+} // namespace
+
+const DeviceStatus& cudaStatus()
+{
+  static const DeviceStatus status = askForStatus();
+  return status;
 }
 
 DeviceImager::DeviceImager()

@@ -52,8 +52,10 @@ struct DeviceStatus
 {
   bool usable = false;
   std::string what; ///< the GPU's name and memory, or one clause that says why there is none
+  std::uint64_t memoryBytes = 0;
 };
-DeviceStatus cudaStatus();
+/// Asked once a process.
+const DeviceStatus& cudaStatus();
 
 /// Runs jobs on the first CUDA device. What a scene does not change (voxels, boundary records, fields) is uploaded once
 /// and kept; buffers grow and are kept. One job at a time; a second caller waits. The result does not depend on the

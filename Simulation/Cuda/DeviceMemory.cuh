@@ -5,6 +5,8 @@
 #include <cuda_runtime.h>
 
 #include <cstdint>
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -28,17 +30,25 @@ struct Traffic
   std::uint64_t down = 0;
 };
 
-/// Of a block of this kernel, bytes of dynamic shared memory.
+/// Of a block of this kernel, bytes of dynamic shared memory. Asked once a kernel.
 template<class Kernel>
 std::size_t sharedMemoryFor(Kernel kernel)
 {
+  static std::mutex mutex;
+  static std::map<Kernel, std::size_t> known;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto found = known.find(kernel);
+  if (found != known.end())
+  {
+    return found->second;
+  }
   int device = 0;
   int most = 0;
   cudaFuncAttributes attributes{};
   check(cudaGetDevice(&device), "asking for its limits");
   check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "asking for its limits");
   check(cudaFuncGetAttributes(&attributes, kernel), "asking for its limits");
-  return std::size_t(most) - attributes.sharedSizeBytes;
+  return known[kernel] = std::size_t(most) - attributes.sharedSizeBytes;
 }
 
 /// An array on the device that only grows.

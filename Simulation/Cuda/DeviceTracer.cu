@@ -1,7 +1,6 @@
 #include "Cuda/DeviceTracer.cuh"
 
-#include "Cuda/WarpDeposit.cuh"
-#include "Trace/PathBatches.h"
+#include "Cuda/TraceKernels.cuh"
 
 #include <algorithm>
 #include <cmath>
@@ -11,307 +10,11 @@ namespace sono {
 
 namespace {
 
-constexpr int blockWarps = 4;
-constexpr int blocksAtOnce =
-  9; // on a multiprocessor: more warps, that hide their waits, are worth some spilled registers
-constexpr int launchWarps = 4096; // few lines of many paths are cut into so many warps, to fill a device
-constexpr int blockPaths = blockWarps * warpLanes;
-constexpr unsigned allLanes = 0xffffffffu;
+constexpr int launchWarps = 4096;              // few lines of many paths are cut into so many warps, to fill a device
 constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
-constexpr double binsPerLaunch = 2.5e8;        // 1 GB of partial sums
+constexpr double binsPerLaunch = 1.25e8;       // 1 GB of sums
+constexpr int pathsWithoutRests = 1024;        // whose echoes are exact to 2^-32
 constexpr std::size_t sharedBytes = 96 * 1024; // more would keep other blocks away
-
-/// What the kernels of one launch share.
-template<class Targets>
-struct TraceLaunch
-{
-  TraceView view;
-  CellSpace<Targets, RowCells> space;
-  const TraceLine* lines; // of the launch
-  LineStart* starts;
-  float* shared;  // what all paths of a line leave: lines x bins
-  float* partial; // sums of parts of batches: lines x batches x slices x bins
-  float* intensity;
-  float* error;
-  EchoSum* echo;
-  std::uint64_t* segments;
-  int firstInImage; // number of the launch's first line, to be taken modulo linesPerImage
-  int linesPerImage;
-  int paths;
-  int batches;
-  int slices; // parts of a batch, each summed by one block
-  int binCount;
-  float binMm;
-  int echoCount;
-  float echoSampleMm;
-  float radPerMm;
-  float echoScale;
-
-  __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
-};
-
-template<class Launch>
-__device__ void addEcho(const Launch& launch, int line, const Vec3f& point, float amplitude)
-{
-  const EchoSplit split = splitEcho(launch.lines[line], point, amplitude, launch.view.coherenceMm, launch.echoSampleMm,
-                                    launch.echoCount, launch.radPerMm);
-  if (split.sample < 0)
-  {
-    return;
-  }
-  EchoSum* to = launch.echo + 2 * (std::size_t(line) * launch.echoCount + split.sample);
-  for (int c = 0; c < 4; ++c)
-  {
-    atomicAdd(to + c, EchoSum(__float2ll_rn(split.amplitude[c] * launch.echoScale)));
-  }
-}
-
-/// All lanes follow the same path.
-template<class Launch>
-struct CommonSink
-{
-  const Launch& launch;
-  int line;
-  int lane;
-  unsigned segments = 0;
-
-  __device__ void segment(const PathSegment& piece)
-  {
-    ++segments;
-    depositByWarp(stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount),
-                  launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
-  }
-  __device__ void echo(const Vec3f& point, float amplitude)
-  {
-    if (lane == 0)
-    {
-      addEcho(launch, line, point, amplitude * float(launch.paths)); // sums are divided by the paths
-    }
-  }
-};
-
-/// One warp a line: what all its paths share.
-template<class Targets>
-__global__ void startLines(TraceLaunch<Targets> launch, int count)
-{
-  const int line = blockIdx.x * blockWarps + threadIdx.x / warpLanes;
-  if (line >= count)
-  {
-    return;
-  }
-  CommonSink<TraceLaunch<Targets>> sink{ launch, line, int(threadIdx.x % warpLanes) };
-  const LineStart start = startLine(launch.view, launch.space, launch.lines[line], sink);
-  if (sink.lane == 0)
-  {
-    atomicAdd(reinterpret_cast<unsigned long long*>(launch.segments), static_cast<unsigned long long>(sink.segments));
-    launch.starts[line] = start;
-  }
-}
-
-/// What a path is doing, kept while the other paths of its warp march.
-struct Walker
-{
-  PathState path;
-  PieceLimit limit;
-  int index;  // of the path within the batch
-  int pieces; // since the last boundary
-  bool walking;
-};
-
-/// Starts the next piece of a path.
-template<class Launch>
-__device__ void startPiece(const Launch& launch, const TraceLine& line, Walker& walker)
-{
-  walker.limit = limitPiece(launch.view, launch.space, line, walker.path);
-}
-
-/// Leaves a boundary. Returns false when the path ends there.
-template<class Launch>
-__device__ bool passBoundary(const Launch& launch, const PathKey& key, const PathBoundary& boundary, Walker& walker)
-{
-  leaveBoundary(launch.view, launch.space, boundary,
-                drawBounce(launch.view, key, std::uint32_t(walker.path.collisions)), walker.path);
-  walker.pieces = 0;
-  return walker.path.intensity > 0.0f && survivesRoulette(launch.view, key, walker.path);
-}
-
-/// Takes up the lane's next path that gets away from the first boundary.
-template<class Launch>
-__device__ void nextPath(const Launch& launch, const TraceLine& line, const LineStart& start, PathKey& key, int end,
-                         int step, Walker& walker)
-{
-  walker.walking = false;
-  while (!walker.walking && walker.index + step < end)
-  {
-    walker.index += step;
-    key.path = std::uint32_t(walker.index);
-    walker.path = start.path;
-    walker.walking = passBoundary(launch, key, start.boundary, walker);
-  }
-  if (walker.walking)
-  {
-    startPiece(launch, line, walker);
-  }
-}
-
-/// Ends a piece: its echo, and the path's next piece or the lane's next path.
-template<class Launch>
-__device__ StagedSegment finishPiece(const Launch& launch, int lineIndex, const TraceLine& line, const LineStart& start,
-                                     const CellHit& hit, PathKey& key, int end, int step, Walker& walker)
-{
-  PathSegment piece;
-  PathBoundary boundary;
-  const PieceEnd pieceEnd = endPiece(launch.view, launch.space, walker.limit, hit, walker.path, boundary, piece);
-  bool goesOn = pieceEnd == PieceEnd::Medium && ++walker.pieces < mostPieces(launch.space);
-  if (pieceEnd == PieceEnd::Boundary && walker.path.collisions < launch.view.maxCollisions)
-  {
-    const TraceMedium& from = launch.view.media[boundary.before.medium];
-    const TraceMedium& to = launch.view.media[boundary.after.medium];
-    const float amplitude = boundaryEcho(launch.view.model, from.impedance, to.impedance, walker.path.intensity,
-                                         boundary.cosine, to.tau, to.gamma);
-    addEcho(launch, lineIndex, walker.path.ray.position + walker.path.ray.direction * boundary.surface.t, amplitude);
-    goesOn = passBoundary(launch, key, boundary, walker);
-  }
-  if (goesOn)
-  {
-    startPiece(launch, line, walker);
-  }
-  else
-  {
-    nextPath(launch, line, start, key, end, step, walker);
-  }
-  return stage(line, piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
-}
-
-/// One block traces one slice of a batch of a line, each lane one path after the other. The paths of a warp go on
-/// together, from boundary to boundary; what they leave is added to the warp's bins by all its lanes, one segment
-/// after the other.
-template<bool BinsInShared, class Targets>
-__global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
-{
-  extern __shared__ float dynamic[];
-  __shared__ StagedSegment staged[blockWarps][warpLanes];
-  const int slice = blockIdx.x % launch.slices;
-  const int batch = blockIdx.x / launch.slices;
-  const int line = blockIdx.y;
-  const int lane = threadIdx.x % warpLanes;
-  const int warp = threadIdx.x / warpLanes;
-
-  // Bins of the block's warps, then the batch's scrambles.
-  const int slots = BinsInShared ? blockWarps : 0;
-  auto* scrambles = reinterpret_cast<BounceScramble*>(dynamic + std::size_t(slots) * launch.binCount);
-  const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
-  float* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount
-                             : launch.partial + (row * blockWarps + warp) * launch.binCount;
-  for (int b = lane; b < launch.binCount; b += warpLanes)
-  {
-    bins[b] = 0.0f;
-  }
-  const std::uint32_t lineKey = launch.keyOf(line);
-  for (int b = threadIdx.x; b < launch.view.maxCollisions; b += blockPaths)
-  {
-    scrambles[b] = makeBounceScramble(launch.view.seed, lineKey, std::uint32_t(batch), std::uint32_t(b));
-  }
-  __syncthreads();
-
-  const PathRange range = batchRange(launch.paths, launch.batches, batch);
-  const int end = range.last - range.first;
-  const int step = launch.slices * blockPaths;
-  const TraceLine axis = launch.lines[line];
-  const LineStart& start = launch.starts[line];
-  PathKey key{ lineKey, std::uint32_t(batch), 0u, scrambles };
-  Walker walker;
-  walker.index = slice * blockPaths + int(threadIdx.x) - step;
-  walker.walking = false;
-  if (start.meets)
-  {
-    nextPath(launch, axis, start, key, end, step, walker);
-  }
-  unsigned segments = 0;
-  while (__any_sync(allLanes, walker.walking))
-  {
-    const bool walks = walker.walking;
-    if (walks)
-    {
-      const PathState& path = walker.path;
-      CellHit hit{};
-      if (path.target < 0)
-      {
-        hit = launch.space.toBoundary(path.ray, path.tissue, path.ignored, path.ignoreUntil, walker.limit.t);
-      }
-      staged[warp][lane] = finishPiece(launch, line, axis, start, hit, key, end, step, walker);
-      ++segments;
-    }
-    __syncwarp();
-    unsigned waiting = __ballot_sync(allLanes, walks && staged[warp][lane].binHigh >= 0);
-    for (; waiting; waiting &= waiting - 1)
-    {
-      depositByWarp(staged[warp][__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
-    }
-    __syncwarp();
-  }
-  for (int s = warpLanes / 2; s > 0; s /= 2)
-  {
-    segments += __shfl_down_sync(allLanes, segments, unsigned(s));
-  }
-  if (lane == 0)
-  {
-    atomicAdd(reinterpret_cast<unsigned long long*>(launch.segments), static_cast<unsigned long long>(segments));
-  }
-  if (BinsInShared)
-  {
-    __syncthreads();
-    for (int b = threadIdx.x; b < launch.binCount; b += blockPaths)
-    {
-      float sum = 0.0f;
-      for (int g = 0; g < blockWarps; ++g)
-      {
-        sum += dynamic[std::size_t(g) * launch.binCount + b];
-      }
-      launch.partial[row * launch.binCount + b] = sum;
-    }
-  }
-}
-
-/// Mean over the batches and its standard error, for each bin.
-template<class Targets>
-__global__ void finishLines(TraceLaunch<Targets> launch, int parts)
-{
-  const int b = blockIdx.x * blockDim.x + threadIdx.x;
-  const int line = blockIdx.y;
-  if (b >= launch.binCount)
-  {
-    return;
-  }
-  const std::size_t at = std::size_t(line) * launch.binCount + b;
-  launch.error[at] = 0.0f;
-  launch.intensity[at] = launch.shared[at];
-  if (!launch.starts[line].meets)
-  {
-    return;
-  }
-  float means[batchCount];
-  double mean = 0.0;
-  for (int batch = 0; batch < launch.batches; ++batch)
-  {
-    const PathRange range = batchRange(launch.paths, launch.batches, batch);
-    float sum = 0.0f;
-    for (int p = 0; p < parts; ++p)
-    {
-      sum += launch.partial[((std::size_t(line) * launch.batches + batch) * parts + p) * launch.binCount + b];
-    }
-    means[batch] = sum / float(range.last - range.first);
-    mean += means[batch];
-  }
-  mean /= launch.batches;
-  double spread = 0.0;
-  for (int batch = 0; batch < launch.batches; ++batch)
-  {
-    spread += (means[batch] - mean) * (means[batch] - mean);
-  }
-  launch.intensity[at] += float(mean);
-  launch.error[at] = launch.batches > 1 ? float(sqrt(spread / (double(launch.batches) * (launch.batches - 1)))) : 0.0f;
-}
 
 /// From blocks to rows, border included; a block takes a row.
 __global__ void layOutRows(TissueCells blocks, RowCells rows, std::uint16_t* words)
@@ -324,21 +27,33 @@ __global__ void layOutRows(TissueCells blocks, RowCells rows, std::uint16_t* wor
   }
 }
 
+/// Adds what rounding left to the sums.
+__global__ void carryRests(EchoSum* echo, const EchoSum* rest, std::size_t count)
+{
+  const std::size_t i = std::size_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < count)
+  {
+    echo[i] += EchoSum((static_cast<long long>(rest[i]) + (1ll << (restBits - 1))) >> restBits);
+  }
+}
+
 int ceilDiv(int a, int b)
 {
   return (a + b - 1) / b;
 }
 
 template<class Targets>
-void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, cudaStream_t stream)
+void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool folds, cudaStream_t stream)
 {
   const std::size_t scrambleBytes = std::size_t(launch.view.maxCollisions) * sizeof(BounceScramble);
   const std::size_t bytes = scrambleBytes + (inShared ? blockWarps * launch.binCount * sizeof(float) : 0);
-  const auto kernel = inShared ? tracePaths<true, Targets> : tracePaths<false, Targets>;
+  const auto kernel = !inShared ? tracePaths<false, true, Targets>
+                      : folds   ? tracePaths<true, true, Targets>
+                                : tracePaths<true, false, Targets>;
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)), "preparing to trace");
   startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
   kernel<<<dim3(launch.batches * launch.slices, lines), blockPaths, bytes, stream>>>(launch);
-  const int parts = inShared ? launch.slices : launch.slices * blockWarps;
+  const int parts = folds ? launch.slices * blockWarps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
   check(cudaGetLastError(), "tracing");
 }
@@ -401,9 +116,11 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const int slices = std::max(1, std::min(wanted, ceilDiv(longest, blockPaths)));
   const std::size_t scrambleBytes = std::size_t(view_.maxCollisions) * sizeof(BounceScramble);
   const std::size_t binBytes = blockWarps * bins * sizeof(float);
-  const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, BvhTargets>));
+  const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, BvhTargets>));
   const bool inShared = binBytes + scrambleBytes <= sharedLimit;
-  const int parts = inShared ? slices : slices * blockWarps;
+  const int pathsOfWarp = ceilDiv(longest, slices * blockPaths) * warpLanes;
+  const bool folds = !inShared || pathsOfWarp > pathsPerFold;
+  const int parts = folds ? slices * blockWarps : slices;
 
   starts_.resize(lineCount * sizeof(LineStart));
   shared_.resize(lineCount * bins);
@@ -412,12 +129,19 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   error_.resize(lineCount * bins);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echo_.clear(stream);
+  const bool keepsRests = paths_ > pathsWithoutRests;
+  if (keepsRests)
+  {
+    echoRest_.resize(echo_.size());
+    echoRest_.clear(stream);
+  }
 
   const double partsOfLine = double(batches) * parts * double(bins);
   const double fitting = std::min(
     { 32768.0, bouncesPerLaunch / (double(paths_) * std::max(1, view_.maxCollisions)), binsPerLaunch / partsOfLine });
   const int perLaunch = std::max(1, std::min(count, int(fitting)));
-  partial_.resize(std::size_t(perLaunch) * batches * parts * bins);
+  sums_.resize(std::size_t(perLaunch) * batches * parts * bins);
+  bins_.resize(inShared ? 0 : sums_.size());
   for (int from = 0; from < count; from += perLaunch)
   {
     const int lines = std::min(perLaunch, count - from);
@@ -429,10 +153,12 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      lines_.data() + first + from,
                      reinterpret_cast<LineStart*>(starts_.data()) + from,
                      shared_.data() + skip * bins,
-                     partial_.data(),
+                     sums_.data(),
+                     bins_.data(),
                      intensity_.data() + skip * bins,
                      error_.data() + skip * bins,
                      echo_.data() + skip * std::size_t(echoCount_) * 2,
+                     keepsRests ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
                      segments_.data(),
                      first + from,
                      linesPerImage_,
@@ -448,17 +174,23 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     };
     if (targets_.any())
     {
-      launchKernels(launchOf(targets_), lines, inShared, stream);
+      launchKernels(launchOf(targets_), lines, inShared, folds, stream);
     }
     else
     {
-      launchKernels(launchOf(NoTargets()), lines, inShared, stream);
+      launchKernels(launchOf(NoTargets()), lines, inShared, folds, stream);
     }
     if (progress && perLaunch < count)
     {
       check(cudaStreamSynchronize(stream), "tracing");
       report(progress, double(from + lines) / count);
     }
+  }
+  if (keepsRests)
+  {
+    const std::size_t sums = echo_.size();
+    carryRests<<<unsigned((sums + 255) / 256), 256, 0, stream>>>(echo_.data(), echoRest_.data(), sums);
+    check(cudaGetLastError(), "tracing");
   }
 }
 

@@ -38,11 +38,13 @@ private:
   DeviceArray<TraceMedium> media_;
   DeviceArray<TraceLine> lines_;
   DeviceArray<std::uint8_t> starts_;
-  DeviceArray<float> partial_;
+  DeviceArray<double> sums_;
+  DeviceArray<float> bins_;
   DeviceArray<float> shared_;
   DeviceArray<float> intensity_;
   DeviceArray<float> error_;
   DeviceArray<EchoSum> echo_;
+  DeviceArray<EchoSum> echoRest_;
   DeviceArray<std::uint64_t> segments_;
   TraceView view_;
   BvhTargets targets_;

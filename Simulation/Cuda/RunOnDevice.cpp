@@ -4,6 +4,7 @@
 #include "Cuda/MakeImageJob.h"
 #include "Echo/EchoSetup.h"
 #include "Kernel/TracePath.h"
+#include "Trace/TraceDevice.h"
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
@@ -48,14 +49,7 @@ bool near(double a, double b)
 
 bool runsOnDevice(const TraceSettings& settings)
 {
-  const bool onlyCpu = settings.march == March::NanoVDB || settings.sampling == Sampling::SharedPaths;
-  if (onlyCpu && settings.device == Device::Cuda)
-  {
-    throw Error(std::string(settings.march == March::NanoVDB ? "the march through the NanoVDB grid"
-                                                             : "sampling by shared paths") +
-                " runs on the CPU only: choose another, or the CPU");
-  }
-  return !onlyCpu && chooseDevice(settings.device).cuda;
+  return chooseDevice(settings).cuda;
 }
 
 TracedLines traceOnDevice(const TraceSetup& setup, const TraceSettings& settings, const Progress& progress)

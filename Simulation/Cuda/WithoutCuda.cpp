@@ -8,9 +8,10 @@ struct DeviceImager::Work
 {
 };
 
-DeviceStatus cudaStatus()
+const DeviceStatus& cudaStatus()
 {
-  return { false, "this SonoVDB was built without CUDA" };
+  static const DeviceStatus status{ false, "this SonoVDB was built without CUDA" };
+  return status;
 }
 
 DeviceImager::DeviceImager() = default;

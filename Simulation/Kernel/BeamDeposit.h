@@ -1,7 +1,8 @@
 #pragma once
 
 #include "Kernel/FastMath.h"
-#include "Kernel/TracePath.h"
+#include "Kernel/PathState.h"
+#include "Kernel/TraceView.h"
 
 namespace sono {
 

@@ -2,6 +2,7 @@
 
 #include "Kernel/FastMath.h"
 #include "Kernel/HostDevice.h"
+#include "Kernel/NormalDeviate.h"
 #include "Kernel/Vec.h"
 
 #include <cmath>
@@ -23,20 +24,6 @@ struct Lobe
   float density = 0.0f;   ///< psi at mu, extrapolated where mu is outside; in a far tail psi at alpha
   bool mirrored = false;  ///< the interval lies mostly below mu: sampled with the sign of x turned
 };
-
-/// From here on the upper tail is taken from its asymptotic series: Q itself would lose its digits, then underflow.
-constexpr float farTail = 5.0f;
-
-/// Mills' ratio Q(x) / phi(x) by Laplace's continued fraction, x >= farTail.
-inline double millsRatio(double x)
-{
-  double fraction = x;
-  for (int k = 60; k > 0; --k)
-  {
-    fraction = x + k / fraction;
-  }
-  return 1.0 / fraction;
-}
 
 /// Throws nothing; arguments are validated by TraceSettings::validate.
 inline Lobe makeLobe(double mu, double sigma, double a, double b)
@@ -77,68 +64,6 @@ inline Lobe makeLobe(double mu, double sigma, double a, double b)
   lobe.tailBeta = float(tailBeta);
   lobe.density = float(1.0 / (sigma * std::sqrt(2.0 * 3.14159265358979323846) * (tailAlpha - tailBeta)));
   return lobe;
-}
-
-/// Quantile of the upper normal tail beyond alpha >= farTail: x - alpha for Q(x) / Q(alpha) = ratio, with Mills' ratio
-/// Q(x) = phi(x) / x (1 - 1/x^2 + 3/x^4).
-SONO_HD inline float normalFarTail(float alpha, float ratio)
-{
-  const float ia = 1.0f / (alpha * alpha);
-  const float seriesAlpha = (1.0f - ia + 3.0f * ia * ia) / alpha;
-  const float target = -logf(fmaxf(ratio, 1e-30f));
-  // y = (x^2 - alpha^2) / 2 is well scaled where x itself would lose its digits.
-  float y = target;
-  for (int i = 0; i < 4; ++i)
-  {
-    const float x = sqrtf(alpha * alpha + 2.0f * y);
-    const float ix = 1.0f / (x * x);
-    y = fmaxf(0.0f, target + logf((1.0f - ix + 3.0f * ix * ix) / (x * seriesAlpha)));
-  }
-  return 2.0f * y / (alpha + sqrtf(alpha * alpha + 2.0f * y));
-}
-
-/// x with upper tail probability q in [0, 1], single precision, finite also at the ends: Giles 2010 ("Approximating the
-/// erfinv function") evaluated from the smaller tail, so that both tails keep their relative precision.
-SONO_HD inline float normalFromUpperTail(float q)
-{
-  constexpr float tailFive = 2.86651572e-7f; // Q(5); the fit below ends there
-  if (q < tailFive)
-  {
-    return 5.0f + normalFarTail(5.0f, q / tailFive);
-  }
-  const bool upper = q < 0.5f;
-  // The smaller tail; half a step of single precision where q has rounded to 1.
-  const float p = fmaxf(upper ? q : 1.0f - q, 2.98023224e-8f);
-  float w = -logf(4.0f * p * (1.0f - p));
-  float r;
-  if (w < 5.0f)
-  {
-    w -= 2.5f;
-    r = 2.81022636e-08f;
-    r = 3.43273939e-07f + r * w;
-    r = -3.5233877e-06f + r * w;
-    r = -4.39150654e-06f + r * w;
-    r = 0.00021858087f + r * w;
-    r = -0.00125372503f + r * w;
-    r = -0.00417768164f + r * w;
-    r = 0.246640727f + r * w;
-    r = 1.50140941f + r * w;
-  }
-  else
-  {
-    w = sqrtf(w) - 3.0f;
-    r = -0.000200214257f;
-    r = 0.000100950558f + r * w;
-    r = 0.00134934322f + r * w;
-    r = -0.00367342844f + r * w;
-    r = 0.00573950773f + r * w;
-    r = -0.0076224613f + r * w;
-    r = 0.00943887047f + r * w;
-    r = 1.00167406f + r * w;
-    r = 2.83297682f + r * w;
-  }
-  const float x = 1.41421356f * r * (1.0f - 2.0f * p);
-  return upper ? x : -x;
 }
 
 /// phi for u in (0, 1): inverse of the truncated normal's distribution function. Always in [a, b].

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/TissueCells.h"
+#include "Kernel/SurfaceHit.h"
 
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/Ray.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Kernel/BoundaryRecord.h"
-#include "Kernel/Lobe.h"
+#include "Kernel/NormalDeviate.h"
 #include "Scene/SmoothedMask.h"
 
 #include <algorithm>

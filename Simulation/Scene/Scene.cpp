@@ -24,15 +24,32 @@ std::uint64_t nextId()
   return ++last;
 }
 
-/// Runs `build` with the lock held. Isolated: a thread that waits in one of its loops must not meanwhile take up a task
-/// of a loop around, which may ask the same scene and would lock again.
-template<class Build>
-auto locked(std::mutex& mutex, const Build& build)
+/// Whether this thread runs an observer of a scene's progress, or works for one.
+thread_local bool isObserving = false;
+
+/// Sets that for a while.
+class Observing
 {
-  return tbb::this_task_arena::isolate([&] {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return build();
-  });
+public:
+  explicit Observing(bool observes)
+    : before_(std::exchange(isObserving, observes))
+  {
+  }
+  ~Observing() { isObserving = before_; }
+  Observing(const Observing&) = delete;
+  Observing& operator=(const Observing&) = delete;
+
+private:
+  bool before_;
+};
+
+Progress observed(const Progress& progress)
+{
+  return progress ? Progress([progress](double fraction) {
+    const Observing observing(true);
+    return progress(fraction);
+  })
+                  : Progress{};
 }
 
 } // namespace
@@ -138,15 +155,56 @@ Mat3d Scene::rotationToLocal() const
   return glm::transpose(placement().direction);
 }
 
+/// What `find` gives, with the lock held, when it gives something; else `make` makes it, without the lock, and `keep`
+/// puts it where `find` looks. While one makes a thing others wait for it. Not so an observer of progress, whom the
+/// thing may be waiting for: that one makes it again, and what is there first is kept.
+template<class Find, class Make, class Keep>
+auto Scene::findOrMake(const void* thing, const Find& find, const Make& make, const Keep& keep) const
+{
+  std::unique_lock<std::mutex> lock(mutex_);
+  made_.wait(lock, [&] { return isObserving || find() || making_.count(thing) == 0; });
+  if (auto found = find())
+  {
+    return found;
+  }
+  const bool isFirst = making_.insert(thing).second;
+  lock.unlock();
+  const auto finish = [&] {
+    lock.lock();
+    if (isFirst)
+    {
+      making_.erase(thing);
+    }
+    made_.notify_all();
+  };
+  try
+  {
+    // Isolated: a thread that waits in one of its loops must not meanwhile take up a task of a loop around, which may
+    // ask for the same thing and would wait for this very thread.
+    auto made = tbb::this_task_arena::isolate(make);
+    finish();
+    if (!find())
+    {
+      keep(std::move(made));
+    }
+  }
+  catch (...)
+  {
+    if (!lock.owns_lock())
+    {
+      finish();
+    }
+    throw;
+  }
+  return find();
+}
+
 const LabelGrid& Scene::labelGrid(const Progress& progress) const
 {
-  return *locked(mutex_, [&] {
-    if (!labelGrid_)
-    {
-      labelGrid_ = std::make_unique<LabelGrid>(buildLabelGrid(volume_, progress));
-    }
-    return labelGrid_.get();
-  });
+  return *findOrMake(
+    &labelGrid_, [&] { return labelGrid_.get(); },
+    [&] { return std::make_unique<LabelGrid>(buildLabelGrid(volume_, observed(progress))); },
+    [&](std::unique_ptr<LabelGrid> made) { labelGrid_ = std::move(made); });
 }
 
 const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
@@ -156,41 +214,42 @@ const SurfaceField& Scene::surface(int labelId, const Progress& progress) const
   {
     throw Error("label " + std::to_string(labelId) + " does not occur in the label map: choose one that does");
   }
-  const auto index = std::size_t(label - volume_.labels.data());
-  return *locked(mutex_, [&] {
-    buildSurfaceAt(index, progress);
-    return surfaces_[index].get();
-  });
+  return surfaceAt(std::size_t(label - volume_.labels.data()), progress);
 }
 
-void Scene::buildSurfaceAt(std::size_t label, const Progress& progress) const
+const std::vector<VoxelBox>& Scene::boxes() const
 {
-  if (boxes_.empty())
-  {
-    boxes_ = labelBoxes(volume_);
-  }
-  if (!surfaces_[label])
-  {
-    surfaces_[label] =
-      std::make_unique<SurfaceField>(buildSurface(volume_, volume_.labels[label].id, boxes_[label], progress));
-  }
+  using Boxes = std::vector<VoxelBox>;
+  return *findOrMake(
+    &boxes_, [&] { return boxes_.get(); }, [&] { return std::make_unique<Boxes>(labelBoxes(volume_)); },
+    [&](std::unique_ptr<Boxes> made) { boxes_ = std::move(made); });
+}
+
+const SurfaceField& Scene::surfaceAt(std::size_t label, const Progress& progress) const
+{
+  const VoxelBox& box = boxes()[label];
+  std::unique_ptr<SurfaceField>& surface = surfaces_[label];
+  return *findOrMake(
+    &surface, [&] { return surface.get(); },
+    [&] {
+      return std::make_unique<SurfaceField>(buildSurface(volume_, volume_.labels[label].id, box, observed(progress)));
+    },
+    [&](std::unique_ptr<SurfaceField> made) { surface = std::move(made); });
 }
 
 void Scene::buildAll(const Progress& progress) const
 {
   labelGrid(partOf(progress, 0.0, 0.1));
-  const Progress rest = partOf(progress, 0.1, 1.0);
-  locked(mutex_, [&] {
-    if (!surfaces_.empty())
-    {
-      buildSurfaceAt(0, {}); // the boxes as well
-    }
+  boxes(); // once, by all cores
+  const Progress rest = observed(partOf(progress, 0.1, 1.0));
+  tbb::this_task_arena::isolate([&, forObserver = isObserving] {
     parallelFor(int(surfaces_.size()), rest, [&](int label, const YieldPoint& yieldPoint) {
+      const Observing observing(forObserver);
       const Progress ofLabel = [&](double) {
         yieldPoint();
         return true;
       };
-      buildSurfaceAt(std::size_t(label), ofLabel);
+      surfaceAt(std::size_t(label), ofLabel);
     });
   });
 }
@@ -221,16 +280,21 @@ VoxelBox Scene::clipped(const VoxelBox& box) const
 std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box, const Progress& progress) const
 {
   const VoxelBox wanted = clipped(box);
-  return locked(mutex_, [&] {
-    if (!region_ || !(region_->region().box == wanted))
-    {
-      const bool isThere =
-        interactive_ && interactive_->region.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-      region_ = std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
-                                                 progress, isThere ? interactive_->region.get() : nullptr);
-    }
-    return region_;
-  });
+  return findOrMake(
+    &region_, [&] { return region_ && region_->region().box == wanted ? region_ : nullptr; },
+    [&]() -> SharedRegion {
+      return std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
+                                              observed(progress), finishedInteractive());
+    },
+    [&](SharedRegion made) { region_ = std::move(made); });
+}
+
+Scene::SharedRegion Scene::finishedInteractive() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool isThere =
+    interactive_ && interactive_->region.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  return isThere ? interactive_->region.get() : nullptr;
 }
 
 std::shared_ptr<const RegionOnDemand> Scene::interactiveRegion(const VoxelBox& box, const Progress& progress) const

@@ -7,9 +7,11 @@
 #include "Scene/SurfaceField.h"
 #include "Scene/VoxelBox.h"
 
+#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,8 @@ namespace sono {
 /// The anatomy as the simulator sees it: the label map's voxels, the tissues of its labels, and, built on first need
 /// and kept, the label grid and one narrow-band signed distance field per label (to show, to write, to check against),
 /// and the region of dense cells that the tracer reads (TraceRegion).
-/// Immutable to its users; the lazy parts are guarded, so several filters may share one Scene.
+/// Immutable to its users; the lazy parts are guarded, so several filters may share one Scene, and an observer of their
+/// progress may use it, too.
 ///
 /// "Local" coordinates are millimetres along the grid's own axes with 0 at the outer corner of voxel (0,0,0):
 /// voxel (i,j,k) fills [i, i+1) x spacing.
@@ -75,7 +78,11 @@ private:
   VoxelBox clipped(const VoxelBox& box) const;
   struct Making;
   std::shared_ptr<const Making> makingInteractive(const VoxelBox& box, bool allRecords) const;
-  void buildSurfaceAt(std::size_t label, const Progress& progress) const;
+  SharedRegion finishedInteractive() const; ///< null where it is still being made
+  template<class Find, class Make, class Keep>
+  auto findOrMake(const void* thing, const Find& find, const Make& make, const Keep& keep) const;
+  const std::vector<VoxelBox>& boxes() const;
+  const SurfaceField& surfaceAt(std::size_t label, const Progress& progress) const;
 
   std::uint64_t id_;
   LabelVolume volume_;
@@ -84,9 +91,11 @@ private:
   std::vector<std::uint8_t> tissueVoxels_;
   int outsideIndex_ = -1;
 
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_; // for what follows; not held while any of it is made
+  mutable std::condition_variable made_;
+  mutable std::set<const void*> making_; // which of these somebody makes
   mutable std::unique_ptr<LabelGrid> labelGrid_;
-  mutable std::vector<VoxelBox> boxes_;                         // parallel to volume_.labels, empty until needed
+  mutable std::unique_ptr<std::vector<VoxelBox>> boxes_;        // parallel to volume_.labels
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable SharedRegion region_;
   mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest

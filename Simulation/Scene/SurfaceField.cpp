@@ -1,7 +1,7 @@
 #include "Scene/SurfaceField.h"
 
 #include "Core/ParallelFor.h"
-#include "Kernel/Lobe.h"
+#include "Kernel/NormalDeviate.h"
 #include "Scene/GridTransform.h"
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoGridStorage.h"

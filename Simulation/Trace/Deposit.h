@@ -1,6 +1,8 @@
 #pragma once
 
-#include "Kernel/TracePath.h"
+#include "Kernel/PathState.h"
+#include "Kernel/TraceView.h"
+#include "Trace/PathBatches.h"
 
 #include <complex>
 #include <vector>
@@ -9,7 +11,7 @@ namespace sono {
 
 /// What the paths of one line leave on its main beam, on the CPU. A path deposits where it crosses the plane at r,
 /// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin.
-class LineTally
+class LineTally : public PathSink
 {
 public:
   LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm);
@@ -24,10 +26,8 @@ public:
   void echo(const Vec3f& point, float amplitude);
   std::uint64_t segments() const { return segments_; }
 
-  /// To be called after `pathsPerFold` paths: a long sum of floats loses its last digits, all the more where every path
-  /// adds the same, and always the same way.
+  /// To be called after `pathsPerFold` paths.
   void fold();
-  static constexpr int pathsPerFold = 512;
 
   /// What was left in each bin, of each of `paths` paths, and forgets it.
   std::vector<float> takeBins(int paths);

@@ -9,6 +9,10 @@ namespace sono {
 /// Paths of a line are traced in this many batches at most; the spread of their means gives the standard error.
 constexpr int batchCount = 8;
 
+/// Sums of floats are folded into doubles after this many paths: a long sum loses its last digits, all the more where
+/// every path adds the same, and always the same way.
+constexpr int pathsPerFold = 512;
+
 struct PathRange
 {
   int first;

@@ -1,17 +1,19 @@
 #include "Trace/RecordPaths.h"
 
+#include "Core/ParallelFor.h"
 #include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sono {
 
 namespace {
 
-/// A sink that keeps a path's corners, and the boundaries that it is told of.
-class PathRecorder
+/// Keeps a path's corners, and the boundaries that echo.
+class PathRecorder : public PathSink
 {
 public:
   PathRecorder(const TraceSetup& setup, int line)
@@ -31,22 +33,28 @@ public:
       add(s.start + s.direction * s.length, s.intensity * std::exp(-s.decayPerMm * s.length));
     }
   }
-  void echo(const Vec3f&, float amplitude)
-  {
-    ++bounces_;
-    echo_ = amplitude;
-  }
-  /// After its echo.
-  void hit(const PathState& path, const PathBoundary& boundary)
+  void meets(const PathState& path, const PathBoundary& boundary)
   {
     const Vec3f point = path.ray.position + path.ray.direction * boundary.surface.t;
     const TraceLine& line = setup_.lines[std::size_t(path_.line)];
-    path_.hits.push_back({ setup_.worldFromRegion(point), setup_.toWorld * Vec3d(boundary.surface.normal),
-                           path.intensity, echo_, boundary.cosine, glm::dot(point - line.origin, line.axis),
-                           path.length + boundary.surface.t - boundary.restart, path.collisions, boundary.before.medium,
-                           boundary.after.medium });
+    met_ = { setup_.worldFromRegion(point),
+             setup_.toWorld * Vec3d(boundary.surface.normal),
+             path.intensity,
+             0.0f,
+             boundary.cosine,
+             glm::dot(point - line.origin, line.axis),
+             path.length + boundary.surface.t - boundary.restart,
+             path.collisions,
+             boundary.before.medium,
+             boundary.after.medium };
   }
-  const RecordedPath& path() const { return path_; }
+  void echo(const Vec3f&, float amplitude)
+  {
+    ++bounces_;
+    met_.echo = amplitude;
+    path_.hits.push_back(met_);
+  }
+  RecordedPath take() { return std::move(path_); }
 
 private:
   void add(const Vec3f& point, float intensity)
@@ -58,70 +66,52 @@ private:
 
   const TraceSetup& setup_;
   RecordedPath path_;
+  BoundaryHit met_{};
   int bounces_ = 0;
-  float echo_ = 0.0f;
 };
 
-/// What tracePath does, with a word to the recorder at each boundary.
-template<class Space>
-void followPath(const TraceSetup& setup, const Space& space, const LineStart& start, const PathKey& key,
-                PathRecorder& recorder)
+/// The `number`-th path of a line, of all its batches. Less than two corners where there is nothing to follow.
+RecordedPath recordPath(const TraceSetup& setup, int line, int number)
 {
-  const TraceView& view = setup.view;
-  PathState path = start.path;
-  PathBoundary boundary = start.boundary;
-  for (;;)
+  const auto space = setup.space();
+  const TraceLine& axis = setup.lines[std::size_t(line)];
+  PathRecorder recorder(setup, line);
+  const LineStart start = startLine(setup.view, space, axis, recorder);
+  if (start.meets)
   {
-    recorder.hit(path, boundary);
-    leaveBoundary(view, space, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
-    if (!(path.intensity > 0.0f) || !survivesRoulette(view, key, path) ||
-        !advanceToBoundary(view, space, setup.lines[key.line], path, boundary, recorder) ||
-        path.collisions >= view.maxCollisions)
+    const int batches = std::min(batchCount, setup.paths);
+    int batch = batches - 1;
+    while (batchRange(setup.paths, batches, batch).first > number)
     {
-      return;
+      --batch;
     }
-    depositBoundary(view, path, boundary, recorder);
+    const int within = number - batchRange(setup.paths, batches, batch).first;
+    tracePath(setup.view, space, axis, start, { std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) },
+              recorder);
   }
+  return recorder.take();
 }
 
 } // namespace
 
 std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<ScanLine>& lines,
                                       const TraceSettings& settings, int count,
-                                      const std::vector<TargetSurface>& targets)
+                                      const std::vector<TargetSurface>& targets, const Progress& progress)
 {
   if (count < 1 || count > 100000)
   {
     throw Error("the number of recorded paths is " + std::to_string(count) + ": it must be 1 to 100,000");
   }
-  const TraceSetup setup(scene, lines, settings, targets, {}, Records::OnDemand);
-  const auto space = setup.space();
-  const int batches = std::min(batchCount, setup.paths);
+  const TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3), Records::OnDemand);
   const std::int64_t all = std::int64_t(setup.lines.size()) * setup.paths;
-  std::vector<RecordedPath> recorded;
-  for (std::int64_t i = 0; i < std::min<std::int64_t>(count, all); ++i)
-  {
-    const std::int64_t pick = (2 * i + 1) * all / (2 * std::min<std::int64_t>(count, all));
-    const int line = int(pick / setup.paths);
-    const int path = int(pick % setup.paths);
-    int batch = batches - 1;
-    while (batchRange(setup.paths, batches, batch).first > path)
-    {
-      --batch;
-    }
-    PathRecorder recorder(setup, line);
-    const LineStart start = startLine(setup.view, space, setup.lines[std::size_t(line)], recorder);
-    if (start.meets)
-    {
-      const int within = path - batchRange(setup.paths, batches, batch).first;
-      followPath(setup, space, start, PathKey{ std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) },
-                 recorder);
-    }
-    if (recorder.path().pointMm.size() > 1)
-    {
-      recorded.push_back(recorder.path());
-    }
-  }
+  const std::int64_t wanted = std::min<std::int64_t>(count, all);
+  std::vector<RecordedPath> recorded(static_cast<std::size_t>(wanted));
+  parallelFor(int(wanted), partOf(progress, 0.3, 1.0), [&](int i) {
+    const std::int64_t pick = (2 * std::int64_t(i) + 1) * all / (2 * wanted);
+    recorded[std::size_t(i)] = recordPath(setup, int(pick / setup.paths), int(pick % setup.paths));
+  });
+  const auto empty = [](const RecordedPath& path) { return path.pointMm.size() < 2; };
+  recorded.erase(std::remove_if(recorded.begin(), recorded.end(), empty), recorded.end());
   return recorded;
 }
 

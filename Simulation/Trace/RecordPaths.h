@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Trace/Trace.h"
 
 #include <vector>
@@ -33,9 +34,10 @@ struct RecordedPath
 };
 
 /// `count` of the paths that trace() would follow with the same arguments (of LowDiscrepancy where it would share
-/// them), chosen evenly over lines and paths. Throws Error unless `count` is 1 to 100,000, and as trace().
+/// them), chosen evenly over lines and paths, in the order of the lines and of their paths. Throws Error unless `count`
+/// is 1 to 100,000, and as trace(), Aborted when asked to stop.
 std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<ScanLine>& lines,
                                       const TraceSettings& settings, int count,
-                                      const std::vector<TargetSurface>& targets = {});
+                                      const std::vector<TargetSurface>& targets = {}, const Progress& progress = {});
 
 } // namespace sono

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/ParallelFor.h"
+#include "Kernel/TracePath.h"
 #include "Trace/Deposit.h"
 
 #include <algorithm>
@@ -71,8 +72,8 @@ struct SharedPiece
   float echoTau; ///< how the amplitude goes with the intensity
 };
 
-/// A sink that keeps pieces.
-struct PieceList
+/// Keeps pieces.
+struct PieceList : PathSink
 {
   std::vector<SharedPiece> pieces;
 
@@ -89,9 +90,9 @@ struct PieceList
 struct PathJoin
 {
   PieceList way;
-  PathBoundary boundary; ///< the second boundary as this line's path meets it
-  float intensity;       ///< on arrival
-  float density;         ///< p_k; 0 when the line cannot draw the path
+  PathBoundary boundary;  ///< the second boundary as this line's path meets it
+  float intensity = 1.0f; ///< on arrival
+  float density;          ///< p_k; 0 when the line cannot draw the path
 };
 
 /// A path as the line that drew it followed it.
@@ -101,11 +102,63 @@ struct DrawnPath
   bool reflected;  ///< at its first boundary
   Vec3f direction; ///< from there
   bool meets;      ///< a second boundary
+  bool alone;      ///< meets it where it left the first one
   Vec3f joint;     ///< where it crosses that
   bool leaves;     ///< the second boundary again, not ending there
   bool reflectedAgain;
   Vec3f directionAgain;
   PieceList rest; ///< from the second boundary on
+};
+
+/// Hears the path that a line draws, from its first boundary on: its way to the second one, how it meets and leaves
+/// that, and the rest.
+class DrawnPathSink : public PathSink
+{
+public:
+  DrawnPathSink(const TraceView& view, DrawnPath& drawn, PathJoin& own)
+    : view_(view)
+    , drawn_(drawn)
+    , own_(own)
+    , pieces_(&own.way)
+  {
+  }
+
+  void segment(const PathSegment& s) { pieces_->segment(s); }
+  void meets(const PathState& path, const PathBoundary& boundary)
+  {
+    tau_ = view_.media[boundary.after.medium].tau;
+    if (drawn_.meets)
+    {
+      return;
+    }
+    drawn_.meets = true;
+    drawn_.leaves = path.collisions < view_.maxCollisions;
+    drawn_.joint = path.ray.position + path.ray.direction * boundary.restart;
+    own_.boundary = boundary;
+    own_.intensity = path.intensity;
+  }
+  void echo(const Vec3f& point, float amplitude)
+  {
+    pieces_->echo(point, amplitude);
+    pieces_->pieces.back().echoTau = tau_;
+  }
+  void left(const PathState& path, const PathBoundary& boundary)
+  {
+    if (pieces_ == &drawn_.rest)
+    {
+      return;
+    }
+    drawn_.reflectedAgain = path.tissue == boundary.before.medium;
+    drawn_.directionAgain = path.ray.direction;
+    pieces_ = &drawn_.rest;
+  }
+
+private:
+  const TraceView& view_;
+  DrawnPath& drawn_;
+  PathJoin& own_;
+  PieceList* pieces_;
+  float tau_ = 1.0f;
 };
 
 /// What a group needs while it runs, kept from group to group.
@@ -154,7 +207,7 @@ public:
       for (int i = 0; i < paths; ++i)
       {
         key.path = std::uint32_t(owner) * std::uint32_t(paths) + std::uint32_t(i);
-        if (key.path > 0 && key.path % LineTally::pathsPerFold == 0)
+        if (key.path > 0 && key.path % pathsPerFold == 0)
         {
           fold();
           yieldPoint();
@@ -192,52 +245,36 @@ private:
     }
   }
 
-  /// The owner's path, as tracePath follows it.
+  /// The owner's path.
   std::uint64_t follow(const PathKey& key)
   {
     const LineStart& start = *lines_[std::size_t(path_.owner)].start;
     PathJoin& own = joins_[std::size_t(path_.owner)];
     own.way.pieces.clear();
     path_.rest.pieces.clear();
+    path_.meets = path_.leaves = path_.alone = false;
     PathState path = start.path;
     leaveBoundary(view_, space_, start.boundary, firstBounceSample(key.scrambles[0], key.path), path);
     path_.reflected = path.tissue == start.boundary.before.medium;
     path_.direction = path.ray.direction;
-    path_.meets = advanceToBoundary(view_, space_, beams_, path, own.boundary, own.way);
-    own.intensity = path.intensity;
-    path_.leaves = path_.meets && path.collisions < view_.maxCollisions;
-    if (path_.meets)
+    DrawnPathSink sink(view_, path_, own);
+    bool goesOn = true;
+    while (goesOn)
     {
-      path_.joint = path.ray.position + path.ray.direction * own.boundary.restart;
+      goesOn = stepPath(view_, space_, beams_, key, path, sink);
     }
-    if (path_.leaves)
-    {
-      followRest(key, own.boundary, path);
-    }
+    path_.alone = startsAtJoint(lines_[std::size_t(path_.owner)]);
     return own.way.pieces.size() + path_.rest.pieces.size();
   }
 
-  void followRest(const PathKey& key, PathBoundary boundary, PathState& path)
+  /// Where three tissues meet a path may find its second boundary in the very point in which it leaves the first one.
+  /// Per area of the joint its density is then beyond all bounds, and against it no other line's counts: it stands for
+  /// itself alone. A line whose own paths start in the joint of another's cannot lead there.
+  bool startsAtJoint(const GroupLine& line) const
   {
-    depositBoundary(view_, path, boundary, joins_[std::size_t(path_.owner)].way);
-    for (;;)
-    {
-      const int before = boundary.before.medium;
-      leaveBoundary(view_, space_, boundary, drawBounce(view_, key, std::uint32_t(path.collisions)), path);
-      if (path_.rest.pieces.empty())
-      {
-        path_.reflectedAgain = path.tissue == before;
-        path_.directionAgain = path.ray.direction;
-      }
-      if (!(path.intensity > 0.0f) || !survivesRoulette(view_, key, path) ||
-          !advanceToBoundary(view_, space_, beams_, path, boundary, path_.rest) ||
-          path.collisions >= view_.maxCollisions)
-      {
-        return;
-      }
-      depositBoundary(view_, path, boundary, path_.rest);
-      path_.rest.pieces.back().echoTau = view_.media[boundary.after.medium].tau;
-    }
+    constexpr float coincidentMm = 1e-6f;
+    const Vec3f across = path_.joint - line.restart;
+    return path_.meets && glm::dot(across, across) < coincidentMm * coincidentMm;
   }
 
   /// Line k's way to the joint, or along the same direction when the path meets no second boundary, and the density of
@@ -247,6 +284,11 @@ private:
     const GroupLine& line = lines_[std::size_t(k)];
     PathJoin& j = joins_[std::size_t(k)];
     const bool owner = k == path_.owner;
+    if (path_.alone || startsAtJoint(line))
+    {
+      j.density = owner ? 1.0f : 0.0f;
+      return 0;
+    }
     const Vec3f across = path_.joint - line.restart;
     const Vec3f direction = owner || !path_.meets ? path_.direction : glm::normalize(across);
     const PathBoundary& first = line.start->boundary;

@@ -53,7 +53,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     }
     for (int path = first; path < last;)
     {
-      const int pause = std::min(last, path + LineTally::pathsPerFold); // a few milliseconds' worth
+      const int pause = std::min(last, path + pathsPerFold); // a few milliseconds' worth
       for (; path < pause; ++path)
       {
         tracePath(view, space, line, start,

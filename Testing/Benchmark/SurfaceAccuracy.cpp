@@ -1,6 +1,6 @@
 #include "SurfaceAccuracy.h"
 
-#include "Kernel/TissueCells.h"
+#include "Kernel/SurfaceHit.h"
 #include "Scene/TraceRegion.h"
 
 #include <algorithm>

@@ -107,6 +107,21 @@ class TestStages(unittest.TestCase):
                     announced = stage.GetOutputInformation(port).Get(whole_extent)
                     self.assertEqual(tuple(announced), stage.GetOutputDataObject(port).GetExtent())
 
+    def test_depths_that_are_whole_bins_but_for_rounding_are_announced_as_they_are_made(self):
+        whole_extent = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()
+        chain = Chain()
+        chain.tracer.SetPathsPerLine(1)
+        for depth_mm in (161.0, 168.0, 175.0):
+            for bin_mm in (0.35, 0.7):
+                with self.subTest(depth=depth_mm, bin=bin_mm):
+                    chain.probe.SetDepthMm(depth_mm)
+                    chain.tracer.SetRadialBinMm(bin_mm)
+                    chain.tracer.Update()
+                    self.assertEqual(chain.tracer.GetOutputDataObject(0).GetDimensions()[0], round(depth_mm / bin_mm))
+                    for port in (0, 1):
+                        announced = chain.tracer.GetOutputInformation(port).Get(whole_extent)
+                        self.assertEqual(tuple(announced), chain.tracer.GetOutputDataObject(port).GetExtent())
+
 
 class TestRunningAgain(unittest.TestCase):
     def changed(self, change):

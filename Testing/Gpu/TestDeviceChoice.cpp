@@ -1,6 +1,7 @@
 #include "Core/Device.h"
 #include "Core/Progress.h"
 #include "GpuOrSkip.h"
+#include "Trace/TraceDevice.h"
 
 namespace {
 
@@ -38,6 +39,26 @@ TEST(DeviceChoice, AMissingGpuIsAnErrorWhenItIsAskedFor)
     EXPECT_NE(std::string(error.what()).find(cudaStatus().what), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("choose Auto or CPU"), std::string::npos) << error.what();
   }
+}
+
+TEST(DeviceChoice, AutoSaysWhenSharedPathsLeaveAGpuAside)
+{
+  TraceSettings s;
+  s.sampling = Sampling::SharedPaths;
+  const DeviceChoice choice = chooseDevice(s);
+  EXPECT_FALSE(choice.cuda);
+  EXPECT_NE(choice.note.find(cudaStatus().usable ? "shared paths" : cudaStatus().what), std::string::npos)
+    << choice.note;
+  EXPECT_EQ(choice.note.find('\n'), std::string::npos);
+  s.device = Device::Cpu;
+  EXPECT_TRUE(chooseDevice(s).note.empty());
+  s.device = Device::Cuda;
+  EXPECT_THROW(chooseDevice(s), Error);
+}
+
+TEST(DeviceChoice, TheDeviceIsAskedOnce)
+{
+  EXPECT_EQ(&cudaStatus(), &cudaStatus());
 }
 
 } // namespace

@@ -51,11 +51,7 @@ struct KernelScene
 };
 
 /// Takes nothing.
-struct NullSink
-{
-  void segment(const PathSegment&) {}
-  void echo(const Vec3f&, float) {}
-};
+using NullSink = PathSink;
 
 inline TraceMedium makeMedium(float impedance, float speed)
 {

@@ -1,5 +1,5 @@
 #include "Kernel/FastMath.h"
-#include "Kernel/Lobe.h"
+#include "Kernel/NormalDeviate.h"
 #include "Kernel/Rng.h"
 #include "Kernel/Scatterer.h"
 

@@ -11,7 +11,7 @@ using namespace sono;
 using namespace sono::test;
 
 /// How a path ended, from its last piece.
-struct LastPiece
+struct LastPiece : PathSink
 {
   Vec3f end{ 0.0f };
   float intensity = 0.0f;
@@ -144,11 +144,11 @@ TEST(Furnace, APlateReflectsTheSumOfItsIncoherentReverberations)
 }
 
 /// What a path deposits along its way: the integral of its intensity.
-struct Dose
+struct Dose : PathSink
 {
   double sum = 0.0;
+
   void segment(const PathSegment& s) { sum += s.intensity * -std::expm1(-s.decayPerMm * s.length) / s.decayPerMm; }
-  void echo(const Vec3f&, float) {}
 };
 
 TEST(Furnace, RussianRouletteKeepsTheMean)

@@ -6,7 +6,9 @@
 #include "Trace/RecordPaths.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -75,6 +77,37 @@ TEST(RecordedPaths, AreChosenEvenlyAndFollowTheTracedOnes)
     EXPECT_EQ(count, 5) << line;
   }
   EXPECT_THROW(recordPaths(*scene, lines, s, 0), Error);
+}
+
+TEST(RecordedPaths, DoNotDependOnTheThreadsAndCanBeStopped)
+{
+  const auto scene = makeBusyScene();
+  const std::vector<ScanLine> lines = fan(20);
+  const TraceSettings s = busySettings();
+  double last = 0.0;
+  const auto paths = recordPaths(*scene, lines, s, 5000, {}, [&](double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+    return true;
+  });
+  EXPECT_GT(last, 0.9);
+  {
+    const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+    const auto again = recordPaths(*scene, lines, s, 5000);
+    ASSERT_EQ(again.size(), paths.size());
+    for (std::size_t i = 0; i < paths.size(); ++i)
+    {
+      ASSERT_EQ(again[i].line, paths[i].line);
+      ASSERT_EQ(again[i].pointMm, paths[i].pointMm);
+      ASSERT_EQ(again[i].intensity, paths[i].intensity);
+      ASSERT_EQ(again[i].hits.size(), paths[i].hits.size());
+    }
+  }
+  const auto byLine = [](const RecordedPath& a, const RecordedPath& b) { return a.line < b.line; };
+  EXPECT_TRUE(std::is_sorted(paths.begin(), paths.end(), byLine));
+  int asked = 0;
+  EXPECT_THROW(recordPaths(*scene, lines, s, 5000, {}, [&](double) { return ++asked < 50; }), Aborted);
+  EXPECT_EQ(asked, 50);
 }
 
 TEST(BoundaryHits, OfAStraightPathAreThoseOfTheSlab)

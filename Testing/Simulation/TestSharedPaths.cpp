@@ -195,6 +195,35 @@ TEST(SharedPaths, FewPathsAndLinesStillGiveAnImage)
   }
 }
 
+/// Three tissues meet at x = 10, z = 20, where the lines leave their first boundary: half of the paths are in the third
+/// one at once.
+TEST(SharedPaths, AThirdTissueInTheFirstBoundaryItselfIsJustAnother)
+{
+  const auto scene =
+    makeScene(Vec3i(20, 20, 40), Vec3d(1.0),
+              { makeTissue("a", 1.5, 1540, 0.4), makeTissue("b", 2.4, 1700, 0.6), makeTissue("c", 4.0, 2500, 1.0) },
+              [](const Vec3d& p) { return p.z < 20.0 ? 0 : (p.x < 10.0 ? 1 : 2); });
+  std::vector<ScanLine> lines;
+  for (int i = 0; i < 8; ++i)
+  {
+    lines.push_back(makeLine({ 10.0, 6.0 + i, 0.0 }, { 0.0, 0.0, 1.0 }));
+  }
+  TraceSettings s = busySettings();
+  s.depthMm = 36.0;
+  s.coherenceMm = 50.0;
+  s.sampling = Sampling::Independent;
+  s.pathsPerLine = 20000;
+  const Averages independent = average(*scene, lines, s, 6, false);
+  s.sampling = Sampling::SharedPaths;
+  s.pathsPerLine = 2000;
+  const Averages shared = average(*scene, lines, s, 6, false);
+  for (const double v : shared.mean)
+  {
+    ASSERT_TRUE(std::isfinite(v));
+  }
+  EXPECT_LT(squaredDistance(independent, shared), 3.0 * (independent.variance + shared.variance));
+}
+
 TEST(SharedPaths, CanBeStoppedWithinAGroup)
 {
   const auto scene = makeBusyScene();
@@ -202,7 +231,7 @@ TEST(SharedPaths, CanBeStoppedWithinAGroup)
   s.sampling = Sampling::SharedPaths;
   s.pathsPerLine = 8192;
   const auto lines = fan(4); // one group a batch
-  const int pauses = 4 * s.pathsPerLine / LineTally::pathsPerFold;
+  const int pauses = 4 * s.pathsPerLine / pathsPerFold;
   trace(*scene, lines, s); // so that the region is there
   int told = 0;
   trace(*scene, lines, s, [&](double) {

@@ -136,7 +136,7 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
     tally.setEchoWeight(1.0f / float(count));
     for (int i = 0; i < count; ++i)
     {
-      if (i % LineTally::pathsPerFold == 0)
+      if (i % pathsPerFold == 0)
       {
         tally.fold();
       }

@@ -5,6 +5,7 @@
 #include "RegionSwitches.h"
 #include "Study.h"
 
+#include "Kernel/TracePath.h"
 #include "Trace/Deposit.h"
 #include "Trace/TraceSetup.h"
 
@@ -41,25 +42,6 @@ struct ShortCuts
   bool limits = true;      ///< paths end where nothing of them is deposited or heard
 };
 
-template<class Beam>
-void traceRest(const TraceSetup& setup, const Beam& beam, const LineStart& start, const PathKey& key, LineTally& tally)
-{
-  const TraceView& view = setup.view;
-  const auto space = setup.space();
-  PathState path = start.path;
-  PathBoundary boundary = start.boundary;
-  for (;;)
-  {
-    leaveBoundary(view, space, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
-    if (!(path.intensity > 0.0f) || !survivesRoulette(view, key, path) ||
-        !advanceToBoundary(view, space, beam, path, boundary, tally) || path.collisions >= view.maxCollisions)
-    {
-      return;
-    }
-    depositBoundary(view, path, boundary, tally);
-  }
-}
-
 /// Processor seconds since `begin`. The study of skips keeps to one thread, so they are its time, and what other
 /// programs do does not count.
 double secondsSince(std::clock_t begin)
@@ -69,28 +51,27 @@ double secondsSince(std::clock_t begin)
 
 void traceLines(const TraceSetup& setup, const TraceSettings& tracing, const ShortCuts& cuts)
 {
-  const int bins = int(tracing.depthMm / tracing.radialBinMm);
-  const int echoes = int(tracing.depthMm / tracing.echoSampleMm) + 1;
-  LineTally tally(bins, tracing.radialBinMm, echoes, tracing.echoSampleMm,
+  const auto space = setup.space();
+  LineTally tally(tracing.binCount(), tracing.radialBinMm, tracing.echoCount(), tracing.echoSampleMm,
                   tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
     tally.start(setup.lines[i], setup.view.coherenceMm);
-    LineStart start = startLine(setup.view, setup.space(), setup.lines[i], tally);
+    LineStart start = startLine(setup.view, space, setup.lines[i], tally);
     for (int path = 0; path < setup.paths && start.meets; ++path)
     {
       if (!cuts.sharedStart)
       {
-        start = startLine(setup.view, setup.space(), setup.lines[i], tally);
+        start = startLine(setup.view, space, setup.lines[i], tally);
       }
       const PathKey key{ std::uint32_t(i), 0u, std::uint32_t(path) };
       if (cuts.limits)
       {
-        traceRest(setup, setup.lines[i], start, key, tally);
+        tracePath(setup.view, space, setup.lines[i], start, key, tally);
       }
       else
       {
-        traceRest(setup, EndlessBeam{}, start, key, tally);
+        tracePath(setup.view, space, EndlessBeam{}, start, key, tally);
       }
     }
   }

@@ -1,0 +1,310 @@
+#pragma once
+
+#include "Cuda/DeviceTracer.cuh"
+#include "Cuda/WarpDeposit.cuh"
+#include "Trace/PathBatches.h"
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+
+// The kernels that trace lines: what all paths of a line share, the paths, and the means of what they leave.
+
+namespace sono {
+
+constexpr int blockWarps = 4;
+constexpr int blockPaths = blockWarps * warpLanes;
+constexpr int blocksAtOnce =
+  9; // on a multiprocessor: more warps, that hide their waits, are worth some spilled registers
+constexpr unsigned allLanes = 0xffffffffu;
+constexpr int restBits = 28; // of what rounding leaves of an echo
+
+/// What the kernels of one launch share.
+template<class Targets>
+struct TraceLaunch
+{
+  TraceView view;
+  CellSpace<Targets, RowCells> space;
+  const TraceLine* lines; // of the launch
+  LineStart* starts;
+  float* shared; // what all paths of a line leave: lines x bins
+  double* sums;  // of parts of batches: lines x batches x parts x bins
+  float* bins;   // of the warps, where they do not lie in shared memory
+  float* intensity;
+  float* error;
+  EchoSum* echo;
+  EchoSum* echoRest; // what rounding left of each echo, 2^restBits a unit of `echo`; null: not kept
+  std::uint64_t* segments;
+  int firstInImage; // number of the launch's first line, to be taken modulo linesPerImage
+  int linesPerImage;
+  int paths;
+  int batches;
+  int slices; // of a batch, each traced by one block
+  int binCount;
+  float binMm;
+  int echoCount;
+  float echoSampleMm;
+  float radPerMm;
+  float echoScale;
+
+  __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
+};
+
+template<class Launch>
+__device__ void addEcho(const Launch& launch, int line, const Vec3f& point, float amplitude)
+{
+  const EchoSplit split = splitEcho(launch.lines[line], point, amplitude, launch.view.coherenceMm, launch.echoSampleMm,
+                                    launch.echoCount, launch.radPerMm);
+  if (split.sample < 0)
+  {
+    return;
+  }
+  const std::size_t at = 2 * (std::size_t(line) * launch.echoCount + split.sample);
+  for (int c = 0; c < 4; ++c)
+  {
+    const float units = split.amplitude[c] * launch.echoScale;
+    const float whole = rintf(units);
+    atomicAdd(launch.echo + at + c, EchoSum(__float2ll_rn(whole)));
+    if (launch.echoRest)
+    {
+      atomicAdd(launch.echoRest + at + c, EchoSum(__float2ll_rn((units - whole) * float(1 << restBits))));
+    }
+  }
+}
+
+/// All lanes follow the same path.
+template<class Launch>
+struct CommonSink : PathSink
+{
+  __device__ CommonSink(const Launch& theLaunch, int theLine, int theLane)
+    : launch(theLaunch)
+    , line(theLine)
+    , lane(theLane)
+  {
+  }
+
+  const Launch& launch;
+  int line;
+  int lane;
+  unsigned segments = 0;
+
+  __device__ void segment(const PathSegment& piece)
+  {
+    ++segments;
+    depositByWarp(stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount),
+                  launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
+  }
+  __device__ void echo(const Vec3f& point, float amplitude)
+  {
+    if (lane == 0)
+    {
+      addEcho(launch, line, point, amplitude * float(launch.paths)); // sums are divided by the paths
+    }
+  }
+};
+
+/// One warp a line: what all its paths share.
+template<class Targets>
+__global__ void startLines(TraceLaunch<Targets> launch, int count)
+{
+  const int line = blockIdx.x * blockWarps + threadIdx.x / warpLanes;
+  if (line >= count)
+  {
+    return;
+  }
+  CommonSink<TraceLaunch<Targets>> sink(launch, line, int(threadIdx.x % warpLanes));
+  const LineStart start = startLine(launch.view, launch.space, launch.lines[line], sink);
+  if (sink.lane == 0)
+  {
+    atomicAdd(reinterpret_cast<unsigned long long*>(launch.segments), static_cast<unsigned long long>(sink.segments));
+    launch.starts[line] = start;
+  }
+}
+
+/// Each lane follows a path of its own, and stages its segment for the warp.
+template<class Launch>
+struct LaneSink : PathSink
+{
+  __device__ LaneSink(const Launch& theLaunch, int theLine, StagedSegment& theStaged)
+    : launch(theLaunch)
+    , line(theLine)
+    , staged(theStaged)
+  {
+  }
+
+  const Launch& launch;
+  int line;
+  StagedSegment& staged;
+
+  __device__ void segment(const PathSegment& piece)
+  {
+    staged = stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
+  }
+  __device__ void echo(const Vec3f& point, float amplitude) { addEcho(launch, line, point, amplitude); }
+};
+
+/// Takes up the lane's next path that gets away from the first boundary; the key holds the last one. Returns false when
+/// there is none.
+template<class Launch, class Sink>
+__device__ bool nextPath(const Launch& launch, const LineStart& start, int end, int step, PathKey& key, PathState& path,
+                         Sink& sink)
+{
+  while (int(key.path) + step < end)
+  {
+    key.path += std::uint32_t(step);
+    path = start.path;
+    if (passBoundary(launch.view, launch.space, start.boundary, key, path, sink))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A warp's bins go over into its doubles; each lane has its own (see depositByWarp).
+__device__ inline void foldBins(int binCount, int lane, float* bins, double* sums)
+{
+  for (int b = lane; b < binCount; b += warpLanes)
+  {
+    sums[b] += double(bins[b]);
+    bins[b] = 0.0f;
+  }
+}
+
+/// One block traces one slice of a batch of a line, each lane one path after the other. The paths of a warp step
+/// together, each to its next boundary; what they leave is added to the warp's bins by all its lanes, one segment
+/// after the other. As on the CPU (LineTally), a long sum of floats would lose its last digits: warps that trace many
+/// paths fold their bins into doubles of their own, which are added up in the end. No sum depends on which warp is
+/// first.
+template<bool BinsInShared, bool Folds, class Targets>
+__global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
+{
+  extern __shared__ float dynamic[];
+  __shared__ StagedSegment staged[blockWarps][warpLanes];
+  const int slice = blockIdx.x % launch.slices;
+  const int batch = blockIdx.x / launch.slices;
+  const int line = blockIdx.y;
+  const int lane = threadIdx.x % warpLanes;
+  const int warp = threadIdx.x / warpLanes;
+
+  // Bins of the block's warps, then the batch's scrambles.
+  const int slots = BinsInShared ? blockWarps : 0;
+  auto* scrambles = reinterpret_cast<BounceScramble*>(dynamic + std::size_t(slots) * launch.binCount);
+  const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
+  const std::size_t warpRow = (row * blockWarps + warp) * launch.binCount;
+  float* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
+  for (int b = lane; b < launch.binCount; b += warpLanes)
+  {
+    bins[b] = 0.0f;
+    if (Folds)
+    {
+      launch.sums[warpRow + b] = 0.0;
+    }
+  }
+  const std::uint32_t lineKey = launch.keyOf(line);
+  for (int b = threadIdx.x; b < launch.view.maxCollisions; b += blockPaths)
+  {
+    scrambles[b] = makeBounceScramble(launch.view.seed, lineKey, std::uint32_t(batch), std::uint32_t(b));
+  }
+  __syncthreads();
+
+  const PathRange range = batchRange(launch.paths, launch.batches, batch);
+  const int end = range.last - range.first;
+  const int step = launch.slices * blockPaths;
+  const TraceLine axis = launch.lines[line];
+  const LineStart& start = launch.starts[line];
+  LaneSink<TraceLaunch<Targets>> sink(launch, line, staged[warp][lane]);
+  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * blockPaths + int(threadIdx.x) - step), scrambles };
+  PathState path;
+  bool walks = start.meets && nextPath(launch, start, end, step, key, path, sink);
+  unsigned segments = 0;
+  int untilFold = pathsPerFold; // a path adds to a bin but a few times
+  while (__any_sync(allLanes, walks))
+  {
+    const bool stepped = walks;
+    if (stepped)
+    {
+      walks = stepPath(launch.view, launch.space, axis, key, path, sink) ||
+              nextPath(launch, start, end, step, key, path, sink);
+      ++segments;
+    }
+    __syncwarp();
+    unsigned waiting = __ballot_sync(allLanes, stepped && staged[warp][lane].binHigh >= 0);
+    untilFold -= __popc(waiting);
+    for (; waiting; waiting &= waiting - 1)
+    {
+      depositByWarp(staged[warp][__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
+    }
+    if (Folds && untilFold <= 0)
+    {
+      foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
+      untilFold = pathsPerFold;
+    }
+    __syncwarp();
+  }
+  for (int s = warpLanes / 2; s > 0; s /= 2)
+  {
+    segments += __shfl_down_sync(allLanes, segments, unsigned(s));
+  }
+  if (lane == 0)
+  {
+    atomicAdd(reinterpret_cast<unsigned long long*>(launch.segments), static_cast<unsigned long long>(segments));
+  }
+  if (Folds)
+  {
+    foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
+    return;
+  }
+  __syncthreads();
+  for (int b = threadIdx.x; b < launch.binCount; b += blockPaths)
+  {
+    double sum = 0.0;
+    for (int g = 0; g < blockWarps; ++g)
+    {
+      sum += double(dynamic[std::size_t(g) * launch.binCount + b]);
+    }
+    launch.sums[row * launch.binCount + b] = sum;
+  }
+}
+
+/// Mean over the batches and its standard error, for each bin.
+template<class Targets>
+__global__ void finishLines(TraceLaunch<Targets> launch, int parts)
+{
+  const int b = blockIdx.x * blockDim.x + threadIdx.x;
+  const int line = blockIdx.y;
+  if (b >= launch.binCount)
+  {
+    return;
+  }
+  const std::size_t at = std::size_t(line) * launch.binCount + b;
+  launch.error[at] = 0.0f;
+  launch.intensity[at] = launch.shared[at];
+  if (!launch.starts[line].meets)
+  {
+    return;
+  }
+  double means[batchCount];
+  double mean = 0.0;
+  for (int batch = 0; batch < launch.batches; ++batch)
+  {
+    const PathRange range = batchRange(launch.paths, launch.batches, batch);
+    double sum = 0.0;
+    for (int p = 0; p < parts; ++p)
+    {
+      sum += launch.sums[((std::size_t(line) * launch.batches + batch) * parts + p) * launch.binCount + b];
+    }
+    means[batch] = sum / double(range.last - range.first);
+    mean += means[batch];
+  }
+  mean /= launch.batches;
+  double spread = 0.0;
+  for (int batch = 0; batch < launch.batches; ++batch)
+  {
+    spread += (means[batch] - mean) * (means[batch] - mean);
+  }
+  launch.intensity[at] += float(mean);
+  launch.error[at] = launch.batches > 1 ? float(sqrt(spread / (double(launch.batches) * (launch.batches - 1)))) : 0.0f;
+}
+
+} // namespace sono

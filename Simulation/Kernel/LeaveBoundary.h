@@ -1,0 +1,77 @@
+#pragma once
+
+#include "Kernel/PathState.h"
+#include "Kernel/TraceView.h"
+
+// How a path goes on from a boundary: mirrored or refracted, around either direction by the lobe.
+
+namespace sono {
+
+/// Without Monte-Carlo the path takes the stronger branch, mirrored or refracted, and carries its share.
+SONO_HD inline Scattered strongerBranch(const PathState& path, const PathBoundary& boundary)
+{
+  const Vec3f& d = path.ray.direction;
+  const Vec3f& n = boundary.surface.normal;
+  const Reflection& r = boundary.reflection;
+  const bool reflected = r.total || r.reflectance > 0.5f;
+  const Vec3f w = reflected ? mirrorDirection(d, n, boundary.cosine) : refractedDirection(d, n, boundary.cosine, r);
+  return { glm::normalize(w), reflected, reflected ? r.reflectance : 1.0f - r.reflectance };
+}
+
+/// How far a path that restarts on a voxel face must go before it counts as clear of the boundary it leaves. The cells
+/// of a smooth surface are a staircase that reaches half a voxel's extent along the normal to either side of it; the
+/// face itself may lie on the far side. The rest is for curvature and, where the normal is but the face's, for its
+/// error.
+template<class Space>
+SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary, const Vec3f& incident,
+                               const Scattered& out)
+{
+  const Vec3f& n = boundary.surface.normal;
+  const Vec3f h = space.spacing();
+  const float stair = 0.5f * (fabsf(n.x) * h.x + fabsf(n.y) * h.y + fabsf(n.z) * h.z);
+  const float beyond = (boundary.restart - boundary.surface.t) * glm::dot(incident, n);
+  const float slack = (boundary.surface.smooth ? 0.3f : 0.8f) * space.meanSpacing();
+  const float across = stair + slack + (out.reflected ? beyond : -beyond);
+  const float leaving = larger(fabsf(glm::dot(out.direction, n)), 0.1f);
+  return larger(0.0f, smaller(8.0f * space.meanSpacing(), across / leaving));
+}
+
+/// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and does not see
+/// the tissue on the other side again until it is clear of the boundary.
+template<class Space>
+SONO_HD inline void takeBranch(const Space& space, const PathBoundary& boundary, const Scattered& out, PathState& path)
+{
+  const Vec3f incident = path.ray.direction;
+  const BoundarySide& side = out.reflected ? boundary.before : boundary.after;
+  path.ray.position += incident * boundary.restart;
+  path.ray.direction = out.direction;
+  path.ray.cell = side.cell;
+  path.tissue = side.medium;
+  path.target = side.target;
+  if (boundary.voxelFace)
+  {
+    path.ignored = out.reflected ? boundary.after.medium : boundary.before.medium;
+    path.ignoreUntil = clearance(space, boundary, incident, out);
+  }
+  else
+  {
+    path.ignoreUntil -= boundary.restart;
+  }
+  path.intensity *= out.throughput;
+  path.pieces = 0;
+  ++path.collisions;
+}
+
+/// Leaves the boundary along the branch drawn by `u`.
+template<class Space>
+SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
+                                  const BounceSample& u, PathState& path)
+{
+  const Scattered out = view.deterministic
+                          ? strongerBranch(path, boundary)
+                          : scatterAt(view.model, view.lobe, path.ray.direction, boundary.surface.normal,
+                                      boundary.cosine, boundary.reflection, u);
+  takeBranch(space, boundary, out, path);
+}
+
+} // namespace sono

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "Kernel/Interface.h"
+#include "Kernel/SurfaceHit.h"
+
+// What a path is, what it meets and what it tells on its way. See TracePath.h.
+
+namespace sono {
+
+/// A path between two boundaries.
+struct PathState
+{
+  CellRay ray;
+  float intensity = 1.0f;
+  float length = 0.0f; ///< travelled since the transducer, mm
+  int tissue = 0;      ///< medium that the path is in
+  int target = -1;     ///< target that the path is in; the cells do not count there
+  int ignored = -1;    ///< see marchToBoundary
+  float ignoreUntil = 0.0f;
+  int collisions = 0;
+  int pieces = 0; ///< since the last boundary
+};
+
+/// A straight piece of a path inside one tissue.
+struct PathSegment
+{
+  Vec3f start;
+  Vec3f direction;
+  float length;
+  float intensity; ///< at its start
+  float decayPerMm;
+};
+
+/// One side of a boundary.
+struct BoundarySide
+{
+  Vec3i cell;
+  int medium;
+  int target;
+};
+
+/// A boundary that a path met, ready for the choice of a branch.
+struct PathBoundary
+{
+  float restart;      ///< where the path goes on, mm along its ray: the voxel face
+  RefinedHit surface; ///< the sub-voxel surface
+  BoundarySide before;
+  BoundarySide after;
+  bool voxelFace; ///< a boundary between cells, which are a staircase; false: a target's surface
+  float cosine;
+  Reflection reflection;
+};
+
+/// Who listens to a path. A sink derives from this and says what it wants to hear; the calls come in the order of the
+/// way.
+struct PathSink
+{
+  /// A piece, also an empty one.
+  SONO_HD void segment(const PathSegment&) {}
+  /// The path stands in front of a boundary. Its echo follows, unless the path ends there.
+  SONO_HD void meets(const PathState&, const PathBoundary&) {}
+  /// The echo of that boundary: its place and amplitude, before the coherence weight.
+  SONO_HD void echo(const Vec3f& /*point*/, float /*amplitude*/) {}
+  /// The path has left the boundary along a branch; it may still end there, by roulette.
+  SONO_HD void left(const PathState&, const PathBoundary&) {}
+};
+
+} // namespace sono

@@ -1,0 +1,122 @@
+#pragma once
+
+#include "Kernel/BoundaryRecord.h"
+#include "Kernel/CellMarch.h"
+
+#include <cmath>
+#include <cstdint>
+#include <glm/vector_relational.hpp>
+
+// Where within a voxel the surface lies that a march has met, and which way it faces.
+
+namespace sono {
+
+/// The refined boundary between two face-adjacent cells.
+struct RefinedHit
+{
+  Vec3f normal;        ///< unit, from the old tissue to the new one; direction . normal > 0
+  float t;             ///< sub-voxel distance along the ray
+  bool smooth = false; ///< false: the voxel face itself
+};
+
+/// How far the surface of either side of a boundary is trusted, 0 or 1.
+struct SideWeights
+{
+  float before;
+  float after;
+};
+
+/// The normal from tissue `from` to `to` at a point of their boundary, interpolated between the records of the eight
+/// voxels around the point. A voxel's own record holds at its centre; a curved surface turns away from it.
+/// Returns `fallback` where the records disagree.
+template<class Cells>
+SONO_HD inline Vec3f interpolateNormal(const Cells& cells, const Vec3f& point, int from, int to,
+                                       const SideWeights& weights, const Vec3f& fallback)
+{
+  const Vec3f g = point / cells.spacing - Vec3f(0.5f);
+  const Vec3i low(int(floorf(g.x)), int(floorf(g.y)), int(floorf(g.z)));
+  const Vec3f f = g - Vec3f(low);
+  if (glm::any(glm::lessThan(low, Vec3i(-1))) || glm::any(glm::greaterThanEqual(low, cells.size)))
+  {
+    return fallback;
+  }
+  Vec3f sum(0.0f);
+  float total = 0.0f;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const int ox = corner & 1;
+    const int oy = (corner >> 1) & 1;
+    const int oz = corner >> 2;
+    const std::uint32_t word = cells.wordAt(low.x + ox, low.y + oy, low.z + oz);
+    const int tissue = int(word & 255u);
+    const float side = tissue == from ? weights.before : (tissue == to ? -weights.after : 0.0f);
+    if ((word & 0x8000u) == 0u || side == 0.0f)
+    {
+      continue;
+    }
+    const std::uint32_t bits = cells.recordOf(low.x + ox, low.y + oy, low.z + oz, word);
+    const float w =
+      decodeConfidence(bits) * (ox ? f.x : 1.0f - f.x) * (oy ? f.y : 1.0f - f.y) * (oz ? f.z : 1.0f - f.z);
+    // Neighbours point almost the same way, so the octahedron scales them almost alike.
+    sum += decodeOctahedral(bits) * (w * side);
+    total += w * fabsf(side);
+  }
+  const float length = glm::length(sum);
+  return length > 0.3f * total ? sum / length : fallback;
+}
+
+template<class Cells>
+SONO_HD inline std::uint32_t recordAt(const Cells& cells, const Vec3i& c)
+{
+  return cells.recordOf(c.x, c.y, c.z, cells.wordAt(c.x, c.y, c.z));
+}
+
+/// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
+/// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.59 of it (a
+/// thin wall has lost its own surface, its thick neighbour has not; gradients come in sevenths, and at 0.6 rounding
+/// would decide on 3/7 beside 5/7); else the normals are averaged. The point moves along the ray to the plane of the
+/// records, by one voxel at most; there the normal is interpolated. Where no record is trustworthy, or the smooth
+/// normal says that the ray leaves rather than enters, the voxel face stands.
+template<class Cells>
+SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit)
+{
+  const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
+                   hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
+                   hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
+  const std::uint32_t bitsA = recordAt(cells, hit.before);
+  const std::uint32_t bitsB = recordAt(cells, hit.after);
+  if ((bitsA | bitsB) == 0u)
+  {
+    return { face, hit.t };
+  }
+  const BoundaryRecord a = decodeRecord(bitsA);
+  const BoundaryRecord b = decodeRecord(bitsB);
+  const float confA = bitsA ? a.confidence : 0.0f;
+  const float confB = bitsB ? b.confidence : 0.0f;
+  const float best = larger(confA, confB);
+  const float weightA = confA >= 0.59f * best ? 1.0f : 0.0f;
+  const float weightB = confB >= 0.59f * best ? 1.0f : 0.0f;
+  const Vec3f sum = a.normal * weightA - b.normal * weightB;
+  const float length = glm::length(sum);
+  if (best < 0.15f || length < 0.5f)
+  {
+    return { face, hit.t };
+  }
+  const Vec3f n = sum / length;
+  const float cosine = glm::dot(ray.direction, n);
+  if (cosine < 0.01f)
+  {
+    return { face, hit.t };
+  }
+  const Vec3f pointA = (Vec3f(hit.before) + Vec3f(0.5f)) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
+  const Vec3f pointB = (Vec3f(hit.after) + Vec3f(0.5f)) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
+  const Vec3f point = (pointA * weightA + pointB * weightB) / (weightA + weightB);
+  const float reach = cells.meanSpacing;
+  const float plane = glm::dot(point - ray.position, n) / cosine;
+  const float t = larger(0.0f, smaller(larger(plane, hit.t - reach), hit.t + reach));
+  const Vec3f smooth = interpolateNormal(cells, ray.position + ray.direction * t, cells.tissueAt(hit.before),
+                                         hit.tissue, { weightA, weightB }, n);
+  return { glm::dot(ray.direction, smooth) < 0.01f ? n : smooth, t, true };
+}
+
+} // namespace sono

@@ -1,0 +1,151 @@
+// Sums over millions of paths: against closed forms, since that is where digits are lost.
+#include "Core/SoundSpeed.h"
+#include "GpuOrSkip.h"
+#include "TestScenes.h"
+#include "Trace/Trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace {
+
+using namespace sono;
+using namespace sono::test;
+
+constexpr double plateMm = 20.0;
+constexpr double deepPlateMm = 30.0;
+constexpr double frequencyMHz = 2.0;
+
+/// Lines that go straight through a plate, and a second one behind it that hardly echoes.
+struct Plates
+{
+  // The second step is 2^-16 of an impedance, which single precision holds exactly.
+  std::vector<Tissue> tissues{ makeTissue("front", 1.0, 1540, 0.5), makeTissue("plate", 1.5, 1540, 0.8),
+                               makeTissue("behind", 1.5 + 1.0 / 65536.0, 1540, 0.6) };
+  std::unique_ptr<Scene> scene = makeScene(Vec3i(150, 12, 50), Vec3d(1.0), tissues, [](const Vec3d& p) {
+    return p.z < plateMm ? 0 : (p.z < deepPlateMm ? 1 : 2);
+  });
+  TraceSettings settings;
+  std::vector<ScanLine> lines;
+
+  Plates()
+  {
+    settings.device = Device::Cuda;
+    settings.depthMm = 40.0;
+    settings.radialBinMm = 0.5;
+    settings.frequencyMHz = frequencyMHz;
+    settings.lobeSigmaRad = 0.0; // straight on or straight back
+    settings.maxCollisions = 2;
+    for (int i = 0; i < 128; ++i)
+    {
+      lines.push_back(makeLine({ 10.3 + i, 6.2, 0.0 }, { 0, 0, 1 }));
+    }
+  }
+
+  /// Factor of the intensity over a way in a tissue.
+  double passed(int tissue, double mm) const
+  {
+    return std::pow(10.0, -tissues[std::size_t(tissue)].attenuationDbPerCmMHz * frequencyMHz * mm / 100.0);
+  }
+  /// Mean of that over a bin.
+  double passedOver(int tissue, double fromMm, double toMm) const
+  {
+    const double k = tissues[std::size_t(tissue)].attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0;
+    return (passed(tissue, fromMm) - passed(tissue, toMm)) / (k * (toMm - fromMm));
+  }
+  double reflected() const
+  {
+    const double r = (1.5 - 1.0) / (1.5 + 1.0);
+    return r * r;
+  }
+};
+
+TEST(GpuSums, MillionsOfEqualPathsKeepTheirMean)
+{
+  SONO_GPU_OR_SKIP();
+  Plates plates;
+  for (const int paths : { 1000000, 10000000 })
+  {
+    plates.settings.pathsPerLine = paths;
+    const TracedLines traced = trace(*plates.scene, plates.lines, plates.settings);
+    const double atPlate = plates.passed(0, plateMm);
+    double worst = 0.0;
+    for (int line = 0; line < traced.lineCount; ++line)
+    {
+      for (int b = 0; b < traced.binCount; ++b)
+      {
+        const double from = b * traced.binMm;
+        const double to = from + traced.binMm;
+        double expected;
+        if (to <= plateMm)
+        {
+          // There, and back from the plate.
+          expected = plates.passedOver(0, from, to) +
+                     plates.reflected() * atPlate * plates.passedOver(0, plateMm - to, plateMm - from);
+        }
+        else if (to <= deepPlateMm)
+        {
+          expected = (1.0 - plates.reflected()) * atPlate * plates.passedOver(1, from - plateMm, to - plateMm);
+        }
+        else
+        {
+          expected = (1.0 - plates.reflected()) * atPlate * plates.passed(1, deepPlateMm - plateMm) *
+                     plates.passedOver(2, from - deepPlateMm, to - deepPlateMm);
+        }
+        const double measured = traced.intensity[std::size_t(line) * std::size_t(traced.binCount) + std::size_t(b)];
+        worst = std::max(worst, std::abs(measured / expected - 1.0));
+      }
+    }
+    EXPECT_LT(worst, 3e-5) << paths << " paths"; // 512 floats of about the same size add up to 2e-5
+  }
+}
+
+TEST(GpuSums, AnEchoTooFaintForOnePathIsStillHeard)
+{
+  SONO_GPU_OR_SKIP();
+  Plates plates;
+  plates.lines.resize(4);
+  plates.settings.pathsPerLine = 10000000;
+  const TracedLines traced = trace(*plates.scene, plates.lines, plates.settings);
+  const double arriving = plates.passed(0, plateMm) * (1.0 - plates.reflected()) * plates.passed(1, 10.0);
+  const double step = 1.0 / 65536.0;
+  const double expected = step / (3.0 + step) * arriving;
+  ASSERT_LT(expected, std::ldexp(1.0, -18)); // half the unit in which a path's echo is counted
+  const double k2 = 4.0 * 3.14159265358979323846 * frequencyMHz / assumedSoundSpeedMmPerUs;
+  for (int line = 0; line < traced.lineCount; ++line)
+  {
+    std::complex<double> sum = 0.0;
+    for (int e = 0; e < traced.echoCount; ++e)
+    {
+      const double r = e * traced.echoSampleMm;
+      if (std::abs(r - deepPlateMm) < 0.5)
+      {
+        sum += std::complex<double>(
+                 traced.boundaryEcho[std::size_t(line) * std::size_t(traced.echoCount) + std::size_t(e)]) *
+               std::polar(1.0, -k2 * r);
+      }
+    }
+    EXPECT_NEAR(std::abs(sum) / expected, 1.0, 1e-3) << line;
+  }
+}
+
+TEST(GpuSums, DoNotDependOnTheOrder)
+{
+  SONO_GPU_OR_SKIP();
+  Plates plates;
+  plates.lines.resize(16);
+  plates.settings.lobeSigmaRad = 0.3;
+  plates.settings.maxCollisions = 7;
+  plates.settings.pathsPerLine = 300000;
+  const TracedLines first = trace(*plates.scene, plates.lines, plates.settings);
+  for (int i = 0; i < 3; ++i)
+  {
+    const TracedLines again = trace(*plates.scene, plates.lines, plates.settings);
+    EXPECT_EQ(first.intensity, again.intensity);
+    EXPECT_EQ(first.standardError, again.standardError);
+    EXPECT_EQ(first.boundaryEcho, again.boundaryEcho);
+  }
+}
+
+} // namespace
