@@ -40,5 +40,5 @@ private:
   QList<QPointer<pqDataRepresentation>> Kept;
   QList<QPointer<pqView>> Views;
   QList<QPointer<pqView>> Slow; // of them
-  int Pictures = 0; // on the way so far
+  int Pictures = 0;             // on the way so far
 };

@@ -1,4 +1,5 @@
-# Checks that a floor of the house knows only the floor beneath it, by its #include lines.
+# Checks that a floor of the house knows only the floor beneath it, and that inside Simulation a folder knows only those
+# below it, by their #include lines.
 #   cmake -DROOT=<source tree> -P CheckLayers.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -48,11 +49,55 @@ if(NOT simulation_files)
   message(FATAL_ERROR "No source file was found under ${ROOT}/Simulation.")
 endif()
 
+# Inside Simulation, from the lowest up: a file includes from its own folder or one before it in this list.
+set(simulation_folders Core Kernel Labels Scene Probe Trace Echo Image Cuda Phantoms)
+
+function(check_simulation)
+  foreach(file IN LISTS simulation_files)
+    file(RELATIVE_PATH inside "${ROOT}/Simulation" "${file}")
+    get_filename_component(folder "${inside}" DIRECTORY)
+    get_filename_component(beside "${file}" DIRECTORY)
+    list(FIND simulation_folders "${folder}" height)
+    if(folder AND height EQUAL -1)
+      list(APPEND violations "Simulation/${inside} lies in a folder that CheckLayers.cmake does not place")
+      continue()
+    endif()
+    file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include")
+    foreach(line IN LISTS includes)
+      if(NOT line MATCHES "include[ \t]*[<\"]([^>\"]+)[>\"]")
+        continue()
+      endif()
+      set(header "${CMAKE_MATCH_1}")
+      set(found)
+      foreach(base IN ITEMS "${beside}" "${ROOT}/Simulation")
+        get_filename_component(candidate "${base}/${header}" ABSOLUTE)
+        if(NOT found AND EXISTS "${candidate}")
+          set(found "${candidate}")
+        endif()
+      endforeach()
+      if(NOT found)
+        continue() # a library's
+      endif()
+      file(RELATIVE_PATH target "${ROOT}/Simulation" "${found}")
+      if(target MATCHES "^\\.\\.")
+        continue() # another floor's, which is checked above
+      endif()
+      get_filename_component(other "${target}" DIRECTORY)
+      list(FIND simulation_folders "${other}" other_height)
+      if(folder AND (other_height EQUAL -1 OR other_height GREATER height))
+        list(APPEND violations "Simulation/${inside} includes ${header}")
+      endif()
+    endforeach()
+  endforeach()
+  set(violations "${violations}" PARENT_SCOPE)
+endfunction()
+
 check(Simulation "(vtk|${qt})" Filters Plugin)
+check_simulation()
 check(Filters "(${qt}|${volume_libraries})" Plugin)
 check(Plugin "${volume_libraries}")
 
 if(violations)
   list(JOIN violations "\n  " text)
-  message(FATAL_ERROR "A floor may know only the floor beneath it:\n  ${text}")
+  message(FATAL_ERROR "A floor may know only the floor beneath it, a folder of Simulation only those below:\n  ${text}")
 endif()

@@ -6,7 +6,11 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 preset="${1:?usage: build-preset.sh PRESET [TARGET...]}"
 shift
 
-"$root/Testing/install-dependencies.sh"
+if [[ $preset == demo ]]; then
+  "$root/Testing/install-dependencies.sh"
+else
+  "$root/Testing/install-dependencies.sh" tests
+fi
 
 launcher=()
 if command -v ccache > /dev/null; then

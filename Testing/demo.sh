@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds everything and simulates the apical four-chamber view of the bundled thorax phantom.
+# Builds the plugin alone and simulates the apical four-chamber view of the bundled thorax phantom.
 # Arguments are passed on to Plugin/examples/simulate.py.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
-"$root/Testing/build-preset.sh" release
+"$root/Testing/build-preset.sh" demo
 
 plugin="$(find "$root/build" -name SonoVDB.so -print -quit)"
 if [[ -z $plugin ]]; then

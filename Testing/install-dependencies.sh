@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that SonoVDB needs to build, test and run. Returns at once when all are there.
+# install-dependencies.sh [tests]: installs the Debian 12 packages that SonoVDB needs to build and run, and to be tested.
+# Returns at once when all are there.
 set -euo pipefail
 
 packages=(
@@ -12,11 +13,16 @@ packages=(
   libswscale-dev libgl2ps-dev libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev
   libfreetype-dev
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
-  libopenvdb-dev libopenvdb-tools libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
+  libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
   nlohmann-json3-dev zlib1g-dev
-  # tests
-  libgtest-dev libbenchmark-dev libopenimageio-dev openimageio-tools xvfb openmpi-bin python3-mpi4py python3-xlib
+  openimageio-tools # writes the example's picture
 )
+if [[ ${1:-} == tests ]]; then
+  packages+=(
+    libgtest-dev libbenchmark-dev libopenimageio-dev libopenvdb-tools xvfb openmpi-bin python3-mpi4py python3-xlib
+    clang-format
+  )
+fi
 
 fail()
 {

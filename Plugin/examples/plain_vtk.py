@@ -1,16 +1,22 @@
 """Simulates an ultrasound image with VTK alone, without ParaView's pipeline or windows:
 
-    python3 plain_vtk.py [label map] [image.png]
+    /usr/bin/python3 plain_vtk.py [label map] [image.png]
 
 Without a label map it scans the bundled thorax. Python finds the module sonovdb in lib/python3/dist-packages below the
 place where SonoVDB is built or installed.
 """
 import sys
 
-import paraview  # noqa: F401  (only so that Debian's VTK is found, which comes with ParaView)
-from sonovdb.vtkSonoFilters import vtkSonoAcousticWindow, vtkSonoLabelMapReader, vtkSonoThoraxSource, vtkSonoUltrasound
-from vtkmodules.vtkImagingCore import vtkImageFlip
-from vtkmodules.vtkIOImage import vtkPNGWriter
+try:
+    import paraview  # noqa: F401  (only so that Debian's VTK is found, which comes with ParaView)
+    from sonovdb.vtkSonoFilters import vtkSonoAcousticWindow, vtkSonoLabelMapReader, vtkSonoThoraxSource, vtkSonoUltrasound
+    from vtkmodules.vtkImagingCore import vtkImageFlip
+    from vtkmodules.vtkIOImage import vtkPNGWriter
+except ImportError as error:
+    raise SystemExit(
+        f"{error}: ParaView and SonoVDB are built for Debian's Python, and this is {sys.version.split()[0]} "
+        f"({sys.executable}): start the example with /usr/bin/python3, and with SonoVDB's lib/python3/dist-packages in "
+        "PYTHONPATH.") from None
 
 if len(sys.argv) > 1:
     labels = vtkSonoLabelMapReader()

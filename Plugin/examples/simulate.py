@@ -9,12 +9,17 @@ import argparse
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import time
 
-from paraview.servermanager import Fetch
-from paraview.simple import *
-from vtkmodules.util.numpy_support import vtk_to_numpy
+try:
+    from paraview.servermanager import Fetch
+    from paraview.simple import *
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+except ImportError as error:
+    raise SystemExit(f"{error}: ParaView is built for Debian's Python, and this is {sys.version.split()[0]} "
+                     f"({sys.executable}): start the example with pvpython.") from None
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--plugin", help="the plugin's library; or set SONOVDB_PLUGIN", default=os.environ.get(

@@ -5,7 +5,47 @@
 #include <atomic>
 #include <mutex>
 
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace sono {
+
+namespace {
+
+/// What ThreadSanitizer cannot see in a libtbb that was compiled without it: a loop's tasks come after what came before
+/// the loop, and before what comes after it. Between two tasks there is no order.
+struct LoopOrder
+{
+#if defined(__SANITIZE_THREAD__)
+  void begin()
+  {
+    __tsan_release(&begun);
+  }
+  void beginTask()
+  {
+    __tsan_acquire(&begun);
+  }
+  void endTask()
+  {
+    __tsan_release(&ended);
+  }
+  void end()
+  {
+    __tsan_acquire(&ended);
+  }
+
+  char begun = 0;
+  char ended = 0;
+#else
+  void begin() {}
+  void beginTask() {}
+  void endTask() {}
+  void end() {}
+#endif
+};
+
+} // namespace
 
 void parallelFor(int count, const Progress& progress, const std::function<void(int, const YieldPoint&)>& body)
 {
@@ -26,14 +66,19 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
       throw Aborted();
     }
   };
+  LoopOrder order;
+  order.begin();
   tbb::parallel_for(0, count, [&](int i) {
+    order.beginTask();
     if (!stop)
     {
       body(i, yieldPoint);
       ++done;
       reportDone();
     }
+    order.endTask();
   });
+  order.end();
   if (stop)
   {
     throw Aborted();

@@ -4,8 +4,8 @@
 #include "Scene/GridTransform.h"
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoGridStorage.h"
+#include "Scene/OpenGrids.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>

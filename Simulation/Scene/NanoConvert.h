@@ -2,7 +2,7 @@
 
 #include "Scene/SurfaceField.h"
 
-#include <openvdb/openvdb.h>
+#include "Scene/OpenGrids.h"
 
 namespace sono {
 

@@ -6,10 +6,10 @@
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoFile.h"
 #include "Scene/NanoGridStorage.h"
+#include "Scene/OpenGrids.h"
 #include "Scene/SceneText.h"
 
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -5,9 +5,9 @@
 #include "Scene/GridTransform.h"
 #include "Scene/NanoConvert.h"
 #include "Scene/NanoGridStorage.h"
+#include "Scene/OpenGrids.h"
 #include "Scene/SmoothedMask.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
 #include <tbb/enumerable_thread_specific.h>

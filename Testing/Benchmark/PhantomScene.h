@@ -4,8 +4,7 @@
 
 #include <memory>
 
-namespace sono
-{
+namespace sono {
 
 /// The bundled thorax with the repository's tissues. Throws Error when a label has no tissue of its own, since a
 /// fallback would change what is measured.

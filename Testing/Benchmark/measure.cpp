@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-namespace sono
-{
+namespace sono {
 
 std::map<std::string, Stage::Run>& Stage::all()
 {

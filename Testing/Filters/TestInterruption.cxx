@@ -21,7 +21,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -46,9 +45,9 @@ public:
 
   std::vector<vtkAlgorithm*> stopped;
   std::vector<vtkAlgorithm*> finished;
+  int asked = 0;
 
 private:
-  int asked = 0;
   int allowed = 1 << 30;
 };
 
@@ -247,7 +246,6 @@ TEST(Interruption, ASceneWhoseWritingIsStoppedIsNotThere)
 
 TEST(Interruption, ALongLineStopsInItsMiddle)
 {
-  using Clock = std::chrono::steady_clock;
   Button button;
   for (const int sampling : { vtkSonoRayTracer::LOW_DISCREPANCY, vtkSonoRayTracer::SHARED_PATHS })
   {
@@ -258,14 +256,13 @@ TEST(Interruption, ALongLineStopsInItsMiddle)
     button.leaveAlone();
     button.stopped.clear();
     chain.scene->Update();
-    auto start = Clock::now();
+    button.pressAfter(1 << 30);
     chain.tracer->Update();
-    const auto whole = Clock::now() - start;
+    const int whole = button.asked;
     chain.tracer->Modified();
     button.pressAfter(20);
-    start = Clock::now();
     chain.tracer->Update();
-    EXPECT_LT(Clock::now() - start, whole / 3);
+    EXPECT_LT(button.asked, whole / 3);
     EXPECT_EQ(button.stopped.size(), 1u);
   }
 }

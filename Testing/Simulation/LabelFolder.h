@@ -10,8 +10,7 @@
 #include <fstream>
 #include <string>
 
-namespace sono::testing
-{
+namespace sono::testing {
 
 /// Every test has a folder of its own that goes away with it.
 class LabelFolder : public ::testing::Test

@@ -9,8 +9,7 @@
 
 #include <zlib.h>
 
-namespace sono::testing
-{
+namespace sono::testing {
 
 /// A NIfTI-1 file put together byte by byte from the standard's offsets, so that the reader under test meets a file
 /// that its own writer did not make.

@@ -1,6 +1,6 @@
 #include "Image/BMode.h"
-#include "Kernel/PixelMath.h"
 #include "ImageTestTools.h"
+#include "Kernel/PixelMath.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,7 @@
 #include <limits>
 #include <string>
 
-namespace
-{
+namespace {
 
 using namespace sono;
 
@@ -204,10 +203,8 @@ TEST(BMode, GainStillActsWithAutomaticReference)
 TEST(BMode, RefusesWhatMakesNoSense)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto with = [](const std::function<void(BModeSettings&)>& change)
-  {
-    return [change]
-    {
+  const auto with = [](const std::function<void(BModeSettings&)>& change) {
+    return [change] {
       BModeSettings settings = plainSettings();
       change(settings);
       makeBMode({ 1.0f }, 1, 1, 1.0, settings);

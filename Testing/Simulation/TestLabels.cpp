@@ -16,8 +16,7 @@ using sono::testing::errorOf;
 using sono::testing::expectContains;
 using sono::testing::NiftiBytes;
 
-namespace
-{
+namespace {
 
 constexpr std::int16_t uint8Type = 2, int16Type = 4, int32Type = 8, float32Type = 16, float64Type = 64, rgbType = 128;
 
@@ -242,9 +241,8 @@ TEST_F(LabelFiles, TruncatedDataAreErrors)
 TEST_F(LabelFiles, NamesFromAnExtension)
 {
   NiftiBytes({ 3, 3, 1, 1, 1, 1, 1, 1 }, uint8Type, 1)
-    .extension(30,
-               "<CaretExtension><LabelTable>\n<Label Key=\"1\" Red=\"0.5\" Green=\"1\" Blue=\"0\" Alpha=\"1\">"
-               "<![CDATA[left <& right]]></Label><Label Key=\"2\">fat &amp; skin</Label></LabelTable>")
+    .extension(30, "<CaretExtension><LabelTable>\n<Label Key=\"1\" Red=\"0.5\" Green=\"1\" Blue=\"0\" Alpha=\"1\">"
+                   "<![CDATA[left <& right]]></Label><Label Key=\"2\">fat &amp; skin</Label></LabelTable>")
     .voxels<std::uint8_t>({ 0, 1, 2 })
     .write(file("x.nii"));
   text("x.csv", "id,name,tissue_class,r,g,b\n1,table,liver,255,0,0\n2,table,,,,\n0,\"air, outside\",,0,51,255\n");
@@ -313,8 +311,8 @@ TEST_F(LabelFiles, RoundTrip)
     patch.seekp(254).write("\0\0", 2);
     patch.close();
     const LabelVolume byQform = readLabelMap(file("r.nii"));
-    expectNear(
-      byQform.placement.worldFromIndex({ 2.0, 1.0, 1.0 }), volume.placement.worldFromIndex({ 2.0, 1.0, 1.0 }), 1e-4);
+    expectNear(byQform.placement.worldFromIndex({ 2.0, 1.0, 1.0 }), volume.placement.worldFromIndex({ 2.0, 1.0, 1.0 }),
+               1e-4);
   }
   LabelVolume short1;
   short1.placement.size = { 2, 2, 2 };
@@ -324,8 +322,7 @@ TEST_F(LabelFiles, RoundTrip)
   expectContains(errorOf([&] { writeLabelMap(file("w.nrrd"), short1); }), ".nii.gz");
 }
 
-namespace
-{
+namespace {
 
 /// An attached-header raw NRRD of unsigned chars.
 std::string nrrdText(const std::string& fields, const std::string& data)
@@ -384,10 +381,9 @@ TEST_F(LabelFiles, NrrdSegments)
   // Two layers of three voxels, the layer fastest: layer 0 holds 1 1 0, layer 1 holds 0 1 1; segment 0 lies in layer 1.
   const std::string layers = "dimension: 4\nsizes: 2 3 1 1\nspace: LPS\n"
                              "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n";
-  text("two.seg.nrrd",
-       nrrdText(layers + "Segment0_Name:=under\nSegment0_LabelValue:=1\nSegment0_Layer:=1\n"
-                         "Segment1_Name:=over\nSegment1_LabelValue:=1\nSegment1_Layer:=0\n",
-                std::string("\1\0\1\1\0\1", 6)));
+  text("two.seg.nrrd", nrrdText(layers + "Segment0_Name:=under\nSegment0_LabelValue:=1\nSegment0_Layer:=1\n"
+                                         "Segment1_Name:=over\nSegment1_LabelValue:=1\nSegment1_Layer:=0\n",
+                                std::string("\1\0\1\1\0\1", 6)));
   const LabelVolume flat = readLabelMap(file("two.seg.nrrd"));
   EXPECT_EQ(flat.voxels, (std::vector<std::uint16_t>{ 2, 2, 1 }));
   EXPECT_EQ(flat.find(1)->name, "under");

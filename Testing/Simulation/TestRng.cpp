@@ -89,7 +89,8 @@ bool stratifies(int k, std::uint32_t first, const Point& point)
 TEST(Sobol, FirstTwoDimensionsAreAZeroTwoSequence)
 {
   const auto plain = [](std::uint32_t i) {
-    return std::make_pair(std::ldexp(double(reverseBits(i)), -32), std::ldexp(double(reverseBits(sobolSecondReversed(i))), -32));
+    return std::make_pair(std::ldexp(double(reverseBits(i)), -32),
+                          std::ldexp(double(reverseBits(sobolSecondReversed(i))), -32));
   };
   for (int k = 0; k <= 10; ++k)
   {

@@ -12,8 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace
-{
+namespace {
 
 using namespace sono;
 
@@ -217,8 +216,8 @@ TEST_P(ScanConversion, OneSampleFillsItsDepth)
   const PlaneImage image = scanConvert(geometry, std::vector<float>(128, 3.0f), 1, 30.0, 0.5);
   for (std::size_t k = 0; k < image.value.size(); ++k)
   {
-    const auto [u, r] = polar(
-      geometry, image.lateralMinMm + double(k % image.width) * 0.5, image.axialMinMm + double(k / image.width) * 0.5);
+    const auto [u, r] = polar(geometry, image.lateralMinMm + double(k % image.width) * 0.5,
+                              image.axialMinMm + double(k / image.width) * 0.5);
     EXPECT_EQ(image.value[k], image.mask[k] ? 3.0f : 0.0f);
     if (r > 30.01)
     {
@@ -251,11 +250,9 @@ TEST_P(ScanConversion, MirroredLinesGiveAMirroredImage)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllKinds,
-                         ScanConversion,
+INSTANTIATE_TEST_SUITE_P(AllKinds, ScanConversion,
                          testing::Values(ScanKind::Linear, ScanKind::PhasedSector, ScanKind::Curvilinear),
-                         [](const auto& info)
-                         {
+                         [](const auto& info) {
                            return info.param == ScanKind::Linear         ? "Linear"
                                   : info.param == ScanKind::PhasedSector ? "PhasedSector"
                                                                          : "Curvilinear";
@@ -287,8 +284,7 @@ TEST(Image, DoesNotDependOnTheNumberOfThreads)
   const ScanGeometry geometry = geometryOf(ScanKind::PhasedSector);
   const int sampleCount = 2000;
   const auto envelope = rayleighEnvelope(std::size_t(geometry.lineCount) * sampleCount, 11);
-  const auto run = [&](std::size_t threads)
-  {
+  const auto run = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     const BModeLines lines = makeBMode(envelope, geometry.lineCount, sampleCount, 0.06, BModeSettings{});
     return std::make_pair(lines.referenceAmplitude, scanConvert(geometry, lines.grey, sampleCount, 0.06, 0.23).value);

@@ -14,8 +14,7 @@ using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 
-namespace
-{
+namespace {
 
 const double root3 = std::sqrt(3.0);
 
@@ -187,8 +186,7 @@ TEST(ScanGeometry, PointsThatNoLineSees)
 
 TEST(ScanGeometry, ErrorsNameTheParameter)
 {
-  const auto refusal = [](ScanKind kind, const std::function<void(ScanGeometry&)>& change)
-  {
+  const auto refusal = [](ScanKind kind, const std::function<void(ScanGeometry&)>& change) {
     ScanGeometry geometry = geometryOf(kind);
     change(geometry);
     return errorOf([&] { geometry.validate(); });
@@ -233,8 +231,7 @@ TEST(ProbePreset, ErrorsNameFileAndKey)
   std::ifstream stream(SONOVDB_DATA_DIR "/probes/phased_p4-2.json");
   const std::string good((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   const std::string path = (fs::temp_directory_path() / "sono_preset_errors.json").string();
-  const auto refusal = [&](const std::string& from, const std::string& to)
-  {
+  const auto refusal = [&](const std::string& from, const std::string& to) {
     std::string content = good;
     content.replace(content.find(from), from.size(), to);
     std::ofstream(path) << content;

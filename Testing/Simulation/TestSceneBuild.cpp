@@ -145,11 +145,11 @@ TEST(SceneBuild, AHollowShellHasTwoSurfaces)
     const Vec3d centre(30.0, 30.0, 30.0);
     const Vec3i size(60.0 / spacing);
     const double wallMm = 3.0 * std::cbrt(spacing.x * spacing.y * spacing.z);
-    const auto scene = makeScene(
-      size, spacing, { makeTissue("a", 1.5, 1500, 0.5), makeTissue("b", 1.7, 1600, 0.5) }, [&](const Vec3d& p) {
-        const double r = glm::length(p - centre);
-        return r < 22.0 && r > 22.0 - wallMm ? 1 : 0;
-      });
+    const auto scene = makeScene(size, spacing, { makeTissue("a", 1.5, 1500, 0.5), makeTissue("b", 1.7, 1600, 0.5) },
+                                 [&](const Vec3d& p) {
+                                   const double r = glm::length(p - centre);
+                                   return r < 22.0 && r > 22.0 - wallMm ? 1 : 0;
+                                 });
     const TriangleSurface mesh = meshSurface(scene->volume(), scene->surface(1));
     const long faces = long(mesh.triangles.size());
     EXPECT_EQ(long(mesh.points.size()) - 3 * faces / 2 + faces, 4);

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <future>
 #include <memory>
@@ -19,7 +20,6 @@ namespace sono {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 /// Noise of two tissues: every voxel has a record, and every piece of a surface takes a while.
 std::unique_ptr<Scene> makeNoise(const Vec3i& size)
@@ -30,14 +30,13 @@ std::unique_ptr<Scene> makeNoise(const Vec3i& size)
                          [&](const Vec3d&) { return int(random() % 2); });
 }
 
-bool waitFor(const std::atomic<bool>& flag)
+/// ctest's time limit ends it where the flag never rises.
+void waitFor(const std::atomic<bool>& flag)
 {
-  const auto end = Clock::now() + 10s;
-  while (!flag && Clock::now() < end)
+  while (!flag)
   {
     std::this_thread::sleep_for(1ms);
   }
-  return flag;
 }
 
 /// Has one thread build by `ask`, and others meanwhile begin a loop whose every task asks the same, on the same arena.
@@ -49,9 +48,11 @@ void askWhileItIsBuilt(const std::function<void(const Scene&, const Progress&)>&
   tbb::task_arena arena(4, 2);
   std::unique_ptr<Scene> scene;
   std::atomic<bool> isHeldUp{ false };
+  std::atomic<bool> isHeldUpOrOver{ false };
   std::atomic<bool> loopRuns{ false };
   std::thread loop([&] {
-    if (waitFor(isHeldUp))
+    waitFor(isHeldUpOrOver);
+    if (isHeldUp)
     {
       arena.execute([&] {
         parallelFor(32, {}, [&](int) {
@@ -61,7 +62,7 @@ void askWhileItIsBuilt(const std::function<void(const Scene&, const Progress&)>&
       });
     }
   });
-  for (int attempt = 0; attempt < 20 && !isHeldUp; ++attempt) // whether others take part is up to chance
+  for (int attempt = 0; attempt < 200 && !isHeldUp; ++attempt) // whether others take part is up to chance
   {
     scene = makeNoise(Vec3i(96));
     int told = 0;
@@ -73,6 +74,7 @@ void askWhileItIsBuilt(const std::function<void(const Scene&, const Progress&)>&
         }
         else if (!isHeldUp.exchange(true))
         {
+          isHeldUpOrOver = true;
           waitFor(loopRuns);
           std::this_thread::sleep_for(100ms);
         }
@@ -80,6 +82,7 @@ void askWhileItIsBuilt(const std::function<void(const Scene&, const Progress&)>&
       });
     });
   }
+  isHeldUpOrOver = true;
   loop.join();
   EXPECT_TRUE(loopRuns);
 }
@@ -146,14 +149,16 @@ const Vec3i longSize(64, 64, 1024);
 const VoxelBox firstHalf{ Vec3i(0), Vec3i(64, 64, 500) };
 const VoxelBox secondHalf{ Vec3i(0, 0, 520), Vec3i(64, 64, 1000) };
 
-TEST(InteractiveProbe, DoesNotWaitForTheBoxThatItLeaves)
+/// Counted in processor time, whatever else the machine does: a box that is left takes no more of it. Its end is waited
+/// for, so that all that it took is counted.
+TEST(InteractiveProbe, GivesUpTheBoxThatItLeaves)
 {
-  double whole = 0.0;
-  double crossing = 0.0;
+  std::clock_t whole = 0;
+  std::clock_t crossing = 0;
   for (const bool crosses : { false, true })
   {
     const auto scene = makeNoise(longSize);
-    const auto start = Clock::now();
+    const std::clock_t start = std::clock();
     scene->beginInteractiveRegion(firstHalf, true);
     if (crosses)
     {
@@ -164,9 +169,9 @@ TEST(InteractiveProbe, DoesNotWaitForTheBoxThatItLeaves)
     {
       scene->interactiveRegion(firstHalf);
     }
-    (crosses ? crossing : whole) = std::chrono::duration<double>(Clock::now() - start).count();
+    (crosses ? crossing : whole) = std::clock() - start;
   }
-  EXPECT_LT(crossing, whole / 3.0);
+  EXPECT_LT(crossing, whole / 3);
 }
 
 TEST(InteractiveProbe, WhoWaitsForABoxGetsItThoughAnotherLeavesIt)
@@ -180,7 +185,7 @@ TEST(InteractiveProbe, WhoWaitsForABoxGetsItThoughAnotherLeavesIt)
       return true;
     });
   });
-  ASSERT_TRUE(waitFor(waits));
+  waitFor(waits);
   scene->beginInteractiveRegion(secondHalf, false);
   const auto region = waiting.get();
   ASSERT_NE(region, nullptr);

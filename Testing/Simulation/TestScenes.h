@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace sono::test
-{
+namespace sono::test {
 
 /// A tissue without scatterers.
 inline Tissue makeTissue(const std::string& name, double impedance, double speed, double attenuation)
@@ -23,9 +22,7 @@ inline Tissue makeTissue(const std::string& name, double impedance, double speed
 }
 
 /// A scene whose label at a voxel centre (local mm) is given by a function; label i has the i-th tissue.
-inline std::unique_ptr<Scene> makeScene(const Vec3i& size,
-                                        const Vec3d& spacingMm,
-                                        const std::vector<Tissue>& tissues,
+inline std::unique_ptr<Scene> makeScene(const Vec3i& size, const Vec3d& spacingMm, const std::vector<Tissue>& tissues,
                                         const std::function<int(const Vec3d&)>& labelAt,
                                         const std::string& outside = "none")
 {

@@ -1,7 +1,7 @@
 #include "ErrorText.h"
-#include "Kernel/PixelMath.h"
 #include "Image/ScanConvert.h"
 #include "Image/ScanConvertVolume.h"
+#include "Kernel/PixelMath.h"
 #include "Probe/ScanGeometry.h"
 
 #include <gtest/gtest.h>
