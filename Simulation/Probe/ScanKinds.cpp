@@ -4,15 +4,15 @@
 
 namespace sono {
 
-const std::array<ScanKindTraits, 5>& scanKinds()
+const std::vector<ScanKindTraits>& scanKinds()
 {
-  static const std::array<ScanKindTraits, 5> all{ {
+  static const std::vector<ScanKindTraits> all{
     { "linear", "Linear", LineOrigin::Aperture, false, 0.0, { "widthMm" } },
     { "phased_sector", "Phased Sector", LineOrigin::Apex, false, 180.0, { "sectorDeg" } },
     { "curvilinear", "Curvilinear", LineOrigin::ConvexFace, false, 180.0, { "sectorDeg", "radiusMm" } },
     { "matrix", "Matrix", LineOrigin::Apex, true, 180.0, { "sectorDeg", "elevationLineCount", "elevationSectorDeg" } },
     { "radial", "Radial", LineOrigin::Catheter, false, 360.0, { "sectorDeg", "radiusMm" } },
-  } };
+  };
   return all;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -37,7 +36,7 @@ struct ScanKindTraits
 };
 
 /// By ScanKind.
-const std::array<ScanKindTraits, 5>& scanKinds();
+const std::vector<ScanKindTraits>& scanKinds();
 
 /// Throws Error when there is no such kind.
 const ScanKindTraits& traitsOf(ScanKind kind);

@@ -23,7 +23,7 @@ def described(class_name):
 
 STAGES = ("SceneBuilder", "Probe", "RayTracer", "ImageFormation", "BMode", "ScanConverter")
 # Labels that say something else than the name: what an input is, ParaView's own property, a word that a unit hides.
-OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneBuilder", "SelectInputScalars"),
+OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneWriter", "Input"), ("SonoSceneBuilder", "SelectInputScalars"),
                 ("SonoUltrasound", "SelectInputScalars"), ("SonoImageFormation", "Field")}
 
 
@@ -92,7 +92,7 @@ class TestProxies(unittest.TestCase):
         """ParaView makes Python's names of the labels, without all that is neither letter nor digit."""
         for _, _, description in self.each():
             for element in (e for e in description if e.tag in VECTOR_PROPERTIES + ("InputProperty",)):
-                name, label, command = (element.get(key) for key in ("name", "label", "command"))
+                name, label, command = (element.get(key) or element.get("name") for key in ("name", "label", "command"))
                 if element.get("information_only") or (description.get("name"), name) in OTHER_LABELS:
                     continue
                 with self.subTest(property=name):

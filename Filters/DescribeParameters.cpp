@@ -1,4 +1,4 @@
-// Writes ParaView's descriptions of the filters. In the XML files beside this one,
+// Writes ParaView's descriptions of the filters at build time. In the XML files of Plugin,
 //
 //   <Parameters of="TraceSettings" simple="PathsPerLine"/>  stands for a property of each parameter of that struct,
 //   <Exposed of="TraceSettings" simple="PathsPerLine"/>     for the names of the same properties of a sub-proxy.
