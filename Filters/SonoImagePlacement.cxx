@@ -77,7 +77,7 @@ double pixelMmOf(const ProbeField& probe, double settingMm)
 
 ImagePlacement placementOf(const ProbeField& probe, double pixelMm)
 {
-  if (probe.geometry.kind == ScanKind::Matrix)
+  if (probe.geometry.isVolume())
   {
     return { volumeImageLayout(probe.geometry, pixelMm), probe.pose };
   }

@@ -67,41 +67,27 @@ double readNumber(const char* name, vtkFieldData* field)
 
 void writeProbe(const ProbeField& probe, vtkFieldData* field)
 {
-  const ScanGeometry& geometry = probe.geometry;
-  writeNumber("ScanKind", static_cast<int>(geometry.kind), field);
-  writeNumber("LineCount", geometry.lineCount, field);
-  writeNumber("DepthMm", geometry.depthMm, field);
-  writeNumber("SectorDeg", geometry.sectorDeg, field);
-  writeNumber("RadiusMm", geometry.radiusMm, field);
-  writeNumber("WidthMm", geometry.widthMm, field);
-  writeNumber("ElevationLineCount", geometry.elevationLineCount, field);
-  writeNumber("ElevationSectorDeg", geometry.elevationSectorDeg, field);
+  ProbeSettings::visit(probe, [field](const auto& value, const Parameter& parameter) {
+    writeNumber(propertyName(parameter).c_str(), numberOf(value), field);
+  });
+  writeNumber("IsVolume", probe.geometry.isVolume(), field);
+  writeNumber("IsCatheter", probe.geometry.lineOrigin() == LineOrigin::Catheter, field);
   writeVector("ProbePositionMm", probe.pose.positionMm, field);
   writeVector("ProbeAxial", probe.pose.axial, field);
   writeVector("ProbeLateral", probe.pose.lateral, field);
-  writeNumber("CentreFrequencyMHz", probe.centreFrequencyMHz, field);
-  writeNumber("FractionalBandwidth", probe.fractionalBandwidth, field);
   writeNumber("Preview", probe.preview ? 1.0 : 0.0, field);
 }
 
 ProbeField readProbe(vtkFieldData* field)
 {
   ProbeField probe;
-  ScanGeometry& geometry = probe.geometry;
-  geometry.kind = static_cast<ScanKind>(static_cast<int>(readNumber("ScanKind", field)));
-  geometry.lineCount = static_cast<int>(readNumber("LineCount", field));
-  geometry.depthMm = readNumber("DepthMm", field);
-  geometry.sectorDeg = readNumber("SectorDeg", field);
-  geometry.radiusMm = readNumber("RadiusMm", field);
-  geometry.widthMm = readNumber("WidthMm", field);
-  geometry.elevationLineCount = static_cast<int>(readNumber("ElevationLineCount", field));
-  geometry.elevationSectorDeg = readNumber("ElevationSectorDeg", field);
-  geometry.validate();
+  ProbeSettings::visit(probe, [field](auto& value, const Parameter& parameter) {
+    value = valueOf<std::decay_t<decltype(value)>>(readNumber(propertyName(parameter).c_str(), field));
+  });
+  probe.geometry.validate();
   probe.pose.positionMm = readVector("ProbePositionMm", field);
   probe.pose.axial = readVector("ProbeAxial", field);
   probe.pose.lateral = readVector("ProbeLateral", field);
-  probe.centreFrequencyMHz = readNumber("CentreFrequencyMHz", field);
-  probe.fractionalBandwidth = readNumber("FractionalBandwidth", field);
   probe.preview = readNumber("Preview", field) != 0.0;
   return probe;
 }

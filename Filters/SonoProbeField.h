@@ -8,16 +8,14 @@ class vtkInformation;
 namespace sono {
 
 /// What a probe source hands to the stages after it, in the field data of every output on the way.
-struct ProbeField
+struct ProbeField : ProbeSettings
 {
-  ScanGeometry geometry;
   ProbePose pose;
-  double centreFrequencyMHz = 2.5;
-  double fractionalBandwidth = 0.6; ///< at -6 dB
-  bool preview = false;             ///< the probe is being moved: coarse and quick is better than fine and late
+  bool preview = false; ///< the probe is being moved: coarse and quick is better than fine and late
 };
 
-/// One array a number or vector, units in the names (DepthMm, ProbePositionMm, CentreFrequencyMHz, ...).
+/// One array a number or vector, units in the names (DepthMm, ProbePositionMm, CentreFrequencyMHz, ...), and what the
+/// kind of scan lines means for who draws the probe (IsVolume, IsCatheter: 0 or 1).
 void writeProbe(const ProbeField& probe, vtkFieldData* field);
 
 /// Throws Error when an array is missing, naming it.

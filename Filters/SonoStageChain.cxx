@@ -18,10 +18,16 @@ class ProgressEar : public vtkCommand
 {
 public:
   static ProgressEar* New() { return new ProgressEar; }
-  void Execute(vtkObject*, unsigned long, void* fraction) override { hear(*static_cast<double*>(fraction)); }
+  void Execute(vtkObject*, unsigned long, void* fraction) override
+  {
+    hear(*static_cast<double*>(fraction));
+    this->AbortFlagOn(); // ParaView, which made the stage, would show its progress beside the owner's
+  }
 
   std::function<void(double)> hear;
 };
+
+constexpr float first = 1.0f; // priority
 
 } // namespace
 
@@ -34,7 +40,15 @@ StageChain::StageChain(vtkAlgorithm* owner, std::vector<Link> links)
     keepQuiet(links_[i].stage);
     vtkNew<ProgressEar> ear;
     ear->hear = [this, i](double fraction) { reportProgress(i, fraction); };
-    links_[i].stage->AddObserver(vtkCommand::ProgressEvent, ear);
+    ears_.push_back(links_[i].stage->AddObserver(vtkCommand::ProgressEvent, ear, first));
+  }
+}
+
+StageChain::~StageChain()
+{
+  for (std::size_t i = 0; i < links_.size(); ++i)
+  {
+    links_[i].stage->RemoveObserver(ears_[i]);
   }
 }
 

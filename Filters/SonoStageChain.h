@@ -21,6 +21,9 @@ public:
 
   /// The links in the order in which they run, for as long as the chain lives.
   StageChain(vtkAlgorithm* owner, std::vector<Link> links);
+  ~StageChain();
+  StageChain(const StageChain&) = delete;
+  StageChain& operator=(const StageChain&) = delete;
 
   /// The information pass of the last link and all before it. Throws Error with the sentence of the one that failed.
   void updateInformation();
@@ -34,6 +37,7 @@ private:
 
   vtkAlgorithm* owner_;
   std::vector<Link> links_;
+  std::vector<unsigned long> ears_; ///< an observer a link
 };
 
 } // namespace sono

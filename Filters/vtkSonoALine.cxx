@@ -55,7 +55,7 @@ void drawLine(int line, const sono::Vec3d& from, const sono::Vec3d& to, vtkPolyD
 /// A place in the world as it is drawn on the flat image; of a volume, in it.
 sono::Vec3d drawnFlat(const sono::Vec3d& worldMm, const sono::ProbeField& probe)
 {
-  const bool isVolume = probe.geometry.kind == sono::ScanKind::Matrix;
+  const bool isVolume = probe.geometry.isVolume();
   const sono::Vec3d front(0.0, 0.0, isVolume ? 0.0 : sono::flatDrawingCm);
   return sono::flatFromWorld(worldMm, probe.pose, isVolume) + front;
 }
@@ -92,7 +92,7 @@ int vtkSonoALine::LineAt(vtkFieldData* field, double lateralMm, double axialMm)
   try
   {
     const sono::ScanGeometry geometry = sono::readProbe(field).geometry;
-    if (geometry.kind == sono::ScanKind::Matrix)
+    if (geometry.isVolume())
     {
       return -1;
     }

@@ -3,6 +3,7 @@
 #include "Image/BMode.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
+#include "SonoSettings.h"
 #include "SonoStage.h"
 
 #include "vtkFloatArray.h"
@@ -12,9 +13,12 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 
+#include <utility>
+
 vtkStandardNewMacro(vtkSonoBMode);
 
 vtkSonoBMode::vtkSonoBMode()
+  : Parameters(new sono::SettingsOf<sono::BModeSettings>)
 {
   this->SetProgressText("Making grey");
 }
@@ -24,56 +28,38 @@ vtkSonoBMode::~vtkSonoBMode() = default;
 void vtkSonoBMode::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "TgcDbPerCm: " << this->TgcDbPerCm << endl;
+  this->Parameters->print(os, indent);
   os << indent << "TgcPoints (mm, dB):";
-  for (const auto& [depthMm, gainDb] : this->TgcPoints)
+  for (const auto& [depthMm, gainDb] : this->Settings().tgcCurve)
   {
     os << " (" << depthMm << ", " << gainDb << ")";
   }
   os << endl;
-  os << indent << "GainDb: " << this->GainDb << endl;
-  os << indent << "AutomaticReference: " << this->AutomaticReference << endl;
-  os << indent << "ReferenceAmplitude: " << this->ReferenceAmplitude << endl;
-  os << indent << "DynamicRangeDb: " << this->DynamicRangeDb << endl;
-  os << indent << "RejectDb: " << this->RejectDb << endl;
-  os << indent << "GreyMap: " << this->GreyMap << endl;
-  os << indent << "AddNoise: " << this->AddNoise << endl;
-  os << indent << "NoiseDb: " << this->NoiseDb << endl;
-  os << indent << "NoiseSeed: " << this->NoiseSeed << endl;
+}
+
+const sono::BModeSettings& vtkSonoBMode::Settings() const
+{
+  return sono::settingsIn<sono::BModeSettings>(std::as_const(*this->Parameters));
 }
 
 void vtkSonoBMode::AddTgcPoint(double depthMm, double gainDb)
 {
-  this->TgcPoints.emplace_back(depthMm, gainDb);
+  sono::settingsIn<sono::BModeSettings>(*this->Parameters).tgcCurve.emplace_back(depthMm, gainDb);
   this->Modified();
 }
 
 void vtkSonoBMode::RemoveAllTgcPoints()
 {
-  if (!this->TgcPoints.empty())
+  if (this->GetNumberOfTgcPoints() > 0)
   {
-    this->TgcPoints.clear();
+    sono::settingsIn<sono::BModeSettings>(*this->Parameters).tgcCurve.clear();
     this->Modified();
   }
 }
 
-sono::BModeSettings vtkSonoBMode::Settings() const
+int vtkSonoBMode::GetNumberOfTgcPoints() const
 {
-  sono::BModeSettings settings;
-  settings.tgcDbPerCm = this->TgcDbPerCm;
-  settings.tgcCurve = this->TgcPoints;
-  settings.gainDb = this->GainDb;
-  settings.automaticReference = this->AutomaticReference;
-  settings.referenceAmplitude = this->ReferenceAmplitude;
-  settings.dynamicRangeDb = this->DynamicRangeDb;
-  settings.rejectDb = this->RejectDb;
-  settings.greyMap = static_cast<sono::GreyMap>(this->GreyMap);
-  if (this->AddNoise)
-  {
-    settings.noiseDb = this->NoiseDb;
-  }
-  settings.noiseSeed = static_cast<std::uint64_t>(this->NoiseSeed);
-  return settings;
+  return static_cast<int>(this->Settings().tgcCurve.size());
 }
 
 int vtkSonoBMode::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)

@@ -1,11 +1,11 @@
 #ifndef vtkSonoBMode_h
 #define vtkSonoBMode_h
 
+#include "SonoParameters.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
-#include <utility>
-#include <vector>
+#include <memory>
 
 namespace sono {
 struct BModeSettings;
@@ -25,65 +25,6 @@ public:
   vtkTypeMacro(vtkSonoBMode, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /**
-   * Gain that grows with depth in dB/cm, -100 to 100. Default 5.
-   */
-  vtkSetMacro(TgcDbPerCm, double);
-  vtkGetMacro(TgcDbPerCm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Points (depth in mm, gain in dB) of a curve that is added to the slope, by ascending depth; straight between
-   * points, constant beyond the ends. Default none.
-   */
-  void AddTgcPoint(double depthMm, double gainDb);
-  void RemoveAllTgcPoints();
-  int GetNumberOfTgcPoints() const { return static_cast<int>(this->TgcPoints.size()); }
-  ///@}
-
-  ///@{
-  /**
-   * Gain everywhere in dB, -300 to 300. Default 0.
-   */
-  vtkSetMacro(GainDb, double);
-  vtkGetMacro(GainDb, double);
-  ///@}
-
-  ///@{
-  /**
-   * Take the 99.9th percentile of the depth-gained envelope as the reference. Default on.
-   */
-  vtkSetMacro(AutomaticReference, bool);
-  vtkGetMacro(AutomaticReference, bool);
-  vtkBooleanMacro(AutomaticReference, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Envelope that is white, above 0, where the reference is not automatic. Default 1.
-   */
-  vtkSetMacro(ReferenceAmplitude, double);
-  vtkGetMacro(ReferenceAmplitude, double);
-  ///@}
-
-  ///@{
-  /**
-   * Levels shown in dB, above 0 up to 300: the reference is white, this much below it is black. Default 60.
-   */
-  vtkSetMacro(DynamicRangeDb, double);
-  vtkGetMacro(DynamicRangeDb, double);
-  ///@}
-
-  ///@{
-  /**
-   * Levels less than this above the bottom of the range are black too, in dB, from 0 to below the range. Default 0.
-   */
-  vtkSetMacro(RejectDb, double);
-  vtkGetMacro(RejectDb, double);
-  ///@}
-
   enum GreyMaps
   {
     LINEAR = 0,
@@ -93,37 +34,34 @@ public:
 
   ///@{
   /**
-   * What turns the compressed level into grey: the level itself, its square root, which lifts weak echoes, or an
-   * S-shaped curve with more contrast in the middle. Default LINEAR.
+   * Units, ranges, defaults and what they do: sono::BModeSettings.
    */
-  vtkSetMacro(GreyMap, int);
-  vtkGetMacro(GreyMap, int);
+  sonoParameter(GainDb, double);
+  sonoParameter(DynamicRangeDb, double);
+  sonoParameter(TgcDbPerCm, double);
+  sonoParameter(RejectDb, double);
+  sonoParameter(GreyMap, int);
+  sonoSwitch(AutomaticReference);
+  sonoParameter(ReferenceAmplitude, double);
+  sonoSwitch(AddNoise);
+  sonoParameter(NoiseDb, double);
+  sonoParameter(NoiseSeed, int);
   ///@}
 
   ///@{
   /**
-   * Whether the receiver adds noise, before any gain. Default off.
+   * Points (depth in mm, gain in dB) of a curve that is added to the slope, by ascending depth; straight between
+   * points, constant beyond the ends. Default none.
    */
-  vtkSetMacro(AddNoise, bool);
-  vtkGetMacro(AddNoise, bool);
-  vtkBooleanMacro(AddNoise, bool);
+  void AddTgcPoint(double depthMm, double gainDb);
+  void RemoveAllTgcPoints();
+  int GetNumberOfTgcPoints() const;
   ///@}
 
-  ///@{
   /**
-   * RMS of that noise in dB to the echo of a perfect plane reflector, up to 200. Default -80.
+   * What the stage is asked to do.
    */
-  vtkSetMacro(NoiseDb, double);
-  vtkGetMacro(NoiseDb, double);
-  ///@}
-
-  ///@{
-  /**
-   * Seed of the noise, at least 0. Default 1.
-   */
-  vtkSetMacro(NoiseSeed, int);
-  vtkGetMacro(NoiseSeed, int);
-  ///@}
+  const sono::BModeSettings& Settings() const;
 
 protected:
   vtkSonoBMode();
@@ -134,22 +72,10 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
-  sono::BModeSettings Settings() const;
-
   vtkSonoBMode(const vtkSonoBMode&) = delete;
   void operator=(const vtkSonoBMode&) = delete;
 
-  double TgcDbPerCm = 5.0;
-  std::vector<std::pair<double, double>> TgcPoints;
-  double GainDb = 0.0;
-  bool AutomaticReference = true;
-  double ReferenceAmplitude = 1.0;
-  double DynamicRangeDb = 60.0;
-  double RejectDb = 0.0;
-  int GreyMap = LINEAR;
-  bool AddNoise = false;
-  double NoiseDb = -80.0;
-  int NoiseSeed = 1;
+  std::unique_ptr<sono::ParameterSet> Parameters;
 };
 
 #endif

@@ -137,7 +137,7 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     const auto fill = [&](const auto& converted) {
       fillMap(converted, probe.pose, vtkImageData::GetData(output, 0), vtkImageData::GetData(output, 1));
     };
-    const bool isVolume = probe.geometry.kind == sono::ScanKind::Matrix;
+    const bool isVolume = probe.geometry.isVolume();
     if (probe.preview && isVolume)
     {
       const sono::VolumeImage image = sono::volumeImageLayout(probe.geometry, pixelMm);

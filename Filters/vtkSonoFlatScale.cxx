@@ -118,7 +118,7 @@ void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
 {
   const auto outline = sono::scanOutline(geometry);
   const double depthCm = geometry.depthMm / 10.0;
-  const double faceCm = geometry.kind == sono::ScanKind::Radial ? geometry.radiusMm / 10.0 : 0.0;
+  const double faceCm = geometry.lineOrigin() == sono::LineOrigin::Catheter ? geometry.radiusMm / 10.0 : 0.0;
   const int numbered = depthCm < 8.0 ? 1 : 5;
   const double rulerCm = -halfWidthCm(outline[0]) - 0.03 * depthCm;
   drawing.stroke(rulerCm, faceCm, rulerCm, faceCm + depthCm);
@@ -158,7 +158,7 @@ int vtkSonoFlatScale::RequestData(vtkInformation*, vtkInformationVector** input,
 {
   return sono::runStage(this, output, [&] {
     const sono::ScanGeometry geometry = sono::readProbe(vtkDataSet::GetData(input[0])->GetFieldData()).geometry;
-    if (geometry.kind != sono::ScanKind::Matrix)
+    if (!geometry.isVolume())
     {
       Drawing drawing;
       draw(geometry, drawing);

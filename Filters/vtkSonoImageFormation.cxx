@@ -4,6 +4,7 @@
 #include "SonoFieldImage.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
+#include "SonoSettings.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 vtkStandardNewMacro(vtkSonoImageFormation);
 
@@ -34,9 +36,17 @@ sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe
   traced.lineCount = layout.lineCount;
   traced.binCount = layout.sampleCount;
   traced.binMm = layout.sampleMm;
-  traced.intensity = sono::lineValues("Intensity", image->GetPointData(), count);
-  traced.standardError = sono::lineValues("StandardError", image->GetPointData(), count);
-  traced.boundaryEcho = sono::complexLineValues("BoundaryEcho", image->GetFieldData());
+  sono::TracedLines::visitArrays(traced, [&](auto& values, const char* name, sono::TracedAxis axis) {
+    vtkFieldData* from = axis == sono::TracedAxis::Bins ? image->GetPointData() : image->GetFieldData();
+    if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<float>>)
+    {
+      values = sono::lineValues(name, from, count);
+    }
+    else
+    {
+      values = sono::complexLineValues(name, from);
+    }
+  });
   traced.echoCount = static_cast<int>(traced.boundaryEcho.size() / layout.lineCount);
   traced.echoSampleMm = echoSampleMm;
   return traced;
@@ -68,6 +78,7 @@ std::optional<sono::PointScatterers> pointScatterers(vtkPointSet* points)
 } // namespace
 
 vtkSonoImageFormation::vtkSonoImageFormation()
+  : Parameters(new sono::SettingsOf<sono::EchoSettings>)
 {
   this->SetNumberOfInputPorts(3);
   this->SetProgressText("Forming echoes");
@@ -78,12 +89,7 @@ vtkSonoImageFormation::~vtkSonoImageFormation() = default;
 void vtkSonoImageFormation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Device: " << this->Device << endl;
-  os << indent << "LateralSigmaMm: " << this->LateralSigmaMm << endl;
-  os << indent << "ElevationalSigmaMm: " << this->ElevationalSigmaMm << endl;
-  os << indent << "ScattererCellMm: " << this->ScattererCellMm << endl;
-  os << indent << "ScattererLevelDb: " << this->ScattererLevelDb << endl;
-  os << indent << "Seed: " << this->Seed << endl;
+  this->Parameters->print(os, indent);
   os << indent << "PulseFileName: " << this->PulseFileName << endl;
 }
 
@@ -100,19 +106,16 @@ int vtkSonoImageFormation::FillInputPortInformation(int port, vtkInformation* in
 sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) const
 {
   const sono::ProbeField probe = sono::readProbe(acquisition);
-  sono::EchoSettings settings;
-  settings.device = static_cast<sono::Device>(this->Device);
+  auto settings = sono::settingsIn<sono::EchoSettings>(*this->Parameters);
   settings.centreFrequencyMHz = probe.centreFrequencyMHz;
   settings.fractionalBandwidth = probe.fractionalBandwidth;
   settings.samplingMHz = sono::readNumber("SamplingMHz", acquisition);
   settings.depthMm = probe.geometry.depthMm;
-  settings.lateralSigmaMm = this->LateralSigmaMm;
-  settings.elevationalSigmaMm = this->ElevationalSigmaMm;
-  settings.scattererCellMm =
-    probe.preview ? std::min(previewCell * this->ScattererCellMm, std::max(this->ScattererCellMm, widestCellMm))
-                  : this->ScattererCellMm;
-  settings.scattererLevelDb = this->ScattererLevelDb;
-  settings.seed = static_cast<std::uint64_t>(this->Seed);
+  if (probe.preview)
+  {
+    settings.scattererCellMm =
+      std::min(previewCell * settings.scattererCellMm, std::max(settings.scattererCellMm, widestCellMm));
+  }
   settings.validate();
   return settings;
 }

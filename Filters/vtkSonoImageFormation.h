@@ -1,9 +1,11 @@
 #ifndef vtkSonoImageFormation_h
 #define vtkSonoImageFormation_h
 
+#include "SonoParameters.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
 #include <string>
 
 namespace sono {
@@ -38,51 +40,14 @@ public:
 
   ///@{
   /**
-   * Where to compute: on the GPU where there is one, else on the CPU, which is said once; or on either alone. The
-   * results differ by rounding. Default AUTO.
+   * Units, ranges, defaults and what they do: sono::EchoSettings.
    */
-  vtkSetMacro(Device, int);
-  vtkGetMacro(Device, int);
-  ///@}
-
-  ///@{
-  /**
-   * Standard deviation of the Gaussian beam along the array in mm, above 0. Default 1.
-   */
-  vtkSetMacro(LateralSigmaMm, double);
-  vtkGetMacro(LateralSigmaMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Standard deviation of the Gaussian beam across the image plane in mm, above 0. Default 1.
-   */
-  vtkSetMacro(ElevationalSigmaMm, double);
-  vtkGetMacro(ElevationalSigmaMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Edge h of the cells that hold one scatterer each in mm, above 0; their density is mu1 / h^3. Default 0.5.
-   */
-  vtkSetMacro(ScattererCellMm, double);
-  vtkGetMacro(ScattererCellMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * RMS echo of a tissue full of scatterers against a perfect plane reflector in dB, -200 to 200. Default -30.
-   */
-  vtkSetMacro(ScattererLevelDb, double);
-  vtkGetMacro(ScattererLevelDb, double);
-  ///@}
-
-  ///@{
-  /**
-   * Seed of the scatterers, at least 0. Default 1.
-   */
-  vtkSetMacro(Seed, int);
-  vtkGetMacro(Seed, int);
+  sonoParameter(Device, int);
+  sonoParameter(LateralSigmaMm, double);
+  sonoParameter(ElevationalSigmaMm, double);
+  sonoParameter(ScattererCellMm, double);
+  sonoParameter(ScattererLevelDb, double);
+  sonoParameter(ScattererSeed, int);
   ///@}
 
   ///@{
@@ -93,6 +58,12 @@ public:
   vtkSetStdStringFromCharMacro(PulseFileName);
   vtkGetCharFromStdStringMacro(PulseFileName);
   ///@}
+
+  /**
+   * What the stage is asked to do: the parameters with what comes from the probe and the tracer, in the field data of
+   * the traced lines, but neither pulse nor pulse-echo field. Throws sono::Error for what is out of range.
+   */
+  sono::EchoSettings Settings(vtkFieldData* acquisition) const;
 
 protected:
   vtkSonoImageFormation();
@@ -107,14 +78,7 @@ private:
   vtkSonoImageFormation(const vtkSonoImageFormation&) = delete;
   void operator=(const vtkSonoImageFormation&) = delete;
 
-  sono::EchoSettings Settings(vtkFieldData* acquisition) const;
-
-  double LateralSigmaMm = 1.0;
-  double ElevationalSigmaMm = 1.0;
-  double ScattererCellMm = 0.5;
-  double ScattererLevelDb = -30.0;
-  int Device = AUTO;
-  int Seed = 1;
+  std::unique_ptr<sono::ParameterSet> Parameters;
   std::string PulseFileName;
 };
 

@@ -13,8 +13,8 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
-#include <functional>
 #include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,22 +24,20 @@ namespace {
 
 using sono::ProbePreset;
 
-/// The settings of vtkSonoProbeSource that a preset gives.
-const std::vector<std::pair<const char*, std::function<double(const ProbePreset&)>>>& settings()
+struct Setting
 {
-  static const std::vector<std::pair<const char*, std::function<double(const ProbePreset&)>>> all{
-    { "ScanKind", [](const ProbePreset& p) { return double(p.geometry.kind); } },
-    { "LineCount", [](const ProbePreset& p) { return double(p.geometry.lineCount); } },
-    { "DepthMm", [](const ProbePreset& p) { return p.geometry.depthMm; } },
-    { "SectorDeg", [](const ProbePreset& p) { return p.geometry.sectorDeg; } },
-    { "RadiusMm", [](const ProbePreset& p) { return p.geometry.radiusMm; } },
-    { "WidthMm", [](const ProbePreset& p) { return p.geometry.widthMm; } },
-    { "ElevationLineCount", [](const ProbePreset& p) { return double(p.geometry.elevationLineCount); } },
-    { "ElevationSectorDeg", [](const ProbePreset& p) { return p.geometry.elevationSectorDeg; } },
-    { "CentreFrequencyMHz", [](const ProbePreset& p) { return p.centreFrequencyMHz; } },
-    { "FractionalBandwidth", [](const ProbePreset& p) { return p.fractionalBandwidth; } },
-  };
-  return all;
+  std::string name;
+  double value;
+};
+
+/// The settings of vtkSonoProbeSource that a preset gives.
+std::vector<Setting> settingsOf(const sono::ProbeSettings& preset)
+{
+  std::vector<Setting> settings;
+  sono::ProbeSettings::visit(preset, [&settings](const auto& value, const sono::Parameter& parameter) {
+    settings.push_back({ sono::propertyName(parameter), sono::numberOf(value) });
+  });
+  return settings;
 }
 
 } // namespace
@@ -109,17 +107,19 @@ int vtkSonoProbePresets::RequestData(vtkInformation*, vtkInformationVector**, vt
     vtkTable* table = vtkTable::GetData(output);
     table->AddColumn(files);
     table->AddColumn(names);
-    for (const auto& [name, value] : settings())
+    const std::vector<Setting> settings = settingsOf({});
+    for (std::size_t s = 0; s < settings.size(); ++s)
     {
       vtkNew<vtkDoubleArray> column;
-      column->SetName(name);
+      column->SetName(settings[s].name.c_str());
       for (std::size_t i = 0; i < presets.size(); ++i)
       {
-        column->InsertNextValue(value(presets[i].second));
-        rows[i] << '\t' << value(presets[i].second);
+        const double value = settingsOf(presets[i].second)[s].value;
+        column->InsertNextValue(value);
+        rows[i] << '\t' << value;
       }
       table->AddColumn(column);
-      columns += std::string("\t") + name;
+      columns += "\t" + settings[s].name;
     }
     this->Rows->InsertNextValue(columns);
     for (const std::ostringstream& row : rows)

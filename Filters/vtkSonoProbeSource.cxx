@@ -3,6 +3,7 @@
 #include "Core/Progress.h"
 #include "SonoDataFile.h"
 #include "SonoProbeField.h"
+#include "SonoSettings.h"
 #include "SonoStage.h"
 
 #include "vtkCellArray.h"
@@ -40,6 +41,7 @@ std::string presetPath(const std::string& preset)
 } // namespace
 
 vtkSonoProbeSource::vtkSonoProbeSource()
+  : Parameters(new sono::SettingsOf<sono::ProbeSettings>)
 {
   this->SetNumberOfInputPorts(0);
   this->SetProgressText("Placing the probe");
@@ -54,50 +56,27 @@ void vtkSonoProbeSource::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << endl;
   };
   os << indent << "PresetFile: " << this->PresetFile << endl;
-  os << indent << "ScanKind: " << this->ScanKind << endl;
-  os << indent << "LineCount: " << this->LineCount << endl;
-  os << indent << "DepthMm: " << this->DepthMm << endl;
-  os << indent << "SectorDeg: " << this->SectorDeg << endl;
-  os << indent << "RadiusMm: " << this->RadiusMm << endl;
-  os << indent << "WidthMm: " << this->WidthMm << endl;
-  os << indent << "ElevationLineCount: " << this->ElevationLineCount << endl;
-  os << indent << "ElevationSectorDeg: " << this->ElevationSectorDeg << endl;
+  this->Parameters->print(os, indent);
   printVector("PositionMm", this->PositionMm);
   printVector("Axial", this->Axial);
   printVector("Lateral", this->Lateral);
-  os << indent << "CentreFrequencyMHz: " << this->CentreFrequencyMHz << endl;
-  os << indent << "FractionalBandwidth: " << this->FractionalBandwidth << endl;
   os << indent << "Preview: " << this->Preview << endl;
+}
+
+void vtkSonoProbeSource::SetNumber(const char* name, double value)
+{
+  if (this->Parameters->set(name, value))
+  {
+    this->Modified();
+  }
 }
 
 sono::ProbeField vtkSonoProbeSource::Probe() const
 {
   sono::ProbeField probe;
-  if (this->PresetFile.empty())
-  {
-    if (this->ScanKind < LINEAR || this->ScanKind > RADIAL)
-    {
-      throw sono::Error("ScanKind is " + std::to_string(this->ScanKind) +
-                        " but must be 0 (linear), 1 (phased sector), 2 (curvilinear), 3 (matrix) or 4 (radial).");
-    }
-    probe.geometry = { static_cast<sono::ScanKind>(this->ScanKind),
-                       this->LineCount,
-                       this->DepthMm,
-                       this->SectorDeg,
-                       this->RadiusMm,
-                       this->WidthMm,
-                       this->ElevationLineCount,
-                       this->ElevationSectorDeg };
-    probe.centreFrequencyMHz = this->CentreFrequencyMHz;
-    probe.fractionalBandwidth = this->FractionalBandwidth;
-  }
-  else
-  {
-    const sono::ProbePreset preset = sono::readProbePreset(presetPath(this->PresetFile));
-    probe.geometry = preset.geometry;
-    probe.centreFrequencyMHz = preset.centreFrequencyMHz;
-    probe.fractionalBandwidth = preset.fractionalBandwidth;
-  }
+  static_cast<sono::ProbeSettings&>(probe) = this->PresetFile.empty()
+                                               ? sono::settingsIn<sono::ProbeSettings>(*this->Parameters)
+                                               : sono::readProbePreset(presetPath(this->PresetFile));
   probe.geometry.validate();
   probe.preview = this->Preview;
 

@@ -1,9 +1,11 @@
 #ifndef vtkSonoProbeSource_h
 #define vtkSonoProbeSource_h
 
+#include "SonoParameters.h"
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
 #include <string>
 
 namespace sono {
@@ -45,68 +47,24 @@ public:
 
   ///@{
   /**
-   * Layout of the scan lines. Default PHASED_SECTOR.
+   * Layout and pulse. Units, ranges, defaults and what they do: sono::ScanGeometry and sono::ProbeSettings.
    */
-  vtkSetMacro(ScanKind, int);
-  vtkGetMacro(ScanKind, int);
+  sonoParameter(ScanKind, int);
+  sonoParameter(LineCount, int);
+  sonoParameter(DepthMm, double);
+  sonoParameter(SectorDeg, double);
+  sonoParameter(RadiusMm, double);
+  sonoParameter(WidthMm, double);
+  sonoParameter(ElevationLineCount, int);
+  sonoParameter(ElevationSectorDeg, double);
+  sonoParameter(CentreFrequencyMHz, double);
+  sonoParameter(FractionalBandwidth, double);
   ///@}
 
-  ///@{
   /**
-   * Number of scan lines, 1 to 4096; of a matrix, in each elevation. Default 128.
+   * One of these by its name, as the panel's widget does for all of them.
    */
-  vtkSetMacro(LineCount, int);
-  vtkGetMacro(LineCount, int);
-  ///@}
-
-  ///@{
-  /**
-   * Depth along each line from the face in mm, above 0. Default 160.
-   */
-  vtkSetMacro(DepthMm, double);
-  vtkGetMacro(DepthMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Angle between the outermost lines in degrees, between 0 and 180, or up to 360 for radial probes; not for linear
-   * ones. Default 90.
-   */
-  vtkSetMacro(SectorDeg, double);
-  vtkGetMacro(SectorDeg, double);
-  ///@}
-
-  ///@{
-  /**
-   * Radius of a curvilinear or radial probe's face in mm, above 0. Default 60.
-   */
-  vtkSetMacro(RadiusMm, double);
-  vtkGetMacro(RadiusMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Distance of a linear probe's outermost lines in mm, above 0. Default 38.
-   */
-  vtkSetMacro(WidthMm, double);
-  vtkGetMacro(WidthMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Elevations of a matrix probe, 1 to 4096, at most 65536 lines altogether. Default 32.
-   */
-  vtkSetMacro(ElevationLineCount, int);
-  vtkGetMacro(ElevationLineCount, int);
-  ///@}
-
-  ///@{
-  /**
-   * Angle between the outermost elevations of a matrix probe in degrees, between 0 and 180. Default 60.
-   */
-  vtkSetMacro(ElevationSectorDeg, double);
-  vtkGetMacro(ElevationSectorDeg, double);
-  ///@}
+  void SetNumber(const char* name, double value);
 
   ///@{
   /**
@@ -135,22 +93,6 @@ public:
 
   ///@{
   /**
-   * Centre frequency of the pulse in MHz, above 0. Default 2.5.
-   */
-  vtkSetMacro(CentreFrequencyMHz, double);
-  vtkGetMacro(CentreFrequencyMHz, double);
-  ///@}
-
-  ///@{
-  /**
-   * Bandwidth of the pulse at -6 dB as a part of the centre frequency, between 0 and 2. Default 0.6.
-   */
-  vtkSetMacro(FractionalBandwidth, double);
-  vtkGetMacro(FractionalBandwidth, double);
-  ///@}
-
-  ///@{
-  /**
    * Whether the probe is being moved. The stages then make a coarse image quickly: at most 60 paths a line, RF sampled
    * at four times the centre frequency at most, scatterer cells up to twice and pixels twice as wide as they are set
    * to. Default off.
@@ -159,6 +101,11 @@ public:
   vtkGetMacro(Preview, bool);
   vtkBooleanMacro(Preview, bool);
   ///@}
+
+  /**
+   * The probe, of the preset where one is named. Throws sono::Error for what is out of range.
+   */
+  sono::ProbeField Probe() const;
 
 protected:
   vtkSonoProbeSource();
@@ -171,22 +118,11 @@ private:
   vtkSonoProbeSource(const vtkSonoProbeSource&) = delete;
   void operator=(const vtkSonoProbeSource&) = delete;
 
-  sono::ProbeField Probe() const;
-
+  std::unique_ptr<sono::ParameterSet> Parameters;
   std::string PresetFile;
-  int ScanKind = PHASED_SECTOR;
-  int LineCount = 128;
-  double DepthMm = 160.0;
-  double SectorDeg = 90.0;
-  double RadiusMm = 60.0;
-  double WidthMm = 38.0;
-  int ElevationLineCount = 32;
-  double ElevationSectorDeg = 60.0;
   double PositionMm[3] = { 87.8, -86.5, -45.0 };
   double Axial[3] = { -0.53, 0.65, 0.545 };
   double Lateral[3] = { 0.843, 0.333, 0.423 };
-  double CentreFrequencyMHz = 2.5;
-  double FractionalBandwidth = 0.6;
   bool Preview = false;
 };
 

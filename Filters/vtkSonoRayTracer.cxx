@@ -4,6 +4,7 @@
 #include "SonoLineImage.h"
 #include "SonoPaths.h"
 #include "SonoProbeField.h"
+#include "SonoSettings.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
 #include "Trace/ProbeContact.h"
@@ -18,7 +19,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMath.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -67,6 +67,7 @@ std::vector<std::string> mediaNames(const sono::Scene& scene, const std::vector<
 } // namespace
 
 vtkSonoRayTracer::vtkSonoRayTracer()
+  : Parameters(new sono::SettingsOf<sono::TraceSettings>)
 {
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(4);
@@ -78,23 +79,10 @@ vtkSonoRayTracer::~vtkSonoRayTracer() = default;
 void vtkSonoRayTracer::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "InterfaceModel: " << this->InterfaceModel << endl;
-  os << indent << "Sampling: " << this->Sampling << endl;
-  os << indent << "PathsPerLine: " << this->PathsPerLine << endl;
-  os << indent << "MaxCollisions: " << this->MaxCollisions << endl;
-  os << indent << "CoherenceMm: " << this->CoherenceMm << endl;
-  os << indent << "Deterministic: " << this->Deterministic << endl;
-  os << indent << "LobeMeanDeg: " << this->LobeMeanDeg << endl;
-  os << indent << "Device: " << this->Device << endl;
-  os << indent << "LobeSigmaDeg: " << this->LobeSigmaDeg << endl;
-  os << indent << "LobeMinDeg: " << this->LobeMinDeg << endl;
-  os << indent << "LobeMaxDeg: " << this->LobeMaxDeg << endl;
-  os << indent << "RadialBinMm: " << this->RadialBinMm << endl;
+  this->Parameters->print(os, indent);
   os << indent << "SamplingMHz: " << this->SamplingMHz << endl;
-  os << indent << "RouletteDb: " << this->RouletteDb << endl;
   os << indent << "TargetTissue: " << this->TargetTissue << endl;
   os << indent << "NumberOfShownPaths: " << this->NumberOfShownPaths << endl;
-  os << indent << "Seed: " << this->Seed << endl;
 }
 
 int vtkSonoRayTracer::FillInputPortInformation(int port, vtkInformation* info)
@@ -115,25 +103,12 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
 {
-  sono::TraceSettings settings;
-  settings.device = static_cast<sono::Device>(this->Device);
-  settings.model = static_cast<sono::InterfaceModel>(this->InterfaceModel);
-  settings.sampling = static_cast<sono::Sampling>(this->Sampling);
-  settings.pathsPerLine = probe.preview ? std::min(this->PathsPerLine, previewPaths) : this->PathsPerLine;
+  auto settings = sono::settingsIn<sono::TraceSettings>(*this->Parameters);
+  settings.pathsPerLine = probe.preview ? std::min(settings.pathsPerLine, previewPaths) : settings.pathsPerLine;
   settings.interactive = probe.preview;
-  settings.maxCollisions = this->MaxCollisions;
-  settings.coherenceMm = this->CoherenceMm;
-  settings.deterministic = this->Deterministic;
-  settings.lobeMeanRad = vtkMath::RadiansFromDegrees(this->LobeMeanDeg);
-  settings.lobeSigmaRad = vtkMath::RadiansFromDegrees(this->LobeSigmaDeg);
-  settings.lobeMinRad = vtkMath::RadiansFromDegrees(this->LobeMinDeg);
-  settings.lobeMaxRad = vtkMath::RadiansFromDegrees(this->LobeMaxDeg);
   settings.frequencyMHz = probe.centreFrequencyMHz;
   settings.depthMm = probe.geometry.depthMm;
-  settings.radialBinMm = this->RadialBinMm;
   settings.echoSampleMm = rfGrid(rfSamplingMHz(this->SamplingMHz, probe), settings.depthMm).sampleMm();
-  settings.rouletteDb = this->RouletteDb;
-  settings.seed = static_cast<std::uint64_t>(this->Seed);
   settings.validate();
   return settings;
 }
@@ -194,18 +169,23 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
 
     vtkImageData* lines = vtkImageData::GetData(output, 0);
     sono::setLineImageLayout({ traced.binCount, traced.lineCount, traced.binMm / 2.0, traced.binMm }, lines);
-    lines->GetPointData()->SetScalars(sono::lineArray("Intensity", traced.intensity));
-    lines->GetPointData()->AddArray(sono::lineArray("StandardError", traced.standardError));
-
     vtkImageData* echoes = vtkImageData::GetData(output, 1);
-    const auto boundaryEcho = sono::lineArray("BoundaryEcho", traced.boundaryEcho);
     sono::setLineImageLayout({ traced.echoCount, traced.lineCount, 0.0, traced.echoSampleMm }, echoes);
-    echoes->GetPointData()->SetScalars(boundaryEcho);
     for (vtkImageData* image : { lines, echoes })
     {
       sono::writeProbe(probe, image->GetFieldData());
       sono::writeNumber("SamplingMHz", rfSamplingMHz(this->SamplingMHz, probe), image->GetFieldData());
     }
-    lines->GetFieldData()->AddArray(boundaryEcho);
+    sono::TracedLines::visitArrays(traced, [&](const auto& values, const char* name, sono::TracedAxis axis) {
+      const bool isOfBins = axis == sono::TracedAxis::Bins;
+      const auto array = sono::lineArray(name, values);
+      (isOfBins ? lines : echoes)->GetPointData()->AddArray(array);
+      if (!isOfBins)
+      {
+        lines->GetFieldData()->AddArray(array); // it alone suffices for the image formation
+      }
+    });
+    lines->GetPointData()->SetActiveScalars("Intensity");
+    echoes->GetPointData()->SetActiveScalars("BoundaryEcho");
   });
 }

@@ -1,9 +1,11 @@
 #ifndef vtkSonoRayTracer_h
 #define vtkSonoRayTracer_h
 
+#include "SonoParameters.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
 #include <string>
 
 namespace sono {
@@ -43,31 +45,11 @@ public:
     CPU = 1,
     CUDA = 2
   };
-
-  ///@{
-  /**
-   * Where to compute: on the GPU where there is one, else on the CPU, which is said once; or on either alone. The
-   * results differ by rounding. Default AUTO.
-   */
-  vtkSetMacro(Device, int);
-  vtkGetMacro(Device, int);
-  ///@}
-
   enum InterfaceModels
   {
     ACOUSTIC = 0,
     AMADOU_2024 = 1
   };
-
-  ///@{
-  /**
-   * What happens at a boundary: fluid acoustics, which conserves energy, or the equations of Amadou et al. 2024 to
-   * the letter, which do not. Default ACOUSTIC.
-   */
-  vtkSetMacro(InterfaceModel, int);
-  vtkGetMacro(InterfaceModel, int);
-  ///@}
-
   enum Samplings
   {
     INDEPENDENT = 0,
@@ -77,85 +59,22 @@ public:
 
   ///@{
   /**
-   * Where a path's random numbers come from: independent ones, or scrambled Sobol points with less noise. With
-   * SHARED_PATHS eight neighbouring lines share their paths, too: each takes two to four times as long, but a tenth of
-   * them gives the same noise. Default LOW_DISCREPANCY.
+   * Units, ranges, defaults and what they do: sono::TraceSettings.
    */
-  vtkSetMacro(Sampling, int);
-  vtkGetMacro(Sampling, int);
-  ///@}
-
-  ///@{
-  /**
-   * Paths per scan line, 1 to 10^7; the noise falls with their square root. Default 1000.
-   */
-  vtkSetMacro(PathsPerLine, int);
-  vtkGetMacro(PathsPerLine, int);
-  ///@}
-
-  ///@{
-  /**
-   * Boundaries that a path may meet, 0 to 1000. Default 7.
-   */
-  vtkSetMacro(MaxCollisions, int);
-  vtkGetMacro(MaxCollisions, int);
-  ///@}
-
-  ///@{
-  /**
-   * C0 in mm, at least 0: a path at this distance from the main beam counts half. Default 100.
-   */
-  vtkSetMacro(CoherenceMm, double);
-  vtkGetMacro(CoherenceMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Follow only the refracted direction, without chance and without spreading. Default off.
-   */
-  vtkSetMacro(Deterministic, bool);
-  vtkGetMacro(Deterministic, bool);
-  vtkBooleanMacro(Deterministic, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Mean angle between an outgoing direction and the mirrored or refracted one, in degrees. Default 0.
-   */
-  vtkSetMacro(LobeMeanDeg, double);
-  vtkGetMacro(LobeMeanDeg, double);
-  ///@}
-
-  ///@{
-  /**
-   * Standard deviation of that angle in degrees, at least 0; 0 is a mirror. Default 45.
-   */
-  vtkSetMacro(LobeSigmaDeg, double);
-  vtkGetMacro(LobeSigmaDeg, double);
-  ///@}
-
-  ///@{
-  /**
-   * Least such angle in degrees. Default 0.
-   */
-  vtkSetMacro(LobeMinDeg, double);
-  vtkGetMacro(LobeMinDeg, double);
-  ///@}
-
-  ///@{
-  /**
-   * Largest such angle in degrees, above the least, up to 90. Default 90.
-   */
-  vtkSetMacro(LobeMaxDeg, double);
-  vtkGetMacro(LobeMaxDeg, double);
-  ///@}
-
-  ///@{
-  /**
-   * Width of an intensity sample along a scan line in mm, above 0. Default 0.25.
-   */
-  vtkSetMacro(RadialBinMm, double);
-  vtkGetMacro(RadialBinMm, double);
+  sonoParameter(Device, int);
+  sonoParameter(InterfaceModel, int);
+  sonoParameter(Sampling, int);
+  sonoParameter(PathsPerLine, int);
+  sonoParameter(MaxCollisions, int);
+  sonoParameter(CoherenceMm, double);
+  sonoSwitch(Deterministic);
+  sonoParameter(LobeMeanDeg, double);
+  sonoParameter(LobeSigmaDeg, double);
+  sonoParameter(LobeMinDeg, double);
+  sonoParameter(LobeMaxDeg, double);
+  sonoParameter(RadialBinMm, double);
+  sonoParameter(RouletteDb, double);
+  sonoParameter(PathSeed, int);
   ///@}
 
   ///@{
@@ -165,15 +84,6 @@ public:
    */
   vtkSetMacro(SamplingMHz, double);
   vtkGetMacro(SamplingMHz, double);
-  ///@}
-
-  ///@{
-  /**
-   * Paths fainter than this, 20 log10 of the intensity, -1000 to 0, are ended by chance and the others of their kind
-   * count more. Default -100.
-   */
-  vtkSetMacro(RouletteDb, double);
-  vtkGetMacro(RouletteDb, double);
   ///@}
 
   ///@{
@@ -192,13 +102,11 @@ public:
   vtkGetMacro(NumberOfShownPaths, int);
   ///@}
 
-  ///@{
   /**
-   * Seed of the paths, at least 0: the same seed gives the same result. Default 1.
+   * What the tracer is asked to do for a probe: the parameters with what comes from the probe. Throws sono::Error for
+   * what is out of range.
    */
-  vtkSetMacro(Seed, int);
-  vtkGetMacro(Seed, int);
-  ///@}
+  sono::TraceSettings Settings(const sono::ProbeField& probe) const;
 
 protected:
   vtkSonoRayTracer();
@@ -213,25 +121,10 @@ private:
   vtkSonoRayTracer(const vtkSonoRayTracer&) = delete;
   void operator=(const vtkSonoRayTracer&) = delete;
 
-  sono::TraceSettings Settings(const sono::ProbeField& probe) const;
-
-  int InterfaceModel = ACOUSTIC;
-  int Sampling = LOW_DISCREPANCY;
-  int PathsPerLine = 1000;
-  int MaxCollisions = 7;
-  double CoherenceMm = 100.0;
-  bool Deterministic = false;
-  double LobeMeanDeg = 0.0;
-  double LobeSigmaDeg = 45.0;
-  double LobeMinDeg = 0.0;
-  double LobeMaxDeg = 90.0;
-  double RadialBinMm = 0.25;
+  std::unique_ptr<sono::ParameterSet> Parameters;
   double SamplingMHz = 50.0;
-  double RouletteDb = -100.0;
   std::string TargetTissue = "cortical_bone";
   int NumberOfShownPaths = 0;
-  int Device = AUTO;
-  int Seed = 1;
 };
 
 #endif

@@ -165,7 +165,7 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
       fillImage(converted, probe.pose, labels.get(), vtkImageData::GetData(output, 0),
                 vtkImageData::GetData(output, 1));
     };
-    if (probe.geometry.kind == sono::ScanKind::Matrix)
+    if (probe.geometry.isVolume())
     {
       fill(sono::scanConvertVolume(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm,
                                    sono::progressOf(this)));

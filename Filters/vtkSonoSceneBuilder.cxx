@@ -8,6 +8,7 @@
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoSceneBlocks.h"
+#include "SonoSettings.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -37,6 +38,7 @@ std::string joined(const std::vector<std::string>& names)
 } // namespace
 
 vtkSonoSceneBuilder::vtkSonoSceneBuilder()
+  : Parameters(new sono::SettingsOf<sono::BodyFillSettings>)
 {
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
@@ -54,9 +56,7 @@ void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FallbackTissue: " << this->FallbackTissue << endl;
   os << indent << "OutsideTissue: " << this->OutsideTissue << endl;
   os << indent << "FillBody: " << this->FillBody << endl;
-  os << indent << "ClosingMm: " << this->ClosingMm << endl;
-  os << indent << "WallMm: " << this->WallMm << endl;
-  os << indent << "SkinMm: " << this->SkinMm << endl;
+  this->Parameters->print(os, indent);
   os << indent << "CacheFolder: " << this->CacheFolder << endl;
   os << indent << "BuildSurfaces: " << this->BuildSurfaces << endl;
 }
@@ -91,7 +91,7 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
   sono::report(progress, 0.05);
   if (this->FillBody)
   {
-    const sono::BodyFillSettings settings{ this->ClosingMm, this->WallMm, this->SkinMm };
+    const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);
     sono::fillBody(volume, settings, sono::partOf(progress, 0.05, 0.1));
   }
   if (!this->LabelTableFile.empty())

@@ -1,9 +1,11 @@
 #ifndef vtkSonoSceneBuilder_h
 #define vtkSonoSceneBuilder_h
 
+#include "SonoParameters.h"
 #include "vtkMultiBlockDataSetAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
 #include <string>
 
 namespace sono {
@@ -81,26 +83,11 @@ public:
 
   ///@{
   /**
-   * Gaps between labels up to twice as wide belong to the body, in mm, 0 to 200. Used with FillBody. Default 50.
+   * Where the body that is filled ends. Units, ranges, defaults and what they do: sono::BodyFillSettings.
    */
-  vtkSetMacro(ClosingMm, double);
-  vtkGetMacro(ClosingMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Unlabelled tissue outside the outermost labels, skin included, in mm, 0 to 100. Used with FillBody. Default 10.
-   */
-  vtkSetMacro(WallMm, double);
-  vtkGetMacro(WallMm, double);
-  ///@}
-
-  ///@{
-  /**
-   * Thickness of the skin in mm, 0 to 20. Used with FillBody. Default 2.
-   */
-  vtkSetMacro(SkinMm, double);
-  vtkGetMacro(SkinMm, double);
+  sonoParameter(ClosingMm, double);
+  sonoParameter(WallMm, double);
+  sonoParameter(SkinMm, double);
   ///@}
 
   ///@{
@@ -142,10 +129,8 @@ private:
   std::string LabelTableFile;
   std::string FallbackTissue = "soft_tissue";
   std::string OutsideTissue = "air";
+  std::unique_ptr<sono::ParameterSet> Parameters;
   bool FillBody = false;
-  double ClosingMm = 50.0;
-  double WallMm = 10.0;
-  double SkinMm = 2.0;
   std::string CacheFolder;
   bool BuildSurfaces = true;
 };

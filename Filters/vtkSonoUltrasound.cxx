@@ -1,5 +1,6 @@
 #include "vtkSonoUltrasound.h"
 
+#include "SonoChestDefaults.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "SonoStageChain.h"
@@ -12,6 +13,7 @@
 #include "vtkSonoSceneBuilder.h"
 
 #include "vtkAlgorithmOutput.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -26,10 +28,16 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
+#include <array>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +67,18 @@ void appendTimes(vtkFieldData* arrays, std::vector<double>& content)
   }
 }
 
+/// A data object belongs to one pipeline. Null of null.
+vtkSmartPointer<vtkDataObject> copyOf(vtkDataObject* input)
+{
+  vtkSmartPointer<vtkDataObject> copy;
+  if (input)
+  {
+    copy = vtk::TakeSmartPointer(input->NewInstance());
+    copy->ShallowCopy(input);
+  }
+  return copy;
+}
+
 /// What tells one input from another. The time of a data object itself does not: ParaView makes a new shallow copy of
 /// the same data for each run. Times are unique, so that equal ones of the arrays mean the same arrays.
 std::vector<double> contentOf(vtkDataObject* input)
@@ -74,6 +94,16 @@ std::vector<double> contentOf(vtkDataObject* input)
     const double* direction = image->GetDirectionMatrix()->GetData();
     content.insert(content.end(), direction, direction + 9);
   }
+  if (auto* points = vtkPointSet::SafeDownCast(input))
+  {
+    appendTimes(points->GetPointData(), content);
+    appendTimes(points->GetCellData(), content);
+    content.push_back(points->GetPoints() ? static_cast<double>(points->GetPoints()->GetMTime()) : 0.0);
+  }
+  if (auto* surface = vtkPolyData::SafeDownCast(input))
+  {
+    content.push_back(static_cast<double>(surface->GetMeshMTime()));
+  }
   return content;
 }
 
@@ -84,66 +114,106 @@ class vtkSonoUltrasound::Stages
 public:
   explicit Stages(vtkSonoUltrasound* owner);
 
-  /// Connects a label image, or a scene.
-  void connect(vtkDataObject* input);
+  /// Connects the stages with each other, as they are now.
+  void chainUp();
+  /// Connects the inputs of the filter: a label image, or a scene, and what is optional.
+  void connect(vtkInformationVector** input);
   /// The point array that holds the labels; null: the scalars.
   void chooseLabels(const char* name);
-  /// Whether the error map runs with the others.
-  void chooseErrorMap(bool wanted);
+  /// Whether the error map runs with the others, and what the stages share.
+  void share(bool wantsErrorMap);
   /// The stage and its port that make an output.
   vtkAlgorithmOutput* port(int outputPort) const;
   /// Whether that stage runs.
   bool isMade(int outputPort) const;
+  /// Those that have settings.
+  std::vector<vtkAlgorithm*> withSettings() const;
 
-  vtkNew<vtkSonoSceneBuilder> scene;
-  vtkNew<vtkSonoProbeSource> probe;
-  vtkNew<vtkSonoRayTracer> tracer;
-  vtkNew<vtkSonoImageFormation> formation;
-  vtkNew<vtkSonoBMode> bmode;
+  vtkSmartPointer<vtkSonoSceneBuilder> scene = vtkSmartPointer<vtkSonoSceneBuilder>::New();
+  vtkSmartPointer<vtkSonoProbeSource> probe = vtkSmartPointer<vtkSonoProbeSource>::New();
+  vtkSmartPointer<vtkSonoRayTracer> tracer = vtkSmartPointer<vtkSonoRayTracer>::New();
+  vtkSmartPointer<vtkSonoImageFormation> formation = vtkSmartPointer<vtkSonoImageFormation>::New();
+  vtkSmartPointer<vtkSonoBMode> bmode = vtkSmartPointer<vtkSonoBMode>::New();
+  vtkSmartPointer<vtkSonoScanConverter> converter = vtkSmartPointer<vtkSonoScanConverter>::New();
   vtkNew<vtkSonoErrorMap> errors;
-  vtkNew<vtkSonoScanConverter> converter;
-  sono::StageChain chain;
+  std::unique_ptr<sono::StageChain> chain;
 
 private:
-  std::vector<double> connected_; // content of the input
+  void connectMain(vtkDataObject* input);
+  void connectOptional(int port, vtkDataObject* input, vtkAlgorithm* stage, int stagePort);
+
+  vtkSonoUltrasound* owner_;
+  std::array<std::vector<double>, 4> connected_; // content of the inputs
   std::string labels_;
 };
 
 vtkSonoUltrasound::Stages::Stages(vtkSonoUltrasound* owner)
-  : chain(owner, { { probe, 0.0 },
-                   { scene, 0.3 },
-                   { tracer, 0.75 },
-                   { formation, 0.95 },
-                   { bmode, 0.97 },
-                   { errors, 0.98 },
-                   { converter, 1.0 } })
+  : owner_(owner)
 {
+  sono::TraceSettings tracing;
+  sono::BModeSettings grey;
+  sono::setChestDefaults(tracing);
+  sono::setChestDefaults(grey);
+  tracer->SetMaxCollisions(tracing.maxCollisions);
+  tracer->SetCoherenceMm(tracing.coherenceMm);
+  tracer->SetLobeSigmaDeg(tracing.lobeSigmaDeg);
+  bmode->SetTgcDbPerCm(grey.tgcDbPerCm);
+  chainUp();
+}
+
+void vtkSonoUltrasound::Stages::chainUp()
+{
+  chain.reset(); // before the new one listens to the same stages
+  chain = std::make_unique<sono::StageChain>(owner_, std::vector<sono::StageChain::Link>{ { probe, 0.0 },
+                                                                                          { scene, 0.3 },
+                                                                                          { tracer, 0.75 },
+                                                                                          { formation, 0.95 },
+                                                                                          { bmode, 0.97 },
+                                                                                          { errors, 0.98 },
+                                                                                          { converter, 1.0 } });
   tracer->SetInputConnection(1, probe->GetOutputPort());
   formation->SetInputConnection(tracer->GetOutputPort());
   bmode->SetInputConnection(formation->GetOutputPort());
   converter->SetInputConnection(bmode->GetOutputPort());
-  // A chest's walls spread a beam by a few degrees, and sixteen centimetres of it cross more than seven boundaries.
-  tracer->SetMaxCollisions(20);
-  tracer->SetCoherenceMm(20.0);
-  tracer->SetLobeSigmaDeg(6.0);
-  bmode->SetTgcDbPerCm(3.0);
+  connected_ = {};
 }
 
-void vtkSonoUltrasound::Stages::connect(vtkDataObject* input)
+std::vector<vtkAlgorithm*> vtkSonoUltrasound::Stages::withSettings() const
+{
+  return { scene, probe, tracer, formation, bmode, converter };
+}
+
+void vtkSonoUltrasound::Stages::connect(vtkInformationVector** input)
+{
+  connectMain(vtkDataObject::GetData(input[LABELS_OR_SCENE]));
+  connectOptional(TARGETS, vtkDataObject::GetData(input[TARGETS]), tracer, 2);
+  connectOptional(SCATTERERS, vtkDataObject::GetData(input[SCATTERERS]), formation, 1);
+  connectOptional(PULSE_ECHO_FIELD, vtkDataObject::GetData(input[PULSE_ECHO_FIELD]), formation, 2);
+}
+
+void vtkSonoUltrasound::Stages::connectOptional(int port, vtkDataObject* input, vtkAlgorithm* stage, int stagePort)
+{
+  std::vector<double> content = input ? contentOf(input) : std::vector<double>();
+  if (content != connected_[port])
+  {
+    connected_[port] = std::move(content);
+    stage->SetInputDataObject(stagePort, copyOf(input));
+  }
+}
+
+void vtkSonoUltrasound::Stages::connectMain(vtkDataObject* input)
 {
   if (!input)
   {
     throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
   }
   std::vector<double> content = contentOf(input);
-  if (content == connected_ && tracer->GetNumberOfInputConnections(0) > 0)
+  if (content == connected_[LABELS_OR_SCENE] && tracer->GetNumberOfInputConnections(0) > 0)
   {
     return;
   }
-  connected_ = std::move(content);
-  // A copy, because a data object belongs to one pipeline.
-  const vtkSmartPointer<vtkDataObject> copy = vtk::TakeSmartPointer(input->NewInstance());
-  copy->ShallowCopy(input);
+  connected_[LABELS_OR_SCENE] = std::move(content);
+  const vtkSmartPointer<vtkDataObject> copy = copyOf(input);
   if (vtkImageData::SafeDownCast(input))
   {
     scene->SetInputDataObject(copy);
@@ -165,9 +235,11 @@ void vtkSonoUltrasound::Stages::chooseLabels(const char* name)
   }
 }
 
-void vtkSonoUltrasound::Stages::chooseErrorMap(bool wanted)
+void vtkSonoUltrasound::Stages::share(bool wantsErrorMap)
 {
-  errors->SetInputConnection(wanted ? tracer->GetOutputPort(0) : nullptr);
+  errors->SetInputConnection(wantsErrorMap ? tracer->GetOutputPort(0) : nullptr);
+  errors->SetPixelMm(converter->GetPixelMm());
+  formation->SetDevice(tracer->GetDevice());
 }
 
 bool vtkSonoUltrasound::Stages::isMade(int outputPort) const
@@ -205,6 +277,7 @@ vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
 vtkSonoUltrasound::vtkSonoUltrasound()
   : Chain(new Stages(this))
 {
+  this->SetNumberOfInputPorts(4);
   this->SetNumberOfOutputPorts(10);
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
@@ -215,9 +288,7 @@ vtkSonoUltrasound::~vtkSonoUltrasound() = default;
 void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const Stages& stages = *this->Chain;
-  for (vtkAlgorithm* stage : std::initializer_list<vtkAlgorithm*>{
-         stages.scene, stages.probe, stages.tracer, stages.formation, stages.bmode, stages.converter, stages.errors })
+  for (vtkAlgorithm* stage : this->Chain->withSettings())
   {
     os << indent << stage->GetClassName() << ":" << endl;
     stage->PrintSelf(os, indent.GetNextIndent());
@@ -225,154 +296,64 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ErrorMap: " << this->ErrorMap << endl;
 }
 
-template<class Stage, class Change>
-void vtkSonoUltrasound::ChangeStage(Stage* stage, const Change& change)
+template<class Stage>
+void vtkSonoUltrasound::Replace(vtkSmartPointer<Stage>& own, Stage* given)
 {
-  const vtkMTimeType before = stage->GetMTime();
-  change(stage);
-  if (stage->GetMTime() != before)
+  if (given && given != own)
   {
+    const vtkSmartPointer<Stage> before = own; // the chain still listens to it
+    own = given;
+    this->Chain->chainUp();
     this->Modified();
   }
 }
 
-#define sonoForward(stage, type, name)                                                                                 \
-  void vtkSonoUltrasound::Set##name(type value)                                                                        \
+#define sonoStage(type, name, member)                                                                                  \
+  void vtkSonoUltrasound::Set##name(type* stage)                                                                       \
   {                                                                                                                    \
-    this->ChangeStage(this->Chain->stage.Get(), [=](auto* changed) { changed->Set##name(value); });                    \
+    this->Replace(this->Chain->member, stage);                                                                         \
   }                                                                                                                    \
-  type vtkSonoUltrasound::Get##name()                                                                                  \
+  type* vtkSonoUltrasound::Get##name()                                                                                 \
   {                                                                                                                    \
-    return this->Chain->stage->Get##name();                                                                            \
+    return this->Chain->member;                                                                                        \
   }
+sonoStage(vtkSonoSceneBuilder, SceneBuilder, scene);
+sonoStage(vtkSonoProbeSource, Probe, probe);
+sonoStage(vtkSonoRayTracer, RayTracer, tracer);
+sonoStage(vtkSonoImageFormation, ImageFormation, formation);
+sonoStage(vtkSonoBMode, BMode, bmode);
+sonoStage(vtkSonoScanConverter, ScanConverter, converter);
+#undef sonoStage
 
-#define sonoForwardVector(stage, name)                                                                                 \
-  void vtkSonoUltrasound::Set##name(double x, double y, double z)                                                      \
-  {                                                                                                                    \
-    this->ChangeStage(this->Chain->stage.Get(), [=](auto* changed) { changed->Set##name(x, y, z); });                  \
-  }                                                                                                                    \
-  double* vtkSonoUltrasound::Get##name()                                                                               \
-  {                                                                                                                    \
-    return this->Chain->stage->Get##name();                                                                            \
+vtkMTimeType vtkSonoUltrasound::GetMTime()
+{
+  vtkMTimeType time = this->Superclass::GetMTime();
+  for (vtkAlgorithm* stage : this->Chain->withSettings())
+  {
+    time = std::max(time, stage->GetMTime());
   }
-
-// clang-format off
-sonoForward(scene, const char*, TissueTableFile)
-sonoForward(scene, const char*, LabelTissueFile)
-sonoForward(scene, const char*, LabelTableFile)
-sonoForward(scene, const char*, FallbackTissue)
-sonoForward(scene, const char*, OutsideTissue)
-sonoForward(scene, bool, FillBody)
-sonoForward(scene, double, ClosingMm)
-sonoForward(scene, double, WallMm)
-sonoForward(scene, double, SkinMm)
-sonoForward(scene, const char*, CacheFolder)
-sonoForward(scene, bool, BuildSurfaces)
-
-sonoForward(probe, const char*, PresetFile)
-sonoForward(probe, int, ScanKind)
-sonoForward(probe, int, LineCount)
-sonoForward(probe, double, DepthMm)
-sonoForward(probe, double, SectorDeg)
-sonoForward(probe, double, RadiusMm)
-sonoForward(probe, double, WidthMm)
-sonoForward(probe, int, ElevationLineCount)
-sonoForward(probe, double, ElevationSectorDeg)
-sonoForwardVector(probe, PositionMm)
-sonoForwardVector(probe, Axial)
-sonoForwardVector(probe, Lateral)
-sonoForward(probe, double, CentreFrequencyMHz)
-sonoForward(probe, double, FractionalBandwidth)
-sonoForward(probe, bool, Preview)
-
-sonoForward(tracer, int, InterfaceModel)
-sonoForward(tracer, int, Sampling)
-sonoForward(tracer, int, PathsPerLine)
-sonoForward(tracer, int, MaxCollisions)
-sonoForward(tracer, double, CoherenceMm)
-sonoForward(tracer, bool, Deterministic)
-sonoForward(tracer, double, LobeMeanDeg)
-sonoForward(tracer, double, LobeSigmaDeg)
-sonoForward(tracer, double, LobeMinDeg)
-sonoForward(tracer, double, LobeMaxDeg)
-sonoForward(tracer, double, RadialBinMm)
-sonoForward(tracer, double, SamplingMHz)
-sonoForward(tracer, double, RouletteDb)
-sonoForward(tracer, int, NumberOfShownPaths)
-
-sonoForward(formation, double, LateralSigmaMm)
-sonoForward(formation, double, ElevationalSigmaMm)
-sonoForward(formation, double, ScattererCellMm)
-sonoForward(formation, double, ScattererLevelDb)
-sonoForward(formation, const char*, PulseFileName)
-
-sonoForward(bmode, double, TgcDbPerCm)
-sonoForward(bmode, double, GainDb)
-sonoForward(bmode, bool, AutomaticReference)
-sonoForward(bmode, double, ReferenceAmplitude)
-sonoForward(bmode, double, DynamicRangeDb)
-sonoForward(bmode, double, RejectDb)
-sonoForward(bmode, int, GreyMap)
-sonoForward(bmode, bool, AddNoise)
-sonoForward(bmode, double, NoiseDb)
-sonoForward(bmode, int, NoiseSeed)
-
-  // clang-format on
-
-  void vtkSonoUltrasound::SetPixelMm(double value)
-{
-  this->ChangeStage(this->Chain->converter.Get(), [=](auto* converter) { converter->SetPixelMm(value); });
-  this->ChangeStage(this->Chain->errors.Get(), [=](auto* errors) { errors->SetPixelMm(value); });
+  return time;
 }
 
-double vtkSonoUltrasound::GetPixelMm()
+int vtkSonoUltrasound::FillInputPortInformation(int port, vtkInformation* info)
 {
-  return this->Chain->converter->GetPixelMm();
-}
-
-void vtkSonoUltrasound::SetSeed(int value)
-{
-  this->ChangeStage(this->Chain->tracer.Get(), [=](auto* tracer) { tracer->SetSeed(value); });
-  this->ChangeStage(this->Chain->formation.Get(), [=](auto* formation) { formation->SetSeed(value); });
-}
-
-void vtkSonoUltrasound::SetDevice(int value)
-{
-  this->ChangeStage(this->Chain->tracer.Get(), [=](auto* tracer) { tracer->SetDevice(value); });
-  this->ChangeStage(this->Chain->formation.Get(), [=](auto* formation) { formation->SetDevice(value); });
-}
-
-int vtkSonoUltrasound::GetDevice()
-{
-  return this->Chain->tracer->GetDevice();
-}
-
-int vtkSonoUltrasound::GetSeed()
-{
-  return this->Chain->tracer->GetSeed();
-}
-
-void vtkSonoUltrasound::AddTgcPoint(double depthMm, double gainDb)
-{
-  this->ChangeStage(this->Chain->bmode.Get(), [=](auto* bmode) { bmode->AddTgcPoint(depthMm, gainDb); });
-}
-
-void vtkSonoUltrasound::RemoveAllTgcPoints()
-{
-  this->ChangeStage(this->Chain->bmode.Get(), [](auto* bmode) { bmode->RemoveAllTgcPoints(); });
-}
-
-int vtkSonoUltrasound::GetNumberOfTgcPoints()
-{
-  return this->Chain->bmode->GetNumberOfTgcPoints();
-}
-
-int vtkSonoUltrasound::FillInputPortInformation(int, vtkInformation* info)
-{
-  // The composite one first: the pipeline would otherwise hand a scene over block by block.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // so that one clear sentence says what is missing
+  switch (port)
+  {
+    case LABELS_OR_SCENE:
+      // The composite one first: the pipeline would otherwise hand a scene over block by block.
+      info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
+      info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+      break;
+    case TARGETS:
+      info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+      break;
+    case SCATTERERS:
+      info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+      break;
+    default:
+      info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  }
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // of the first: so that one clear sentence says what is missing
   return 1;
 }
 
@@ -387,14 +368,14 @@ int vtkSonoUltrasound::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    this->Chain->connect(vtkDataObject::GetData(input[0]));
-    this->Chain->chain.updateInformation();
+    this->Chain->connect(input);
+    this->Chain->share(this->ErrorMap);
+    this->Chain->chain->updateInformation();
     for (int port : { IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, PROBE, FLAT_IMAGE })
     {
       vtkAlgorithmOutput* made = this->Chain->port(port);
       announceSame(made->GetProducer()->GetOutputInformation(made->GetIndex()), output->GetInformationObject(port));
     }
-    this->Chain->chooseErrorMap(this->ErrorMap);
     vtkInformation* map = output->GetInformationObject(ERROR_MAP);
     announceSame(output->GetInformationObject(IMAGE), map);
     vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_FLOAT, 1);
@@ -408,16 +389,22 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
 
 int vtkSonoUltrasound::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  const bool isImage = vtkImageData::GetData(input[0]) != nullptr;
-  return isImage ? sono::requestWholeImage(input) : 1;
+  for (int port : { LABELS_OR_SCENE, PULSE_ECHO_FIELD })
+  {
+    if (vtkImageData::GetData(input[port]))
+    {
+      sono::requestWholeImage(input, port);
+    }
+  }
+  return 1;
 }
 
 int vtkSonoUltrasound::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    this->Chain->connect(vtkDataObject::GetData(input[0]));
+    this->Chain->connect(input);
     this->Chain->chooseLabels(this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME()));
-    this->Chain->chain.update();
+    this->Chain->chain->update();
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
     {
       if (this->Chain->isMade(port))

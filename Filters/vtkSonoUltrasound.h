@@ -2,17 +2,27 @@
 #define vtkSonoUltrasound_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkSmartPointer.h"      // for the stages
 #include "vtkSonoFiltersModule.h" // for export macro
 
 #include <memory>
+
+class vtkSonoBMode;
+class vtkSonoImageFormation;
+class vtkSonoProbeSource;
+class vtkSonoRayTracer;
+class vtkSonoScanConverter;
+class vtkSonoSceneBuilder;
 
 /**
  * @class vtkSonoUltrasound
  * @brief Simulates ultrasound from a label map, all stages in one
  *
  * Chains vtkSonoSceneBuilder, vtkSonoProbeSource, vtkSonoRayTracer, vtkSonoImageFormation, vtkSonoBMode and
- * vtkSonoScanConverter, and runs again only those that a change concerns. The input is a label image, or a scene that
- * vtkSonoSceneBuilder or vtkSonoSceneReader made; then the settings of the scene are not used.
+ * vtkSonoScanConverter, and runs again only those that a change concerns. Input 0 is a label image, or a scene that
+ * vtkSonoSceneBuilder or vtkSonoSceneReader made; then the settings of the scene are not used. Optional inputs, as the
+ * stages describe them: 1 targets (of vtkSonoRayTracer), 2 point scatterers and 3 a pulse-echo field (of
+ * vtkSonoImageFormation).
  *
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
@@ -21,9 +31,9 @@
  *
  * The error map is empty unless ErrorMap is on. The two images have its array "ErrorPercent" then, too.
  *
- * Settings have the names, units, ranges and defaults of the stages, where they are described, but for these defaults,
- * which suit a chest: MaxCollisions 20, CoherenceMm 20, LobeSigmaDeg 6, TgcDbPerCm 3. Seed is that of the paths and of
- * the scatterers.
+ * The settings are those of the stages: ask for a stage, and set it up. They have the stages' defaults but for those
+ * of SonoChestDefaults.h. The ray tracer's Device is that of all stages, the scan converter's PixelMm that of the error
+ * map.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoUltrasound : public vtkImageAlgorithm
 {
@@ -46,160 +56,37 @@ public:
     BOUNDARY_HITS = 9
   };
 
-  ///@{
-  /**
-   * The scene, see vtkSonoSceneBuilder.
-   */
-  void SetTissueTableFile(const char* value);
-  const char* GetTissueTableFile();
-  void SetLabelTissueFile(const char* value);
-  const char* GetLabelTissueFile();
-  void SetLabelTableFile(const char* value);
-  const char* GetLabelTableFile();
-  void SetFallbackTissue(const char* value);
-  const char* GetFallbackTissue();
-  void SetOutsideTissue(const char* value);
-  const char* GetOutsideTissue();
-  void SetFillBody(bool value);
-  bool GetFillBody();
-  void SetClosingMm(double value);
-  double GetClosingMm();
-  void SetWallMm(double value);
-  double GetWallMm();
-  void SetSkinMm(double value);
-  double GetSkinMm();
-  void SetCacheFolder(const char* value);
-  const char* GetCacheFolder();
-  void SetBuildSurfaces(bool value);
-  bool GetBuildSurfaces();
-  ///@}
+  enum InputPorts
+  {
+    LABELS_OR_SCENE = 0,
+    TARGETS = 1,
+    SCATTERERS = 2,
+    PULSE_ECHO_FIELD = 3
+  };
 
   ///@{
   /**
-   * The probe, see vtkSonoProbeSource.
+   * The stages, which have the settings. One that is given takes the place of the filter's own; null is ignored. A
+   * stage belongs to one filter: its inputs and outputs are connected here.
    */
-  void SetPresetFile(const char* value);
-  const char* GetPresetFile();
-  void SetScanKind(int value);
-  int GetScanKind();
-  void SetLineCount(int value);
-  int GetLineCount();
-  void SetDepthMm(double value);
-  double GetDepthMm();
-  void SetSectorDeg(double value);
-  double GetSectorDeg();
-  void SetRadiusMm(double value);
-  double GetRadiusMm();
-  void SetWidthMm(double value);
-  double GetWidthMm();
-  void SetElevationLineCount(int value);
-  int GetElevationLineCount();
-  void SetElevationSectorDeg(double value);
-  double GetElevationSectorDeg();
-  void SetPositionMm(double x, double y, double z);
-  double* GetPositionMm() VTK_SIZEHINT(3);
-  void SetAxial(double x, double y, double z);
-  double* GetAxial() VTK_SIZEHINT(3);
-  void SetLateral(double x, double y, double z);
-  double* GetLateral() VTK_SIZEHINT(3);
-  void SetCentreFrequencyMHz(double value);
-  double GetCentreFrequencyMHz();
-  void SetFractionalBandwidth(double value);
-  double GetFractionalBandwidth();
-  void SetPreview(bool value);
-  bool GetPreview();
+  void SetSceneBuilder(vtkSonoSceneBuilder* stage);
+  vtkSonoSceneBuilder* GetSceneBuilder();
+  void SetProbe(vtkSonoProbeSource* stage);
+  vtkSonoProbeSource* GetProbe();
+  void SetRayTracer(vtkSonoRayTracer* stage);
+  vtkSonoRayTracer* GetRayTracer();
+  void SetImageFormation(vtkSonoImageFormation* stage);
+  vtkSonoImageFormation* GetImageFormation();
+  void SetBMode(vtkSonoBMode* stage);
+  vtkSonoBMode* GetBMode();
+  void SetScanConverter(vtkSonoScanConverter* stage);
+  vtkSonoScanConverter* GetScanConverter();
   ///@}
 
-  ///@{
   /**
-   * The paths, see vtkSonoRayTracer.
+   * A change of a stage is a change of this filter.
    */
-  void SetInterfaceModel(int value);
-  int GetInterfaceModel();
-  void SetDevice(int value);
-  int GetDevice();
-  void SetSampling(int value);
-  int GetSampling();
-  void SetPathsPerLine(int value);
-  int GetPathsPerLine();
-  void SetMaxCollisions(int value);
-  int GetMaxCollisions();
-  void SetCoherenceMm(double value);
-  double GetCoherenceMm();
-  void SetDeterministic(bool value);
-  bool GetDeterministic();
-  void SetLobeMeanDeg(double value);
-  double GetLobeMeanDeg();
-  void SetLobeSigmaDeg(double value);
-  double GetLobeSigmaDeg();
-  void SetLobeMinDeg(double value);
-  double GetLobeMinDeg();
-  void SetLobeMaxDeg(double value);
-  double GetLobeMaxDeg();
-  void SetRadialBinMm(double value);
-  double GetRadialBinMm();
-  void SetSamplingMHz(double value);
-  double GetSamplingMHz();
-  void SetRouletteDb(double value);
-  double GetRouletteDb();
-  void SetNumberOfShownPaths(int value);
-  int GetNumberOfShownPaths();
-  void SetSeed(int value);
-  int GetSeed();
-  ///@}
-
-  ///@{
-  /**
-   * The echoes, see vtkSonoImageFormation.
-   */
-  void SetLateralSigmaMm(double value);
-  double GetLateralSigmaMm();
-  void SetElevationalSigmaMm(double value);
-  double GetElevationalSigmaMm();
-  void SetScattererCellMm(double value);
-  double GetScattererCellMm();
-  void SetScattererLevelDb(double value);
-  double GetScattererLevelDb();
-  void SetPulseFileName(const char* value);
-  const char* GetPulseFileName();
-  ///@}
-
-  ///@{
-  /**
-   * The grey, see vtkSonoBMode.
-   */
-  void SetTgcDbPerCm(double value);
-  double GetTgcDbPerCm();
-  void AddTgcPoint(double depthMm, double gainDb);
-  void RemoveAllTgcPoints();
-  int GetNumberOfTgcPoints();
-  void SetGainDb(double value);
-  double GetGainDb();
-  void SetAutomaticReference(bool value);
-  bool GetAutomaticReference();
-  void SetReferenceAmplitude(double value);
-  double GetReferenceAmplitude();
-  void SetDynamicRangeDb(double value);
-  double GetDynamicRangeDb();
-  void SetRejectDb(double value);
-  double GetRejectDb();
-  void SetGreyMap(int value);
-  int GetGreyMap();
-  void SetAddNoise(bool value);
-  bool GetAddNoise();
-  void SetNoiseDb(double value);
-  double GetNoiseDb();
-  void SetNoiseSeed(int value);
-  int GetNoiseSeed();
-  ///@}
-
-  ///@{
-  /**
-   * The image, see vtkSonoScanConverter.
-   */
-  void SetPixelMm(double value);
-  double GetPixelMm();
-  ///@}
+  vtkMTimeType GetMTime() override;
 
   ///@{
   /**
@@ -224,12 +111,12 @@ private:
   vtkSonoUltrasound(const vtkSonoUltrasound&) = delete;
   void operator=(const vtkSonoUltrasound&) = delete;
 
+  template<class Stage>
+  void Replace(vtkSmartPointer<Stage>& own, Stage* given);
+
   class Stages;
   std::unique_ptr<Stages> Chain;
   bool ErrorMap = false;
-
-  template<class Stage, class Change>
-  void ChangeStage(Stage* stage, const Change& change);
 };
 
 #endif

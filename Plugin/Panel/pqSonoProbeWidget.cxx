@@ -22,6 +22,7 @@
 #include "vtkPVDataInformation.h"
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMPropertyIterator.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
@@ -45,9 +46,6 @@ namespace {
 constexpr int restMs = 300;
 constexpr int idleMs = 200;
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
-const char* const layoutProperties[] = { "PresetFile", "ScanKind", "LineCount",          "SectorDeg",
-                                         "RadiusMm",   "WidthMm",  "ElevationLineCount", "ElevationSectorDeg" };
-
 /// The group and, so that the widget follows them, the properties that lay out the scan lines.
 vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyGroup* group)
 {
@@ -57,9 +55,14 @@ vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyG
     vtkSMProperty* property = group->GetProperty(i);
     all->AddProperty(group->GetFunction(property), property, group->GetPropertyName(i));
   }
-  for (const char* name : layoutProperties)
+  vtkSMProxy* drawn =
+    proxy->GetSessionProxyManager()->GetPrototypeProxy("representations", "SonoProbeWidgetRepresentation");
+  const auto names = vtkSmartPointer<vtkSMPropertyIterator>::Take(drawn->NewPropertyIterator());
+  for (names->Begin(); !names->IsAtEnd(); names->Next())
   {
-    if (vtkSMProperty* property = proxy->GetProperty(name))
+    const char* name = names->GetKey();
+    vtkSMProperty* property = proxy->GetProperty(name);
+    if (property && !all->GetProperty(name))
     {
       all->AddProperty(name, property, name);
     }

@@ -8,7 +8,6 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSonoProbeSource.h"
 
 #include <algorithm>
 #include <array>
@@ -60,7 +59,7 @@ double numberOf(const char* name, vtkPolyData* outline)
 
 SonoProbeHead::SonoProbeHead(vtkPolyData* outline)
 {
-  if (static_cast<int>(numberOf("ScanKind", outline)) == vtkSonoProbeSource::RADIAL)
+  if (numberOf("IsCatheter", outline) != 0.0)
   {
     this->radialMm = numberOf("RadiusMm", outline);
     this->halfWidthMm = this->radialMm;
@@ -75,8 +74,8 @@ SonoProbeHead::SonoProbeHead(vtkPolyData* outline)
 void SonoProbeHead::makeHandHeld(vtkPolyData* outline)
 {
   vtkPoints* face = outline->GetCell(1)->GetPoints();
-  const bool isMatrix = static_cast<int>(numberOf("ScanKind", outline)) == vtkSonoProbeSource::MATRIX;
-  if (!isMatrix) // whose cell 1 is an edge of the volume; its lines start in one point
+  const bool isVolume = numberOf("IsVolume", outline) != 0.0;
+  if (!isVolume) // whose cell 1 is an edge of the volume; its lines start in one point
   {
     for (vtkIdType i = 0; i < face->GetNumberOfPoints(); ++i)
     {
@@ -103,7 +102,7 @@ void SonoProbeHead::makeHandHeld(vtkPolyData* outline)
       const auto squared = [](double v) { return std::copysign(std::sqrt(std::abs(v)), v); };
       const double x = section.halfWidthMm * squared(std::cos(angle));
       const double y = section.halfThicknessMm * squared(std::sin(angle));
-      const double curve = isMatrix || section.behindMm > 2.0 ? 0.0 : faceAt(face, x);
+      const double curve = isVolume || section.behindMm > 2.0 ? 0.0 : faceAt(face, x);
       points->InsertNextPoint(x, y, curve - section.behindMm);
     }
   }

@@ -73,28 +73,25 @@ void vtkSonoProbeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
   this->Parts->Probe->PrintSelf(os, indent.GetNextIndent());
 }
 
-#define sonoForward(Type, Name)                                                                                        \
-  void vtkSonoProbeRepresentation::Set##Name(Type value)                                                               \
-  {                                                                                                                    \
-    if (this->Parts->Probe->Get##Name() != value)                                                                      \
-    {                                                                                                                  \
-      this->Parts->Probe->Set##Name(value);                                                                            \
-      this->Modified();                                                                                                \
-    }                                                                                                                  \
-  }                                                                                                                    \
-  Type vtkSonoProbeRepresentation::Get##Name()                                                                         \
-  {                                                                                                                    \
-    return this->Parts->Probe->Get##Name();                                                                            \
+void vtkSonoProbeRepresentation::SetNumber(const char* name, double value)
+{
+  const vtkMTimeType before = this->Parts->Probe->GetMTime();
+  this->Parts->Probe->SetNumber(name, value);
+  if (this->Parts->Probe->GetMTime() != before)
+  {
+    this->Modified();
   }
-sonoForward(int, ScanKind);
-sonoForward(int, LineCount);
-sonoForward(double, DepthMm);
-sonoForward(double, SectorDeg);
-sonoForward(double, RadiusMm);
-sonoForward(double, WidthMm);
-sonoForward(int, ElevationLineCount);
-sonoForward(double, ElevationSectorDeg);
-#undef sonoForward
+}
+
+void vtkSonoProbeRepresentation::SetDepthMm(double depth)
+{
+  this->SetNumber("DepthMm", depth);
+}
+
+double vtkSonoProbeRepresentation::GetDepthMm()
+{
+  return this->Parts->Probe->GetDepthMm();
+}
 
 void vtkSonoProbeRepresentation::SetPresetFile(const char* path)
 {

@@ -40,27 +40,14 @@ public:
 
   ///@{
   /**
-   * The layout of the scan lines, as vtkSonoProbeSource describes and defaults it. A preset that cannot be read in this
-   * process is drawn with the numbers instead.
+   * The layout of the scan lines, as vtkSonoProbeSource describes and defaults it, by its names. A preset that cannot
+   * be read in this process is drawn with the numbers instead.
    */
   void SetPresetFile(const char* path);
   const char* GetPresetFile();
-  void SetScanKind(int kind);
-  int GetScanKind();
-  void SetLineCount(int count);
-  int GetLineCount();
+  void SetNumber(const char* name, double value);
   void SetDepthMm(double depth);
   double GetDepthMm();
-  void SetSectorDeg(double degrees);
-  double GetSectorDeg();
-  void SetRadiusMm(double radius);
-  double GetRadiusMm();
-  void SetWidthMm(double width);
-  double GetWidthMm();
-  void SetElevationLineCount(int count);
-  int GetElevationLineCount();
-  void SetElevationSectorDeg(double degrees);
-  double GetElevationSectorDeg();
   ///@}
 
   /**

@@ -31,12 +31,13 @@ pose = window.GetOutput().GetFieldData()
 
 ultrasound = vtkSonoUltrasound()
 ultrasound.SetInputConnection(labels.GetOutputPort())
-ultrasound.SetBuildSurfaces(False)  # nothing is shown in 3-D here
-ultrasound.SetPositionMm(*pose.GetArray("ProbePositionMm").GetTuple3(0))
-ultrasound.SetAxial(*pose.GetArray("ProbeAxial").GetTuple3(0))
-ultrasound.SetLateral(*pose.GetArray("ProbeLateral").GetTuple3(0))
-ultrasound.SetDepthMm(160)
-ultrasound.SetGainDb(3)
+ultrasound.GetSceneBuilder().SetBuildSurfaces(False)  # nothing is shown in 3-D here
+probe = ultrasound.GetProbe()
+probe.SetPositionMm(*pose.GetArray("ProbePositionMm").GetTuple3(0))
+probe.SetAxial(*pose.GetArray("ProbeAxial").GetTuple3(0))
+probe.SetLateral(*pose.GetArray("ProbeLateral").GetTuple3(0))
+probe.SetDepthMm(160)
+ultrasound.GetBMode().SetGainDb(3)
 
 upright = vtkImageFlip()  # PNG begins with its last row
 upright.SetInputConnection(ultrasound.GetOutputPort(vtkSonoUltrasound.FLAT_IMAGE))

@@ -68,17 +68,17 @@ def save(image, path):
 
 
 LoadPlugin(args.plugin, remote=False, ns=globals())
-anatomy = timed(LabelMapReader(FileName=args.labels) if args.labels else ThoraxPhantom(VoxelSizemm=args.spacing))
+anatomy = timed(LabelMapReader(FileName=args.labels) if args.labels else ThoraxPhantom(Spacingmm=args.spacing))
 pose = pose_of(anatomy)
-probe = UltrasoundProbe(Positionmm=pose["position"], AxialDirection=pose["axial"], LateralDirection=pose["lateral"],
-                        Depthmm=pose.get("depth_mm", 160), Sectordegrees=pose.get("sector_deg", 90),
-                        NumberofLines=args.lines)
+probe = UltrasoundProbe(Positionmm=pose["position"], Axial=pose["axial"], Lateral=pose["lateral"],
+                        Depthmm=pose.get("depth_mm", 160), Sectordeg=pose.get("sector_deg", 90),
+                        LineCount=args.lines)
 scene = timed(UltrasoundScene(Input=anatomy, BuildSurfaces=0))  # no surfaces: nothing is shown in 3-D here
 # Smooth walls spread a beam by a few degrees; sixteen centimetres of chest cross more than seven boundaries.
-traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.paths, Collisions=20, CoherenceC0mm=20,
-                                   LobeSigmadegrees=6))
+traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.paths, MaxCollisions=20, Coherencemm=20,
+                                   LobeSigmadeg=6))
 rf = timed(UltrasoundImageFormation(Input=traced))
-bmode = timed(UltrasoundBMode(Input=rf, TGCdBcm=3))
+bmode = timed(UltrasoundBMode(Input=rf, TGCdBpercm=3))
 picture = timed(ScanConverter(Input=bmode))
 save(Fetch(picture), args.output)
 print("Wrote", os.path.abspath(args.output))

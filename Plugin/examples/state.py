@@ -3,10 +3,10 @@ four-chamber view, in the body and flat, with some of the ray paths coloured by 
 """
 from paraview.simple import *
 
-thorax = ThoraxPhantom(registrationName="Thorax", VoxelSizemm=1.5)
+thorax = ThoraxPhantom(registrationName="Thorax", Spacingmm=1.5)
 ultrasound = SimulateUltrasound(
-    registrationName="Ultrasound", Input=thorax, NumberofShownPaths=300,
-    Positionmm=[87.8, -86.5, -44.9], AxialDirection=[-0.53, 0.65, 0.545], LateralDirection=[0.843, 0.333, 0.423])
+    registrationName="Ultrasound", Input=thorax, NumberOfShownPaths=300,
+    PositionMm=[87.8, -86.5, -44.9], Axial=[-0.53, 0.65, 0.545], Lateral=[0.843, 0.333, 0.423])
 image, anatomy, probe, paths, flat = (OutputPort(ultrasound, port) for port in (0, 4, 5, 6, 7))
 
 # Views come into a layout before anything is shown in them: one that appears on the screen is drawn at once.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Core/Parameters.h"
+
 #include <string>
 
 namespace sono {
@@ -11,6 +13,15 @@ enum class Device
   Cpu,
   Cuda
 };
+
+inline Parameter deviceParameter()
+{
+  return { "device",
+           "Device",
+           {},
+           "Where to compute: Auto takes the GPU where there is one, else the CPU. The results differ by rounding.",
+           { "Auto", "CPU", "CUDA" } };
+}
 
 struct DeviceChoice
 {

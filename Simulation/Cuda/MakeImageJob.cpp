@@ -148,7 +148,7 @@ BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sam
   job.rangeDb = float(settings.dynamicRangeDb);
   job.rejectDb = float(settings.rejectDb);
   job.greyMap = settings.greyMap;
-  job.noiseRms = float(std::pow(10.0, settings.noiseDb / 20.0)); // 0 at minus infinity
+  job.noiseRms = settings.addNoise ? float(std::pow(10.0, settings.noiseDb / 20.0)) : 0.0f;
   job.noiseSeed = settings.noiseSeed;
   return job;
 }

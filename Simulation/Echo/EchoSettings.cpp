@@ -26,6 +26,7 @@ void requireReaches(const PulseEchoField& field, double depthMm)
 
 void EchoSettings::validate() const
 {
+  requireInRange(*this);
   requireInRange(centreFrequencyMHz > 0.0 && std::isfinite(centreFrequencyMHz), "centre frequency (MHz)",
                  centreFrequencyMHz, "more than 0");
   requireInRange(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
@@ -34,18 +35,10 @@ void EchoSettings::validate() const
     samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
     "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
-  requireInRange(lateralSigmaMm > 0.0 && lateralSigmaMm <= 50.0, "lateral beam sigma (mm)", lateralSigmaMm,
-                 "more than 0 and at most 50");
-  requireInRange(elevationalSigmaMm > 0.0 && elevationalSigmaMm <= 50.0, "elevational beam sigma (mm)",
-                 elevationalSigmaMm, "more than 0 and at most 50");
   if (field)
   {
     requireReaches(*field, depthMm);
   }
-  requireInRange(scattererCellMm >= 0.05 && scattererCellMm <= 10.0, "scatterer cell (mm)", scattererCellMm,
-                 "0.05 to 10");
-  requireInRange(std::isfinite(scattererLevelDb) && std::fabs(scattererLevelDb) <= 200.0, "scatterer level (dB)",
-                 scattererLevelDb, "-200 to 200");
 }
 
 int EchoSettings::sampleCount() const

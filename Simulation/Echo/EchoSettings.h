@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/Device.h"
+#include "Core/Parameters.h"
 #include "Core/SoundSpeed.h"
 #include "Probe/PulseEchoField.h"
 #include "Probe/PulseFile.h"
@@ -15,10 +16,10 @@ struct EchoSettings
   Device device = Device::Auto;
   double centreFrequencyMHz = 2.5;  ///< > 0, below half the sampling frequency
   double fractionalBandwidth = 0.6; ///< at -6 dB, (0, 2)
-  double samplingMHz = 50.0;        ///< RF sampling frequency
+  double samplingMHz = 50.0;        ///< RF sampling frequency, at most 1000
   double depthMm = 160.0;           ///< > 0
-  double lateralSigmaMm = 1.0;      ///< Gaussian beam, > 0
-  double elevationalSigmaMm = 1.0;  ///< > 0
+  double lateralSigmaMm = 1.0;      ///< Gaussian beam
+  double elevationalSigmaMm = 1.0;
   /// The beam's two-way weights instead of the Gaussian, of every line; the sigmas are then not used. It must reach
   /// the image's depth. What lies in front of its first depth or beside it does not echo. Null: the Gaussian.
   std::shared_ptr<const PulseEchoField> field;
@@ -31,6 +32,39 @@ struct EchoSettings
                                    ///< the beam. With a field, both fall off alike in depth from its focus, where the
                                    ///< reflector's echo is 1 (see FieldLevel)
   std::uint64_t seed = 1;          ///< of the scatterers
+
+  /// The parameters of the stage; depth, frequency and bandwidth come from the probe.
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor(self.lateralSigmaMm,
+            Parameter{ "lateralSigmaMm", "Lateral Sigma (mm)", aboveUpTo(0, 50),
+                       "Standard deviation of the Gaussian beam along the array in mm, above 0 up to 50." });
+    visitor(self.elevationalSigmaMm,
+            Parameter{ "elevationalSigmaMm", "Elevational Sigma (mm)", aboveUpTo(0, 50),
+                       "Standard deviation of the Gaussian beam across the image plane in mm, above 0 up to 50." });
+    visitor(self.scattererLevelDb,
+            Parameter{ "scattererLevelDb", "Scatterer Level (dB)", between(-200, 200),
+                       "RMS echo of a tissue full of scatterers against a perfect plane reflector in dB, -200 to "
+                       "200." });
+    visitor(self.scattererCellMm, Parameter{ "scattererCellMm", "Scatterer Cell (mm)", between(0.05, 10),
+                                             "Edge h of the cells that hold one scatterer each in mm, 0.05 to 10; "
+                                             "their density is mu1 / h^3." });
+    visitor(self.device, deviceParameter());
+    visitor(self.seed,
+            Parameter{ "scattererSeed", "Scatterer Seed", atLeast(0),
+                       "Seed of the scatterers, at least 0, no unit: the same seed gives the same speckle." });
+  }
+  /// Of the RF lines, which the tracer's boundary echoes share.
+  template<class Self, class Visitor>
+  static void visitSampling(Self& self, Visitor&& visitor)
+  {
+    visitor(
+      self.samplingMHz,
+      Parameter{ "samplingMHz", "Sampling (MHz)", aboveUpTo(0, 1000),
+                 "Sampling frequency of the RF lines in MHz, up to 1000 and more than twice the centre frequency; "
+                 "also that of the boundary echoes." });
+  }
 
   /// Throws Error naming the parameter and its range.
   void validate() const;

@@ -175,13 +175,12 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   validateSizes(echoEnvelope, lineCount, sampleCount, sampleMm);
 
   std::vector<float> noisy;
-  const bool hasNoise = settings.noiseDb > -std::numeric_limits<double>::infinity();
-  if (hasNoise)
+  if (settings.addNoise)
   {
     noisy = echoEnvelope;
     addReceiverNoise(noisy, sampleCount, settings.noiseDb, settings.noiseSeed);
   }
-  const std::vector<float>& envelope = hasNoise ? noisy : echoEnvelope;
+  const std::vector<float>& envelope = settings.addNoise ? noisy : echoEnvelope;
   const std::vector<double> gainDb = depthGainDb(settings, sampleCount, sampleMm);
   BModeLines result{ lineCount, sampleCount, sampleMm, settings.referenceAmplitude, {} };
   if (settings.automaticReference)

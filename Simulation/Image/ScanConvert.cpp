@@ -18,12 +18,12 @@ constexpr double radPerDeg = 0.017453292519943295;
 
 PlaneBeams planeBeams(const ScanGeometry& geometry)
 {
-  const bool parallel = geometry.kind == ScanKind::Linear || geometry.lineCount == 1;
+  const bool parallel = geometry.lineOrigin() == LineOrigin::Aperture || geometry.lineCount == 1;
   const double extent = parallel ? geometry.widthMm : geometry.sectorDeg * radPerDeg;
   const double faceRadiusMm = geometry.faceRadiusMm();
   const int steps = geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1;
-  return { parallel, float(faceRadiusMm), geometry.kind == ScanKind::Radial ? 0.0f : float(-faceRadiusMm),
-           float(-extent / 2.0), float(steps / extent) };
+  return { parallel, float(faceRadiusMm), float(geometry.fanCentreAxialMm()), float(-extent / 2.0),
+           float(steps / extent) };
 }
 
 /// Lines and depths of a row of pixels.
@@ -56,7 +56,7 @@ Extent boundingBox(const ScanGeometry& geometry)
 {
   const PlaneBeams map = planeBeams(geometry);
   const double inner = geometry.faceRadiusMm();
-  const double centreAxialMm = geometry.kind == ScanKind::Radial ? 0.0 : -inner;
+  const double centreAxialMm = geometry.fanCentreAxialMm();
   const double outer = inner + geometry.depthMm;
   if (map.parallel)
   {
@@ -99,7 +99,7 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
 PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm)
 {
   geometry.validate();
-  if (geometry.kind == ScanKind::Matrix)
+  if (geometry.isVolume())
   {
     throw Error("the lines of a matrix fill a volume, not a plane; convert them with scanConvertVolume.");
   }

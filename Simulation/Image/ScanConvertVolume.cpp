@@ -102,7 +102,7 @@ void requireFits(const ScanGeometry& geometry, const std::vector<float>& values,
 VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm)
 {
   geometry.validate();
-  if (geometry.kind != ScanKind::Matrix)
+  if (!geometry.isVolume())
   {
     throw Error("the scan kind fills a plane, not a volume; convert its lines with scanConvert.");
   }

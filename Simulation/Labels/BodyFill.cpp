@@ -18,14 +18,6 @@ namespace {
 constexpr double coarseMm = 3.0;
 constexpr float deepInside = 1e3f; // mm, for filled holes
 
-void require(bool ok, const char* name, double value, const char* range)
-{
-  if (!ok)
-  {
-    throw Error("body fill: " + std::string(name) + " is " + std::to_string(value) + " mm; choose " + range + " mm.");
-  }
-}
-
 /// Blocks of voxels, each about coarseMm long.
 struct CoarseGrid
 {
@@ -276,9 +268,7 @@ void nameLabel(LabelVolume& volume, int id, const std::string& name, const std::
 
 BodyFill fillBody(LabelVolume& volume, const BodyFillSettings& settings, const Progress& progress)
 {
-  require(settings.closingMm >= 0.0 && settings.closingMm <= 200.0, "closing", settings.closingMm, "0 to 200");
-  require(settings.wallMm >= 0.0 && settings.wallMm <= 100.0, "wall", settings.wallMm, "0 to 100");
-  require(settings.skinMm >= 0.0 && settings.skinMm <= 20.0, "skin", settings.skinMm, "0 to 20");
+  requireInRange(settings);
   volume.collectLabels();
   if (volume.labels.empty() || volume.labels.back().id == 0)
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/Parameters.h"
 #include "Core/Progress.h"
 #include "Labels/LabelVolume.h"
 
@@ -8,9 +9,21 @@ namespace sono {
 /// How fillBody estimates where the body ends.
 struct BodyFillSettings
 {
-  double closingMm = 50.0; ///< gaps between labels up to twice as wide belong to the body, 0 to 200
-  double wallMm = 10.0;    ///< unlabelled tissue outside the outermost labels, skin included, 0 to 100
-  double skinMm = 2.0;     ///< thickness of the skin, 0 to 20
+  double closingMm = 50.0;
+  double wallMm = 10.0;
+  double skinMm = 2.0;
+
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor(self.closingMm,
+            Parameter{ "closingMm", "Closing (mm)", between(0, 200),
+                       "Gaps between labels up to twice as wide belong to the body, in mm, 0 to 200." });
+    visitor(self.wallMm,
+            Parameter{ "wallMm", "Wall (mm)", between(0, 100),
+                       "Body wall: unlabelled tissue outside the outermost labels, skin included, in mm, 0 to 100." });
+    visitor(self.skinMm, Parameter{ "skinMm", "Skin (mm)", between(0, 20), "Thickness of the skin in mm, 0 to 20." });
+  }
 };
 
 /// What fillBody added.

@@ -74,13 +74,13 @@ ArrayAperture apertureOf(const ProbePreset& preset)
   aperture.elevationFocusMm = preset.elevationFocusMm;
   aperture.centreFrequencyMHz = preset.centreFrequencyMHz;
   aperture.fractionalBandwidth = preset.fractionalBandwidth;
-  const ScanKind kind = preset.geometry.kind;
-  if (kind == ScanKind::Linear || kind == ScanKind::Curvilinear)
+  const LineOrigin origin = preset.geometry.lineOrigin();
+  if (origin == LineOrigin::Aperture || origin == LineOrigin::ConvexFace)
   {
     const double halfFocus = 0.5 * preset.transmitFocusMm / aperture.pitchMm();
     aperture.elementCount = std::max(1, int(std::min(double(preset.elementCount), std::round(halfFocus))));
   }
-  if (kind == ScanKind::Curvilinear)
+  if (origin == LineOrigin::ConvexFace)
   {
     aperture.faceRadiusMm = preset.geometry.radiusMm;
   }

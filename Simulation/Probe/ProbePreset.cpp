@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <set>
+#include <type_traits>
 
 namespace sono {
 
@@ -47,6 +47,18 @@ public:
     }
     return entry["value"].get<double>();
   }
+
+  template<class Value>
+  Value inRange(const std::string& key, const Range& range)
+  {
+    const double value = number(key);
+    const bool isWhole = std::is_same_v<Value, int>;
+    require(key, range.contains(value) && (!isWhole || value == std::floor(value)),
+            (isWhole ? "a whole number " : "a number ") + range.text());
+    return Value(value);
+  }
+
+  const std::string& path() const { return path_; }
 
   double positive(const std::string& key)
   {
@@ -114,43 +126,46 @@ Json parseFile(const std::string& path)
   return json;
 }
 
+/// Preset files call two numbers otherwise.
+std::string keyOf(const Parameter& parameter)
+{
+  const std::string name = parameter.name;
+  return name == "lineCount" ? "numberOfLines" : name == "elevationLineCount" ? "numberOfElevations" : name;
+}
+
 ScanGeometry readGeometry(PresetReader& reader)
 {
-  static const std::map<std::string, ScanKind> kinds{ { "linear", ScanKind::Linear },
-                                                      { "phased_sector", ScanKind::PhasedSector },
-                                                      { "curvilinear", ScanKind::Curvilinear },
-                                                      { "matrix", ScanKind::Matrix },
-                                                      { "radial", ScanKind::Radial } };
+  const std::string name = reader.text("scan");
+  std::string names;
+  int found = -1;
+  for (const ScanKindTraits& traits : scanKinds())
+  {
+    names += (names.empty() ? "\"" : ", \"") + std::string(traits.presetName) + "\"";
+    if (name == traits.presetName)
+    {
+      found = int(&traits - scanKinds().data());
+    }
+  }
+  reader.require("scan", found >= 0, "one of " + names);
   ScanGeometry geometry;
-  const auto kind = kinds.find(reader.text("scan"));
-  reader.require("scan", kind != kinds.end(),
-                 "\"linear\", \"phased_sector\", \"curvilinear\", \"matrix\" or \"radial\"");
-  geometry.kind = kind->second;
-  geometry.lineCount = reader.count("numberOfLines", 4096);
-  geometry.depthMm = reader.positive("depthMm");
-  if (geometry.kind == ScanKind::Linear)
+  geometry.kind = ScanKind(found);
+  ScanGeometry::visit(geometry, [&](auto& value, const Parameter& parameter) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (!std::is_same_v<Value, ScanKind>)
+    {
+      if (geometry.uses(parameter))
+      {
+        value = reader.inRange<Value>(keyOf(parameter), geometry.rangeOf(parameter));
+      }
+    }
+  });
+  try
   {
-    geometry.widthMm = reader.positive("widthMm");
-    return geometry;
+    geometry.validate(); // what depends on the kind
   }
-  geometry.sectorDeg = reader.positive("sectorDeg");
-  if (geometry.kind == ScanKind::Radial)
+  catch (const Error& error)
   {
-    reader.require("sectorDeg", geometry.sectorDeg <= 360.0, "a number above 0 and at most 360");
-  }
-  else
-  {
-    reader.require("sectorDeg", geometry.sectorDeg < 180.0, "a number above 0 and below 180");
-  }
-  if (geometry.faceRadiusMm() > 0.0)
-  {
-    geometry.radiusMm = reader.positive("radiusMm");
-  }
-  if (geometry.kind == ScanKind::Matrix)
-  {
-    geometry.elevationLineCount = reader.count("numberOfElevations", std::min(4096, 65536 / geometry.lineCount));
-    geometry.elevationSectorDeg = reader.positive("elevationSectorDeg");
-    reader.require("elevationSectorDeg", geometry.elevationSectorDeg < 180.0, "a number above 0 and below 180");
+    throw Error("'" + reader.path() + "': " + error.what());
   }
   return geometry;
 }
@@ -164,9 +179,9 @@ ProbePreset readProbePreset(const std::string& path)
   ProbePreset preset;
   preset.name = reader.text("name");
   preset.geometry = readGeometry(reader);
-  preset.centreFrequencyMHz = reader.positive("centreFrequencyMHz");
-  preset.fractionalBandwidth = reader.positive("fractionalBandwidth");
-  reader.require("fractionalBandwidth", preset.fractionalBandwidth < 2.0, "a number above 0 and below 2");
+  ProbeSettings::visitPulse(preset, [&](double& value, const Parameter& parameter) {
+    value = reader.inRange<double>(parameter.name, parameter.range);
+  });
   preset.elementCount = reader.count("elementCount", 65536);
   preset.elementWidthMm = reader.positive("elementWidthMm");
   preset.elementHeightMm = reader.positive("elementHeightMm");

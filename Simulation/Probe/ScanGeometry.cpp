@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace sono {
 
@@ -20,29 +19,6 @@ constexpr double depthToleranceMm = 1e-3;
 bool isFinite(const Vec3d& v)
 {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-void requireRange(const char* parameter, double value, double minimum, double maximum, bool ok)
-{
-  if (!ok)
-  {
-    std::ostringstream message;
-    message << parameter << " is " << value << "; choose a value ";
-    if (std::isinf(maximum))
-    {
-      message << "above " << minimum << ".";
-    }
-    else
-    {
-      message << "between " << minimum << " and " << maximum << ".";
-    }
-    throw Error(message.str());
-  }
-}
-
-void requirePositive(const char* parameter, double value)
-{
-  requireRange(parameter, value, 0.0, std::numeric_limits<double>::infinity(), std::isfinite(value) && value > 0.0);
 }
 
 /// From -0.5 on the first of `count` lines to 0.5 on the last; 0 when there is one.
@@ -91,7 +67,7 @@ struct PlaneLine
 
 PlaneLine planeLine(const ScanGeometry& geometry, double line)
 {
-  if (geometry.kind == ScanKind::Linear)
+  if (geometry.lineOrigin() == LineOrigin::Aperture)
   {
     return { fractionOf(line, geometry.lineCount) * geometry.widthMm, 0.0, 0.0, 1.0 };
   }
@@ -100,7 +76,8 @@ PlaneLine planeLine(const ScanGeometry& geometry, double line)
   const double sine = std::sin(angle);
   const double cosine = std::cos(angle);
   const double half = std::sin(0.5 * angle);
-  const double axial = geometry.kind == ScanKind::Radial ? radius * cosine : -2.0 * radius * half * half; // R (cos - 1)
+  const bool isCatheter = geometry.lineOrigin() == LineOrigin::Catheter;
+  const double axial = isCatheter ? radius * cosine : -2.0 * radius * half * half; // R (cos - 1)
   return { radius * sine, axial, sine, cosine };
 }
 
@@ -133,42 +110,34 @@ ProbePose ProbePose::orthonormalized() const
 
 double ScanGeometry::faceRadiusMm() const
 {
-  return kind == ScanKind::Curvilinear || kind == ScanKind::Radial ? radiusMm : 0.0;
+  return lineOrigin() == LineOrigin::ConvexFace || lineOrigin() == LineOrigin::Catheter ? radiusMm : 0.0;
+}
+
+bool ScanGeometry::uses(const Parameter& number) const
+{
+  const std::string name = number.name;
+  const std::vector<std::string>& own = traitsOf(kind).numbers;
+  return name == "scanKind" || name == "lineCount" || name == "depthMm" ||
+         std::find(own.begin(), own.end(), name) != own.end();
+}
+
+Range ScanGeometry::rangeOf(const Parameter& number) const
+{
+  const bool isBounded = number.name == std::string("sectorDeg") && traitsOf(kind).maxSectorDeg < 360.0;
+  return isBounded ? inside(0, traitsOf(kind).maxSectorDeg) : number.range;
 }
 
 void ScanGeometry::validate() const
 {
-  const auto requireCount = [](const char* parameter, int count) {
-    requireRange(parameter, count, 1.0, 4096.0, count >= 1 && count <= 4096);
-  };
-  const auto requireAngle = [](const char* parameter, double angle, double maximum, bool ok) {
-    requireRange(parameter, angle, 0.0, maximum, angle > 0.0 && ok);
-  };
-  requireCount("lineCount", lineCount);
-  requirePositive("depthMm", depthMm);
-  switch (kind)
-  {
-    case ScanKind::Linear:
-      requirePositive("widthMm", widthMm);
-      return;
-    case ScanKind::Radial:
-      requirePositive("radiusMm", radiusMm);
-      requireAngle("sectorDeg", sectorDeg, 360.0, sectorDeg <= 360.0);
-      return;
-    case ScanKind::Curvilinear:
-      requirePositive("radiusMm", radiusMm);
-      requireAngle("sectorDeg", sectorDeg, 180.0, sectorDeg < 180.0);
-      return;
-    case ScanKind::Matrix:
-      requireCount("elevationLineCount", elevationLineCount);
-      requireRange("lineCount x elevationLineCount", totalLineCount(), 1.0, 65536.0, totalLineCount() <= 65536);
-      requireAngle("elevationSectorDeg", elevationSectorDeg, 180.0, elevationSectorDeg < 180.0);
-      [[fallthrough]];
-    case ScanKind::PhasedSector:
-      requireAngle("sectorDeg", sectorDeg, 180.0, sectorDeg < 180.0);
-      return;
-  }
-  throw Error("the scan kind is none of linear, phased sector, curvilinear, matrix and radial; choose one of them.");
+  traitsOf(kind); // first: the others are asked of it
+  visit(*this, [this](const auto& value, Parameter parameter) {
+    if (uses(parameter))
+    {
+      parameter.range = rangeOf(parameter);
+      requireInRange(value, parameter);
+    }
+  });
+  requireInRange(totalLineCount(), Parameter{ "lineCount x elevationLineCount", "", between(1, 65536), "" });
 }
 
 std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePose& pose)
@@ -209,10 +178,10 @@ Vec2f beamFromPlane(const ScanGeometry& geometry, double lateralMm, double axial
   const int count = geometry.lineCount;
   double line = lineOf(lateralMm / geometry.widthMm, count);
   double r = axialMm;
-  if (geometry.kind != ScanKind::Linear)
+  if (geometry.lineOrigin() != LineOrigin::Aperture)
   {
     const double radius = geometry.faceRadiusMm();
-    const double forward = geometry.kind == ScanKind::Radial ? axialMm : axialMm + radius;
+    const double forward = axialMm - geometry.fanCentreAxialMm();
     const double fraction = std::atan2(lateralMm, forward) / (geometry.sectorDeg * radiansPerDegree);
     line = geometry.closesCircle() ? std::fmod((fraction + 0.5) * count, count) : lineOf(fraction, count);
     r = std::hypot(lateralMm, forward) - radius;

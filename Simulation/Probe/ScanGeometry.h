@@ -1,21 +1,13 @@
 #pragma once
 
+#include "Core/Parameters.h"
 #include "Kernel/Vec.h"
+#include "Probe/ScanKinds.h"
 
 #include <string>
 #include <vector>
 
 namespace sono {
-
-/// How the scan lines are laid out.
-enum class ScanKind
-{
-  Linear,       ///< parallel lines over the aperture's width
-  PhasedSector, ///< lines from one apex on the face
-  Curvilinear,  ///< lines along the radii of a convex face
-  Matrix,       ///< lines from one apex over a grid of angles: a 3-D volume
-  Radial        ///< lines along the radii of a catheter, in the plane across it (ICE, IVUS)
-};
 
 /// Where a probe stands: `axial` points into the body, `lateral` along the array, elevation = axial x lateral.
 /// World LPS mm.
@@ -33,21 +25,57 @@ struct ProbePose
 struct ScanGeometry
 {
   ScanKind kind = ScanKind::PhasedSector;
-  int lineCount = 128;     ///< 1 to 4096; of each elevation, when a matrix
-  double depthMm = 160.0;  ///< > 0, along each line from the face
-  double sectorDeg = 90.0; ///< opening angle between the outermost lines, all but linear, (0, 180). Radial: (0, 360],
-                           ///< where 360 closes the circle and the last line stands one step before the first
-  double radiusMm = 60.0;  ///< curvilinear and radial: radius of the face, > 0
-  double widthMm = 38.0;   ///< linear: distance between the outermost lines, > 0
-  int elevationLineCount = 32;      ///< matrix: 1 to 4096, at most 65536 lines altogether
-  double elevationSectorDeg = 60.0; ///< matrix: opening angle between the outermost elevations, (0, 180)
+  int lineCount = 128;
+  double depthMm = 160.0;  ///< along each line from the face
+  double sectorDeg = 90.0; ///< 360 closes a radial probe's circle: the last line stands one step before the first
+  double radiusMm = 60.0;
+  double widthMm = 38.0;
+  int elevationLineCount = 32; ///< at most 65536 lines altogether
+  double elevationSectorDeg = 60.0;
 
+  /// The numbers that a kind does not have (see ScanKinds.h) are not used and may be anything.
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor(self.kind, Parameter{ "scanKind",
+                                  "Scan Kind",
+                                  {},
+                                  "Layout of the scan lines: parallel, from one point, along the radii of a convex "
+                                  "face, from one point over a volume, or along the radii of a catheter.",
+                                  scanKindLabels() });
+    visitor(self.lineCount, Parameter{ "lineCount", "Line Count", between(1, 4096),
+                                       "Number of scan lines, 1 to 4096, no unit; of a matrix, in each elevation." });
+    visitor(self.depthMm,
+            Parameter{ "depthMm", "Depth (mm)", above(0), "Depth along each scan line from the face in mm, above 0." });
+    visitor(self.sectorDeg, Parameter{ "sectorDeg", "Sector (deg)", aboveUpTo(0, 360),
+                                       "Angle between the outermost lines in degrees, between 0 and 180, or up to 360 "
+                                       "for radial probes; not for linear ones." });
+    visitor(self.radiusMm, Parameter{ "radiusMm", "Radius (mm)", above(0),
+                                      "Radius of a curvilinear or radial probe's face in mm, above 0." });
+    visitor(self.widthMm, Parameter{ "widthMm", "Width (mm)", above(0),
+                                     "Distance of a linear probe's outermost lines in mm, above 0." });
+    visitor(self.elevationLineCount,
+            Parameter{ "elevationLineCount", "Elevation Line Count", between(1, 4096),
+                       "Elevations of a matrix probe, 1 to 4096, no unit; at most 65,536 lines altogether." });
+    visitor(self.elevationSectorDeg,
+            Parameter{ "elevationSectorDeg", "Elevation Sector (deg)", inside(0, 180),
+                       "Angle between the outermost elevations of a matrix probe in degrees, between 0 and 180." });
+  }
+
+  /// Whether the kind uses a number, and what it may be.
+  bool uses(const Parameter& number) const;
+  Range rangeOf(const Parameter& number) const;
+  /// Whether the lines fill a volume instead of a plane.
+  bool isVolume() const { return traitsOf(kind).isVolume; }
+  LineOrigin lineOrigin() const { return traitsOf(kind).origin; }
   /// Of all elevations.
-  int totalLineCount() const { return kind == ScanKind::Matrix ? lineCount * elevationLineCount : lineCount; }
+  int totalLineCount() const { return isVolume() ? lineCount * elevationLineCount : lineCount; }
   /// Whether the line before the first is the last one.
-  bool closesCircle() const { return kind == ScanKind::Radial && sectorDeg == 360.0 && lineCount > 1; }
+  bool closesCircle() const { return traitsOf(kind).maxSectorDeg == 360.0 && sectorDeg == 360.0 && lineCount > 1; }
   /// Distance of the face from the centre that the lines of a fan come from; 0 for lines from an apex.
   double faceRadiusMm() const;
+  /// Where that centre lies before the pose's position: behind a convex face.
+  double fanCentreAxialMm() const { return lineOrigin() == LineOrigin::ConvexFace ? -radiusMm : 0.0; }
   /// Throws Error naming the parameter.
   void validate() const;
 };
@@ -87,13 +115,34 @@ Vec3d beamFromVolume(const ScanGeometry& geometry, const Vec3d& positionMm);
 /// one ends where it started. Arcs have at most 2 degrees a step. Throws as validate().
 std::vector<std::vector<Vec3d>> scanOutline(const ScanGeometry& geometry);
 
-/// What a probe is: numbers as a preset file gives them.
-struct ProbePreset
+/// What a probe is, wherever it stands.
+struct ProbeSettings
 {
-  std::string name;
   ScanGeometry geometry;
   double centreFrequencyMHz = 2.5;
   double fractionalBandwidth = 0.6; ///< at -6 dB
+
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    ScanGeometry::visit(self.geometry, visitor);
+    visitPulse(self, visitor);
+  }
+  template<class Self, class Visitor>
+  static void visitPulse(Self& self, Visitor&& visitor)
+  {
+    visitor(self.centreFrequencyMHz, Parameter{ "centreFrequencyMHz", "Centre Frequency (MHz)", above(0),
+                                                "Centre frequency of the pulse in MHz, above 0." });
+    visitor(self.fractionalBandwidth, Parameter{ "fractionalBandwidth", "Fractional Bandwidth", inside(0, 2),
+                                                 "Bandwidth of the pulse at -6 dB as a part of the centre frequency, "
+                                                 "between 0 and 2, no unit." });
+  }
+};
+
+/// The same with the array's elements, as a preset file gives them.
+struct ProbePreset : ProbeSettings
+{
+  std::string name;
   double elementWidthMm = 0.0;
   double elementHeightMm = 0.0;
   double kerfMm = 0.0;

@@ -25,7 +25,7 @@ void addArc(Polyline& line, double degrees, const Place& place)
 std::vector<Polyline> planarOutline(const ScanGeometry& geometry)
 {
   const double last = geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1;
-  const double degrees = geometry.kind == ScanKind::Linear ? 0.0 : geometry.sectorDeg;
+  const double degrees = geometry.lineOrigin() == LineOrigin::Aperture ? 0.0 : geometry.sectorDeg;
   const auto arcAt = [&](double r, bool backwards) {
     return [&geometry, last, r, backwards](double share) {
       const Vec2f p = planeFromBeam(geometry, last * (backwards ? 1.0 - share : share), r);
@@ -70,7 +70,7 @@ std::vector<Polyline> volumeOutline(const ScanGeometry& geometry)
 std::vector<std::vector<Vec3d>> scanOutline(const ScanGeometry& geometry)
 {
   geometry.validate();
-  return geometry.kind == ScanKind::Matrix ? volumeOutline(geometry) : planarOutline(geometry);
+  return geometry.isVolume() ? volumeOutline(geometry) : planarOutline(geometry);
 }
 
 } // namespace sono

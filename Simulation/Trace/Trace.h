@@ -12,6 +12,13 @@
 
 namespace sono {
 
+/// Where the values of a traced array lie along a line.
+enum class TracedAxis
+{
+  Bins,
+  EchoSamples
+};
+
 /// What the tracer gives: for each line and radial bin the mean one-way intensity (1 at the transducer) and its
 /// Monte-Carlo standard error, and the boundary echoes as complex amplitudes on the echo grid: an echo of amplitude
 /// A at depth r adds A exp(-i 2 k (r - r_s)), split linearly between the two nearest samples s, k = 2 pi f / c0.
@@ -26,6 +33,15 @@ struct TracedLines
   double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
   std::uint64_t segments = 0;                    ///< path segments traced
+
+  /// The arrays with the names and places that they have in a pipeline.
+  template<class Self, class Visitor>
+  static void visitArrays(Self& self, Visitor&& visitor)
+  {
+    visitor(self.intensity, "Intensity", TracedAxis::Bins);
+    visitor(self.standardError, "StandardError", TracedAxis::Bins);
+    visitor(self.boundaryEcho, "BoundaryEcho", TracedAxis::EchoSamples);
+  }
 };
 
 /// Traces every line. The result depends on the arguments and the device alone, to the bit, not on the threads; CPU and

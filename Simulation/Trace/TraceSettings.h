@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/Device.h"
+#include "Core/Parameters.h"
 #include "Kernel/Interface.h"
 
 #include <cstdint>
@@ -30,23 +31,74 @@ struct TraceSettings
   March march = March::RegionCache;
   InterfaceModel model = InterfaceModel::Acoustic;
   Sampling sampling = Sampling::LowDiscrepancy;
-  int pathsPerLine = 1000; ///< 1 to 10^7
-  int maxCollisions = 7;   ///< boundaries a path may meet, 0 to 1000
+  int pathsPerLine = 1000;
+  int maxCollisions = 7;
   double coherenceMm =
-    100.0; ///< C0 in w_R = C0 / (C0 + distance), >= 0; the paper's 0.1, read in metres as its other lengths are
-  bool deterministic = false;     ///< no Monte-Carlo: transmitted along the refracted direction, no spreading
-  double lobeMeanRad = 0.0;       ///< mu of the truncated normal
-  double lobeSigmaRad = 0.785398; ///< sigma, >= 0
-  double lobeMinRad = 0.0;        ///< a
-  double lobeMaxRad = 1.570796;   ///< b, in (a, pi/2]
-  double frequencyMHz = 2.5;      ///< > 0; sets attenuation and the phase of boundary echoes
-  double depthMm = 160.0;         ///< > 0
-  double radialBinMm = 0.25;      ///< width of an intensity sample along a line, > 0
-  double echoSampleMm = 0.0154;   ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
-  double rouletteDb = -100.0;     ///< paths fainter than this (20 log10 of the intensity) play Russian roulette, <= 0
+    100.0; ///< C0 in w_R = C0 / (C0 + distance); the paper's 0.1, read in metres as its other lengths
+  bool deterministic = false; ///< no Monte-Carlo: transmitted along the refracted direction, no spreading
+  double lobeMeanDeg = 0.0;   ///< mu of the truncated normal
+  double lobeSigmaDeg = 45.0; ///< sigma
+  double lobeMinDeg = 0.0;    ///< a
+  double lobeMaxDeg = 90.0;   ///< b, above a
+  double frequencyMHz = 2.5;  ///< > 0; sets attenuation and the phase of boundary echoes
+  double depthMm = 160.0;     ///< > 0
+  double radialBinMm = 0.25;
+  double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
+  double rouletteDb = -100.0;   ///< paths fainter than this play Russian roulette
   std::uint64_t seed = 1;
   bool interactive = false; ///< for a probe that moves: what is prepared of the scene serves the next poses as well.
                             ///< The image is the same but for rounding, and does not depend on the way there
+
+  /// The parameters of the stage; depth, frequency and echo samples come from the probe and the RF.
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor(self.pathsPerLine,
+            Parameter{ "pathsPerLine", "Paths per Line", between(1, 1e7),
+                       "Paths per scan line, 1 to 10,000,000, no unit; the noise falls with their square root." });
+    visitor(self.maxCollisions, Parameter{ "maxCollisions", "Max Collisions", between(0, 1000),
+                                           "Boundaries that a path may meet, 0 to 1000, no unit." });
+    visitor(self.coherenceMm,
+            Parameter{ "coherenceMm", "Coherence (mm)", atLeast(0),
+                       "C0: a path at this distance from the main beam counts half; in mm, at least 0." });
+    visitor(self.model, Parameter{ "interfaceModel",
+                                   "Interface Model",
+                                   {},
+                                   "What happens at a boundary: fluid acoustics, which conserves energy, or the "
+                                   "equations of Amadou et al. 2024 to the letter, which do not.",
+                                   { "Acoustic", "Amadou 2024" } });
+    visitor(self.sampling,
+            Parameter{ "sampling",
+                       "Sampling",
+                       {},
+                       "Where a path's random numbers come from: independent ones, or scrambled Sobol points with less "
+                       "noise. With Shared Paths eight neighbouring lines share their paths, too: each takes two to "
+                       "four times as long, but a tenth of them gives the same noise.",
+                       { "Independent", "Low Discrepancy", "Shared Paths" } });
+    visitor(self.deterministic, Parameter{ "deterministic",
+                                           "Deterministic",
+                                           {},
+                                           "Follow only the refracted direction, without chance and without "
+                                           "spreading." });
+    visitor(self.lobeMeanDeg, Parameter{ "lobeMeanDeg", "Lobe Mean (deg)", between(-180, 180),
+                                         "Mean angle between an outgoing direction and the mirrored or refracted one "
+                                         "in degrees, -180 to 180." });
+    visitor(self.lobeSigmaDeg, Parameter{ "lobeSigmaDeg", "Lobe Sigma (deg)", atLeast(0),
+                                          "Standard deviation of that angle in degrees, at least 0; 0 is a mirror." });
+    visitor(self.lobeMinDeg,
+            Parameter{ "lobeMinDeg", "Lobe Min (deg)", between(0, 90), "Least such angle in degrees, 0 to 90." });
+    visitor(self.lobeMaxDeg, Parameter{ "lobeMaxDeg", "Lobe Max (deg)", between(0, 90),
+                                        "Largest such angle in degrees, above the least, up to 90." });
+    visitor(self.radialBinMm, Parameter{ "radialBinMm", "Radial Bin (mm)", above(0),
+                                         "Width of an intensity sample along a scan line in mm, above 0." });
+    visitor(self.rouletteDb,
+            Parameter{ "rouletteDb", "Roulette (dB)", between(-1000, 0),
+                       "Paths fainter than this in dB, 20 log10 of the intensity, -1000 to 0, are ended by chance and "
+                       "the others of their kind count more." });
+    visitor(self.device, deviceParameter());
+    visitor(self.seed, Parameter{ "pathSeed", "Path Seed", atLeast(0),
+                                  "Seed of the paths, at least 0, no unit: the same seed gives the same result." });
+  }
 
   /// Throws Error naming the parameter and its range.
   void validate() const;

@@ -29,7 +29,9 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.firstTargetMedium = int(scene.tissues().size());
   view.outsideTissue = scene.outsideIndex();
   view.model = settings.model;
-  view.lobe = makeLobe(settings.lobeMeanRad, settings.lobeSigmaRad, settings.lobeMinRad, settings.lobeMaxRad);
+  const auto radians = [](double degrees) { return degrees * 0.017453292519943295; };
+  view.lobe = makeLobe(radians(settings.lobeMeanDeg), radians(settings.lobeSigmaDeg), radians(settings.lobeMinDeg),
+                       radians(settings.lobeMaxDeg));
   view.lowDiscrepancy = settings.sampling != Sampling::Independent;
   view.deterministic = settings.deterministic;
   view.maxCollisions = settings.maxCollisions;

@@ -187,8 +187,8 @@ class TestBadInput(unittest.TestCase):
         self.expect(chain.tracer, "moved or cut", "Ultrasound Scene")
 
     def test_tracer_settings_out_of_range(self):
-        for name, value, said in (("PathsPerLine", 0, "paths per line"), ("RadialBinMm", 0.0, "radial bin"),
-                                  ("LobeSigmaDeg", -1.0, "lobe sigma")):
+        for name, value, said in (("PathsPerLine", 0, "pathsPerLine"), ("RadialBinMm", 0.0, "radialBinMm"),
+                                  ("LobeSigmaDeg", -1.0, "lobeSigmaDeg")):
             with self.subTest(setting=name):
                 chain = Chain()
                 getattr(chain.tracer, "Set" + name)(value)

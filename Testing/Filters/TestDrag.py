@@ -19,7 +19,7 @@ def ultrasound_on(thorax, **settings):
     ultrasound.SetInputConnection(thorax.GetOutputPort())
     field = thorax.GetOutput().GetFieldData()
     for part in ("PositionMm", "Axial", "Lateral"):
-        getattr(ultrasound, "Set" + part)(*field.GetArray("A4C" + part).GetTuple3(0))
+        getattr(ultrasound.GetProbe(), "Set" + part)(*field.GetArray("A4C" + part).GetTuple3(0))
     return ultrasound
 
 
@@ -46,15 +46,15 @@ class TestDrag(unittest.TestCase):
         thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
         thorax.Update()
         ultrasound = ultrasound_on(thorax, LineCount=12, PathsPerLine=20)
-        position = ultrasound.GetPositionMm()
+        position = ultrasound.GetProbe().GetPositionMm()
         texts = []
         ultrasound.AddObserver("ProgressEvent", lambda *_: texts.append(ultrasound.GetProgressText()))
         ultrasound.Update()
         self.assertIn("Building the anatomy", texts)
         texts.clear()
-        ultrasound.SetPreview(True)
+        ultrasound.GetProbe().SetPreview(True)
         for step in range(1, 6):
-            ultrasound.SetPositionMm(*moved(position, step))
+            ultrasound.GetProbe().SetPositionMm(*moved(position, step))
             ultrasound.Update()
         self.assertIn("Tracing", texts)
         self.assertNotIn("Building the anatomy", texts)
@@ -64,16 +64,16 @@ class TestDrag(unittest.TestCase):
         thorax.Update()
         dragged = ultrasound_on(thorax, LineCount=24)
         fresh = ultrasound_on(thorax, LineCount=24)
-        position = dragged.GetPositionMm()
+        position = dragged.GetProbe().GetPositionMm()
         dragged.Update()
         for preview in (True, False):  # on the way, and when it rests
-            dragged.SetPreview(True)
+            dragged.GetProbe().SetPreview(True)
             for step in range(1, 13):
-                dragged.SetPositionMm(*moved(position, step))
+                dragged.GetProbe().SetPositionMm(*moved(position, step))
                 dragged.Update()
             for ultrasound in (dragged, fresh):
-                ultrasound.SetPositionMm(*moved(position, 12))
-                ultrasound.SetPreview(preview)
+                ultrasound.GetProbe().SetPositionMm(*moved(position, 12))
+                ultrasound.GetProbe().SetPreview(preview)
                 ultrasound.Update()
             for port in range(dragged.GetNumberOfOutputPorts()):
                 made, expected = dragged.GetOutputDataObject(port), fresh.GetOutputDataObject(port)
@@ -92,12 +92,12 @@ class TestPreview(unittest.TestCase):
         ultrasound = ultrasound_on(thorax, LineCount=64)
         cls.images = {}
         for name, preview in (("fine", False), ("coarse", True)):
-            ultrasound.SetPreview(preview)
+            ultrasound.GetProbe().SetPreview(preview)
             ultrasound.Update()
             image = ultrasound.GetOutputDataObject(0).NewInstance()
             image.DeepCopy(ultrasound.GetOutputDataObject(0))
             cls.images[name] = image
-        cls.db_per_grey = ultrasound.GetDynamicRangeDb() / 255
+        cls.db_per_grey = ultrasound.GetBMode().GetDynamicRangeDb() / 255
 
     def squares(self, name, edge):
         """Mean levels in dB of squares of pixels, and the part of each that lies in the sector."""

@@ -63,7 +63,7 @@ class TestErrorMap(unittest.TestCase):
         bins = np.arange(60, 340, 20)
         intensities, percents = [], []
         for seed in range(1, 61):
-            self.chain.tracer.SetSeed(seed)
+            self.chain.tracer.SetPathSeed(seed)
             intensities.append(traced_lines(self.chain)[0][6, bins])
             self.map.Update()
             percent = array(self.map.GetOutputDataObject(0), "ErrorPercent")
@@ -116,7 +116,7 @@ class TestOfSimulateUltrasound(unittest.TestCase):
         self.filter = make(vtkSonoUltrasound, LineCount=12, DepthMm=90.0, SectorDeg=60.0, PathsPerLine=20,
                            BuildSurfaces=False, PixelMm=0.5)
         for part in ("PositionMm", "Axial", "Lateral"):
-            getattr(self.filter, "Set" + part)(*getattr(self.stages.probe, "Get" + part)())
+            getattr(self.filter.GetProbe(), "Set" + part)(*getattr(self.stages.probe, "Get" + part)())
         self.filter.SetInputConnection(self.stages.thorax.GetOutputPort())
         self.said = listen(self.filter)
 
@@ -152,10 +152,10 @@ class TestOfSimulateUltrasound(unittest.TestCase):
         self.filter.ErrorMapOn()
         self.filter.Update()
         self.assertEqual(self.filter.GetOutputDataObject(3).GetPointData().GetArray("Intensity").GetMTime(), before)
-        self.filter.SetPreview(True)
+        self.filter.GetProbe().SetPreview(True)
         for output in self.outputs():
             self.assertTrue(np.isnan(array(output, "ErrorPercent")).all())
-        self.filter.SetPreview(False)
+        self.filter.GetProbe().SetPreview(False)
         for output in self.outputs():
             self.assertGreater((array(output, "ErrorPercent") >= 0).sum(), 10000)
 

@@ -194,8 +194,8 @@ TEST(Interruption, TheOneFilterStopsInAnyOfItsStages)
   thorax->SetSpacingMm(4.0);
   vtkNew<vtkSonoUltrasound> ultrasound;
   ultrasound->SetInputConnection(thorax->GetOutputPort());
-  ultrasound->SetLineCount(24);
-  ultrasound->SetPathsPerLine(20);
+  ultrasound->GetProbe()->SetLineCount(24);
+  ultrasound->GetRayTracer()->SetPathsPerLine(20);
   const auto picture = [&] {
     ultrasound->Update();
     return greys(ultrasound->GetOutput());
@@ -205,8 +205,8 @@ TEST(Interruption, TheOneFilterStopsInAnyOfItsStages)
   for (const bool inTheScene : { false, true })
   {
     button.stopped.clear();
-    ultrasound->SetPathsPerLine(40);
-    ultrasound->SetFillBody(inTheScene);
+    ultrasound->GetRayTracer()->SetPathsPerLine(40);
+    ultrasound->GetSceneBuilder()->SetFillBody(inTheScene);
     button.pressAfter(2);
     EXPECT_EQ(picture(), before);
     EXPECT_EQ(button.stopped, std::vector<vtkAlgorithm*>{ ultrasound });
@@ -214,8 +214,8 @@ TEST(Interruption, TheOneFilterStopsInAnyOfItsStages)
     EXPECT_EQ(picture(), before);
     ultrasound->Modified();
     EXPECT_NE(picture(), before);
-    ultrasound->SetPathsPerLine(20);
-    ultrasound->SetFillBody(false);
+    ultrasound->GetRayTracer()->SetPathsPerLine(20);
+    ultrasound->GetSceneBuilder()->SetFillBody(false);
     EXPECT_EQ(picture(), before);
   }
 }

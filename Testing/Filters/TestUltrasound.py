@@ -2,17 +2,21 @@
 import unittest
 
 import numpy as np
-from chain import Chain, label_image, listen, make
-from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoSceneBuilder, vtkSonoUltrasound
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from chain import Chain, label_image, listen, make, owner
+from sonovdb.vtkSonoFilters import (vtkSonoLabelMapReader, vtkSonoPulseEchoField, vtkSonoSceneBuilder,
+                                    vtkSonoUltrasound)
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline, vtkTrivialProducer
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 SETTINGS = {"LineCount": 12, "DepthMm": 90.0, "SectorDeg": 60.0, "PathsPerLine": 20, "BuildSurfaces": False}
 # What the stages' own defaults differ in.
 CHEST = {"MaxCollisions": 20, "CoherenceMm": 20.0, "LobeSigmaDeg": 6.0}
 IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, ANATOMY, PROBE, RAY_PATHS, FLAT_IMAGE = range(8)
 BOUNDARY_HITS = 9
+RAW = {TRACED_LINES: "Intensity", RF_LINES: "RF"}
 
 
 def values(data, name):
@@ -26,7 +30,7 @@ class Ultrasound:
         self.stages = Chain()
         self.filter = make(vtkSonoUltrasound, **{**SETTINGS, **settings})
         for part in ("PositionMm", "Axial", "Lateral"):
-            getattr(self.filter, "Set" + part)(*getattr(self.stages.probe, "Get" + part)())
+            getattr(self.filter.GetProbe(), "Set" + part)(*getattr(self.stages.probe, "Get" + part)())
         self.filter.SetInputConnection(self.stages.thorax.GetOutputPort())
 
     def output(self, port=IMAGE):
@@ -165,22 +169,102 @@ class TestRunningAgain(unittest.TestCase):
         self.assertEqual(self.changed(lambda ultrasound: ultrasound.Modified()), set())
 
     def test_gain_does_not_trace_again(self):
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetGainDb(6)), {BMODE_LINES, IMAGE})
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.AddTgcPoint(10, 3)), {BMODE_LINES, IMAGE})
+        self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "GainDb").SetGainDb(6)), {BMODE_LINES, IMAGE})
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.GetBMode().AddTgcPoint(10, 3)), {BMODE_LINES, IMAGE})
 
     def test_pixel_size_makes_the_image_only(self):
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetPixelMm(0.5)), {IMAGE})
+        self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "PixelMm").SetPixelMm(0.5)), {IMAGE})
 
     def test_beam_width_forms_echoes_again(self):
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetLateralSigmaMm(2)), {RF_LINES, BMODE_LINES, IMAGE})
+        self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "LateralSigmaMm").SetLateralSigmaMm(2)), {RF_LINES, BMODE_LINES, IMAGE})
 
     def test_pose_keeps_the_anatomy(self):
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetPositionMm(80, -86, -45)),
+        self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "PositionMm").SetPositionMm(80, -86, -45)),
                          {TRACED_LINES, RF_LINES, BMODE_LINES, IMAGE})
 
     def test_tissues_change_everything(self):
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.SetFillBody(True)),
+        self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "FillBody").SetFillBody(True)),
                          {ANATOMY, TRACED_LINES, RF_LINES, BMODE_LINES, IMAGE})
+
+
+class TestOptionalInputs(unittest.TestCase):
+    """What else may be scanned goes to the stage that takes it, and is gone when it is taken away."""
+
+    def setUp(self):
+        self.ultrasound = Ultrasound()
+        self.chain = self.ultrasound.stages
+        for name, value in CHEST.items():
+            getattr(self.chain.tracer, "Set" + name)(value)
+        self.place = np.array(self.chain.probe.GetPositionMm()) + 40 * np.array(self.chain.probe.GetAxial())
+
+    def expect_as_in_the_chain(self, port, stage, stage_port, source, changed):
+        """The source's output on an optional port, and on the stage's port in the chain."""
+        bare = {output: values(self.ultrasound.output(output), name) for output, name in RAW.items()}
+        self.ultrasound.filter.SetInputConnection(port, source.GetOutputPort())
+        stage.SetInputConnection(stage_port, source.GetOutputPort())
+        self.chain.formation.Update()
+        for output, made_by in ((TRACED_LINES, self.chain.tracer), (RF_LINES, self.chain.formation)):
+            with self.subTest(output=output):
+                made = values(self.ultrasound.output(output), RAW[output])
+                np.testing.assert_array_equal(made, values(made_by.GetOutputDataObject(0), RAW[output]))
+                self.assertEqual((made != bare[output]).any(), output in changed)
+        self.ultrasound.filter.RemoveAllInputConnections(port)
+        for output, name in RAW.items():
+            np.testing.assert_array_equal(values(self.ultrasound.output(output), name), bare[output])
+
+    def test_targets(self):
+        sphere = make(vtkSphereSource, Radius=8.0, Center=tuple(self.place), ThetaResolution=32, PhiResolution=32)
+        self.expect_as_in_the_chain(vtkSonoUltrasound.TARGETS, self.chain.tracer, 2, sphere, {TRACED_LINES, RF_LINES})
+        other = make(vtkSphereSource, Radius=4.0, Center=tuple(self.place), ThetaResolution=32, PhiResolution=32)
+        self.expect_as_in_the_chain(vtkSonoUltrasound.TARGETS, self.chain.tracer, 2, other, {TRACED_LINES, RF_LINES})
+
+    def test_point_scatterers(self):
+        points, amplitude = vtkPoints(), numpy_to_vtk(np.ones(1, np.float32), deep=True)
+        points.InsertNextPoint(self.place)
+        amplitude.SetName("Amplitude")
+        cloud = vtkPolyData()
+        cloud.SetPoints(points)
+        cloud.GetPointData().AddArray(amplitude)
+        source = vtkTrivialProducer()
+        source.SetOutput(cloud)
+        self.expect_as_in_the_chain(vtkSonoUltrasound.SCATTERERS, self.chain.formation, 1, source, {RF_LINES})
+
+    def test_pulse_echo_field(self):
+        field = make(vtkSonoPulseEchoField, ElementCount=8, ElementHeightMm=3.0, TransmitFocusMm=20.0,
+                     ElevationFocusMm=20.0, FractionalBandwidth=0.0, DepthMm=90.0)
+        self.expect_as_in_the_chain(vtkSonoUltrasound.PULSE_ECHO_FIELD, self.chain.formation, 2, field, {RF_LINES})
+
+
+class TestStages(unittest.TestCase):
+    def test_a_given_stage_takes_the_place_of_the_filters_own(self):
+        ultrasound = Ultrasound()
+        before = values(ultrasound.output(), "BMode")
+        bmode = make(type(ultrasound.filter.GetBMode()), GainDb=10.0, TgcDbPerCm=3.0)
+        ultrasound.filter.SetBMode(bmode)
+        self.assertIs(ultrasound.filter.GetBMode(), bmode)
+        brighter = values(ultrasound.output(), "BMode")
+        self.assertGreater(brighter.mean(), before.mean())
+        bmode.SetGainDb(0.0)
+        np.testing.assert_array_equal(values(ultrasound.output(), "BMode"), before)
+        ultrasound.filter.SetBMode(None)
+        self.assertIs(ultrasound.filter.GetBMode(), bmode)
+
+    def test_one_device_and_one_pixel_size_for_all(self):
+        ultrasound = Ultrasound(PixelMm=0.5)
+        ultrasound.filter.ErrorMapOn()
+        ultrasound.filter.GetRayTracer().SetDevice(1)
+        image = ultrasound.output()
+        self.assertEqual(ultrasound.filter.GetImageFormation().GetDevice(), 1)
+        self.assertEqual(image.GetDimensions(), ultrasound.output(8).GetDimensions())
+
+    def test_paths_and_scatterers_have_seeds_of_their_own(self):
+        ultrasound = Ultrasound()
+        intensity, rf = (values(ultrasound.output(port), RAW[port]) for port in (TRACED_LINES, RF_LINES))
+        ultrasound.filter.GetImageFormation().SetScattererSeed(2)
+        np.testing.assert_array_equal(values(ultrasound.output(TRACED_LINES), "Intensity"), intensity)
+        self.assertTrue((values(ultrasound.output(RF_LINES), "RF") != rf).any())
+        ultrasound.filter.GetRayTracer().SetPathSeed(2)
+        self.assertTrue((values(ultrasound.output(TRACED_LINES), "Intensity") != intensity).any())
 
 
 class TestChangingInput(unittest.TestCase):
@@ -210,13 +294,13 @@ class TestChangingInput(unittest.TestCase):
                     if len(events) == moment + 1:
                         ultrasound.filter.SetInputConnection(coarse.GetOutputPort())
 
-                ultrasound.filter.SetPathsPerLine(21)
+                ultrasound.filter.GetRayTracer().SetPathsPerLine(21)
                 tag = ultrasound.filter.AddObserver("ProgressEvent", switch)
                 errors = listen(ultrasound.filter)
                 ultrasound.filter.Update()
                 ultrasound.filter.RemoveObserver(tag)
                 self.assertLessEqual(len(errors), 1)
-                ultrasound.filter.SetPathsPerLine(20)
+                ultrasound.filter.GetRayTracer().SetPathsPerLine(20)
                 self.assertFalse((values(ultrasound.output(), "BMode") == whole).all())
                 ultrasound.filter.SetInputConnection(ultrasound.stages.thorax.GetOutputPort())
                 np.testing.assert_array_equal(values(ultrasound.output(), "BMode"), whole)
@@ -227,14 +311,14 @@ class TestChangingInput(unittest.TestCase):
         errors = listen(ultrasound.filter)
         for name, value in (("PathsPerLine", 21), ("FillBody", True)):  # stops the tracer, the scene
             with self.subTest(changed=name):
-                before = getattr(ultrasound.filter, "Get" + name)()
-                getattr(ultrasound.filter, "Set" + name)(value)
+                before = getattr(owner(ultrasound.filter, name), "Get" + name)()
+                getattr(owner(ultrasound.filter, name), "Set" + name)(value)
                 stop = ultrasound.filter.AddObserver(
                     "ProgressEvent", lambda *_: ultrasound.filter.SetAbortExecuteAndUpdateTime())
                 ultrasound.filter.Update()
                 ultrasound.filter.RemoveObserver(stop)
                 ultrasound.filter.AbortExecuteOff()
-                getattr(ultrasound.filter, "Set" + name)(before)
+                getattr(owner(ultrasound.filter, name), "Set" + name)(before)
                 np.testing.assert_array_equal(values(ultrasound.output(), "BMode"), whole)
         self.assertEqual(errors, [])
 
@@ -248,7 +332,7 @@ class TestBadInput(unittest.TestCase):
             self.assertIn(word.lower(), said[0].lower())
 
     def test_the_sentence_of_the_stage_is_its_own(self):
-        for name, value, word in (("LineCount", 0, "lineCount"), ("PathsPerLine", 0, "paths per line"),
+        for name, value, word in (("LineCount", 0, "lineCount"), ("PathsPerLine", 0, "pathsPerLine"),
                                   ("PixelMm", 0.0, "pixelMm"), ("TissueTableFile", "nowhere.csv", "nowhere.csv"),
                                   ("DynamicRangeDb", 0.0, "range")):
             with self.subTest(setting=name):
@@ -256,8 +340,8 @@ class TestBadInput(unittest.TestCase):
 
     def test_a_failure_is_over_once_its_cause_is(self):
         ultrasound = Ultrasound(PathsPerLine=0)
-        self.expect(ultrasound.filter, "paths per line")
-        ultrasound.filter.SetPathsPerLine(20)
+        self.expect(ultrasound.filter, "pathsPerLine")
+        ultrasound.filter.GetRayTracer().SetPathsPerLine(20)
         said = listen(ultrasound.filter)
         self.assertGreater(values(ultrasound.output(), "BMode").max(), 200)
         self.assertEqual(said, [])

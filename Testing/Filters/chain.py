@@ -25,11 +25,20 @@ def count_runs(algorithm):
     return runs
 
 
+STAGES = ("SceneBuilder", "Probe", "RayTracer", "ImageFormation", "BMode", "ScanConverter")
+
+
+def owner(algorithm, setting):
+    """The object that has a setting: the filter, or of vtkSonoUltrasound the stage."""
+    parts = [algorithm] + [getattr(algorithm, "Get" + name)() for name in STAGES if hasattr(algorithm, "Get" + name)]
+    return next(part for part in parts if hasattr(part, "Set" + setting))
+
+
 def make(kind, **settings):
-    """A filter of this class with its settings."""
+    """A filter of this class with its settings, of vtkSonoUltrasound with those of its stages."""
     stage = kind()
     for name, value in settings.items():
-        getattr(stage, "Set" + name)(value)
+        getattr(owner(stage, name), "Set" + name)(value)
     return stage
 
 

@@ -78,7 +78,7 @@ private:
     tracing.pathsPerLine = 256 + int(random_() % 1000);
     tracing.maxCollisions = int(random_() % 12);
     tracing.coherenceMm = between(0.1, 50.0);
-    tracing.lobeSigmaRad = random_() % 4 ? between(0.01, 1.0) : 0.0;
+    tracing.lobeSigmaDeg = random_() % 4 ? between(0.01, 1.0) * 180.0 / M_PI : 0.0;
     tracing.radialBinMm = between(0.1, 0.6);
     tracing.seed = random_();
     echo.seed = random_();
@@ -150,6 +150,7 @@ TEST(GpuSmall, EveryUsualKernel)
   settings.geometry.lineCount = 5;
   settings.geometry.depthMm = 12.0;
   settings.tracing.pathsPerLine = 50;
+  settings.bmode.addNoise = true;
   settings.bmode.noiseDb = -60.0;
   settings.matchStages();
   settings.device = Device::Cuda;

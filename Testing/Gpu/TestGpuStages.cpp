@@ -57,7 +57,7 @@ TEST(GpuStages, ManyCollisionsManyPathsFineBins)
 {
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
-  s.tracing.lobeSigmaRad = 0.1;
+  s.tracing.lobeSigmaDeg = 0.1 * 180.0 / M_PI;
   s.tracing.maxCollisions = 40;
   s.tracing.coherenceMm = 20.0;
   s.geometry.lineCount = 4; // few lines: batches are cut into slices
@@ -147,6 +147,7 @@ TEST(GpuStages, WholeImagesAndBatches)
 {
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
+  s.bmode.addNoise = true;
   s.bmode.noiseDb = -80.0;
   std::vector<ProbePose> poses;
   for (int i = 0; i < 5; ++i)

@@ -15,16 +15,16 @@ simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
 def make_chain():
     """The last stage of a small chain, registered as in the GUI."""
-    thorax = simple.ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
+    thorax = simple.ThoraxPhantom(registrationName="thorax", Spacingmm=4)
     field = Fetch(thorax).GetFieldData()
     probe = simple.UltrasoundProbe(
-        registrationName="probe", NumberofLines=12, Depthmm=90, Sectordegrees=60,
-        Positionmm=field.GetArray("A4CPositionMm").GetTuple3(0), AxialDirection=field.GetArray("A4CAxial").GetTuple3(0),
-        LateralDirection=field.GetArray("A4CLateral").GetTuple3(0))
+        registrationName="probe", LineCount=12, Depthmm=90, Sectordeg=60,
+        Positionmm=field.GetArray("A4CPositionMm").GetTuple3(0), Axial=field.GetArray("A4CAxial").GetTuple3(0),
+        Lateral=field.GetArray("A4CLateral").GetTuple3(0))
     scene = simple.UltrasoundScene(registrationName="scene", Input=thorax)
     traced = simple.UltrasoundRayTracer(registrationName="traced", Scene=scene, Probe=probe, PathsperLine=20)
     rf = simple.UltrasoundImageFormation(registrationName="rf", Input=traced)
-    bmode = simple.UltrasoundBMode(registrationName="bmode", Input=rf, TGCCurvemmdB=[0, 0, 50, 12])
+    bmode = simple.UltrasoundBMode(registrationName="bmode", Input=rf, TGCPointsmmdB=[0, 0, 50, 12])
     return simple.ScanConverter(registrationName="picture", Input=bmode)
 
 
@@ -89,14 +89,14 @@ class TestChain(unittest.TestCase):
         make_chain()
         posed = simple.FindSource("probe")
         fresh = simple.UltrasoundProbe()
-        for name, tolerance in (("Positionmm", 0.05), ("AxialDirection", 1e-3), ("LateralDirection", 1e-3)):
+        for name, tolerance in (("Positionmm", 0.05), ("Axial", 1e-3), ("Lateral", 1e-3)):
             for mine, theirs in zip(getattr(fresh, name), getattr(posed, name)):
                 self.assertAlmostEqual(mine, theirs, delta=tolerance)
 
     def test_target_can_be_connected_and_taken_away(self):
         bare = grey(make_chain())
         posed, traced = simple.FindSource("probe"), simple.FindSource("traced")
-        place = [p + 40 * a for p, a in zip(posed.Positionmm, posed.AxialDirection)]
+        place = [p + 40 * a for p, a in zip(posed.Positionmm, posed.Axial)]
         traced.Targets = simple.Sphere(Center=place, Radius=8, ThetaResolution=24, PhiResolution=24)
         with_target = grey(simple.FindSource("picture"))
         self.assertFalse((with_target == bare).all())
@@ -112,7 +112,7 @@ class TestChain(unittest.TestCase):
     def test_scatterers_of_ones_own(self):
         bare = grey(make_chain())
         posed = simple.FindSource("probe")
-        place = [p + 40 * a for p, a in zip(posed.Positionmm, posed.AxialDirection)]
+        place = [p + 40 * a for p, a in zip(posed.Positionmm, posed.Axial)]
         points = simple.Calculator(Input=simple.PointSource(Center=place, Radius=0, NumberOfPoints=1),
                                    Function="10", ResultArrayName="Amplitude")
         simple.FindSource("rf").Scatterers = points
@@ -132,7 +132,7 @@ class TestChain(unittest.TestCase):
             self.tearDown()
             self.assertIsNone(simple.FindSource("picture"))
             simple.LoadState(path)
-        self.assertEqual(list(simple.FindSource("bmode").TGCCurvemmdB), [0, 0, 50, 12])
+        self.assertEqual(list(simple.FindSource("bmode").TGCPointsmmdB), [0, 0, 50, 12])
         self.assertTrue((grey(simple.FindSource("picture")) == before).all())
 
     def test_label_array_can_be_chosen(self):
@@ -141,7 +141,7 @@ class TestChain(unittest.TestCase):
         self.assertEqual(errors_of(simple.FindSource("scene")), [])
 
     def test_label_array_is_found_in_a_source_that_has_not_run(self):
-        scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(VoxelSizemm=5), BuildSurfaces=0)
+        scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(Spacingmm=5), BuildSurfaces=0)
         self.assertEqual(errors_of(scene), [])
         self.assertEqual(scene.GetDataInformation().GetNumberOfPoints(), 8)
 
@@ -168,13 +168,13 @@ class TestChain(unittest.TestCase):
     def test_probe_wholly_outside_the_volume(self):
         make_chain()
         probe = simple.FindSource("probe")
-        probe.Positionmm, probe.AxialDirection, probe.LateralDirection = (1e4, 0, 0), (1, 0, 0), (0, 1, 0)
+        probe.Positionmm, probe.Axial, probe.Lateral = (1e4, 0, 0), (1, 0, 0), (0, 1, 0)
         (sentence,) = errors_of(simple.FindSource("traced"))
         self.assertIn("probe", sentence)
 
     def test_pose_is_kept_in_state_files_and_traces(self):
         make_chain()
-        pose = {"Positionmm": [120.5, -30.25, 17], "AxialDirection": [-1, 0, 0], "LateralDirection": [0, 0.6, 0.8],
+        pose = {"Positionmm": [120.5, -30.25, 17], "Axial": [-1, 0, 0], "Lateral": [0, 0.6, 0.8],
                 "Depthmm": 75}
 
         def check():
@@ -215,7 +215,7 @@ class TestChain(unittest.TestCase):
     def test_probe_in_a_place_where_it_hears_nothing(self):
         make_chain()
         traced, posed = simple.FindSource("traced"), simple.FindSource("probe")
-        on_skin, axial = list(posed.Positionmm), list(posed.AxialDirection)
+        on_skin, axial = list(posed.Positionmm), list(posed.Axial)
 
         def warnings_at(position):
             posed.Positionmm = position

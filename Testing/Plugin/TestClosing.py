@@ -6,7 +6,7 @@ SCRIPT = """
 import os, sys
 from paraview import simple
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
-ultrasound = simple.SimulateUltrasound(Input=simple.ThoraxPhantom(VoxelSizemm=4), BuildSurfaces=0)
+ultrasound = simple.SimulateUltrasound(Input=simple.ThoraxPhantom(Spacingmm=4), BuildSurfaces=0)
 events = []
 
 def on_progress(*_):
@@ -22,7 +22,7 @@ ultrasound.UpdatePipeline()
 
 class TestClosing(unittest.TestCase):
     def test_closing_during_a_run(self):
-        for action in ("simple.Delete(ultrasound)", "ultrasound.Input = simple.ThoraxPhantom(VoxelSizemm=5)",
+        for action in ("simple.Delete(ultrasound)", "ultrasound.Input = simple.ThoraxPhantom(Spacingmm=5)",
                        "simple.Disconnect()", "sys.exit(0)"):
             with self.subTest(action=action):
                 done = subprocess.run(["pvpython", "-c", SCRIPT.format(action=action)], stdout=subprocess.PIPE,

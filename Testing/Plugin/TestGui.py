@@ -19,7 +19,7 @@ ROOT = PLAYBACKS.parents[2]
 BASELINE = PLAYBACKS / "baseline"
 GONE = """
 view = GetActiveViewOrCreate("RenderView")
-ultrasound = SimulateUltrasound(Input=LabelMapReader(FileName=sys.argv[2]), NumberofLines=12, PathsperLine=20)
+ultrasound = SimulateUltrasound(Input=LabelMapReader(FileName=sys.argv[2]), LineCount=12, PathsPerLine=20)
 for port in (0, 4):  # the image and the anatomy
     Show(OutputPort(ultrasound, port), view)
 Show(OutputPort(ALine(Input=OutputPort(ultrasound, 2)), 2), view)

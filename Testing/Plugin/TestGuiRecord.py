@@ -23,8 +23,8 @@ shown = servermanager.Fetch(reader).GetPointData().GetArray("BMode")
 count = max(made.GetNumberOfTuples(), shown.GetNumberOfTuples())
 pairs = [(made.GetTuple1(i), shown.GetTuple1(i)) for i in range(count)]
 with open(sys.argv[3], "w", encoding="utf-8") as file:
-    json.dump({"PositionMm": list(simulated.Positionmm), "Axial": list(simulated.AxialDirection),
-               "Lateral": list(simulated.LateralDirection), "brightest": max(one for one, _ in pairs),
+    json.dump({"PositionMm": list(simulated.PositionMm), "Axial": list(simulated.Axial),
+               "Lateral": list(simulated.Lateral), "brightest": max(one for one, _ in pairs),
                "different": sum(one != other for one, other in pairs)}, file)
 """
 

@@ -9,13 +9,13 @@ simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 processes = vtkProcessModule.GetProcessModule()
 assert processes.GetNumberOfLocalPartitions() == 2, "run me on two ranks, with --symmetric"
 
-probe = simple.UltrasoundProbe(NumberofLines=12, Depthmm=90)  # by default in the thorax's apical view
-scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(VoxelSizemm=4), BuildSurfaces=0)
+probe = simple.UltrasoundProbe(LineCount=12, Depthmm=90)  # by default in the thorax's apical view
+scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(Spacingmm=4), BuildSurfaces=0)
 traced = simple.UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=20)
 bmode = simple.UltrasoundBMode(Input=simple.UltrasoundImageFormation(Input=traced))
 picture = Fetch(simple.ScanConverter(Input=bmode))  # gathers: every rank takes part, the first one gets it
-ultrasound = simple.SimulateUltrasound(Input=simple.ThoraxPhantom(VoxelSizemm=4), NumberofLines=12, Depthmm=90,
-                                       PathsperLine=20)
+ultrasound = simple.SimulateUltrasound(Input=simple.ThoraxPhantom(Spacingmm=4), LineCount=12, DepthMm=90,
+                                       PathsPerLine=20)
 in_one = Fetch(ultrasound)
 anatomy = Fetch(ultrasound, idx=4)
 

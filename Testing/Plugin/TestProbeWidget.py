@@ -230,7 +230,7 @@ class TestShape(unittest.TestCase):
             with self.subTest(kind=kind):
                 probe, source = Probe(), vtkSonoProbeSource()
                 for each in (probe, source):
-                    each.SetScanKind(kind)
+                    each.SetNumber("ScanKind", kind)
                     each.SetDepthMm(170)
                 source.Update()
                 self.assertGreaterEqual(probe.GetBounds()[1] + 1e-6, source.GetOutput().GetBounds()[1])

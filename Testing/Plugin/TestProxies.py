@@ -10,7 +10,7 @@ from sonovdb import vtkSonoFilters
 
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
-XML_FOLDER = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
+XML_FOLDER = pathlib.Path(os.environ["SONOVDB_DESCRIPTIONS"])
 CLASSES = {name: kind for name, kind in vars(vtkSonoFilters).items() if name.startswith("vtkSono")}
 VECTOR_PROPERTIES = ("IntVectorProperty", "DoubleVectorProperty", "StringVectorProperty")
 
@@ -19,6 +19,23 @@ def described(class_name):
     """The <SourceProxy>, <WriterProxy> or plain <Proxy> of a class and its group."""
     group = ElementTree.parse(XML_FOLDER / f"{class_name}.xml").getroot().find("ProxyGroup")
     return group.get("name"), next(e for e in group if e.tag in ("SourceProxy", "WriterProxy", "Proxy"))
+
+
+STAGES = ("SceneBuilder", "Probe", "RayTracer", "ImageFormation", "BMode", "ScanConverter")
+# Labels that say something else than the name: what an input is, ParaView's own property, a word that a unit hides.
+OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneWriter", "Input"), ("SonoSceneBuilder", "SelectInputScalars"),
+                ("SonoUltrasound", "SelectInputScalars"), ("SonoImageFormation", "Field")}
+
+
+def exposed():
+    """The names of the stages' settings on Simulate Ultrasound."""
+    root = ElementTree.parse(XML_FOLDER / "vtkSonoUltrasound.xml").getroot()
+    return {element.get("name") for element in root.iterfind(".//ExposedProperties//Property")}
+
+
+def plain(text):
+    """Letters and digits in lower case."""
+    return "".join(c for c in text.lower() if c.isalnum())
 
 
 def values(value):
@@ -60,11 +77,28 @@ class TestProxies(unittest.TestCase):
         self.assertEqual(proxy.GetProperty("TgcPoints").GetNumberOfElements(), 0)
         self.assertEqual(vtkSonoFilters.vtkSonoBMode().GetNumberOfTgcPoints(), 0)
 
-    def test_every_setting_has_a_property(self):
+    def test_every_setting_has_a_property_and_the_other_way_round(self):
         for kind, _, description in self.each():
             commands = {e.get("command") for e in description}
-            settings = {name for name in vars(kind) if name.startswith("Set") and "Get" + name[3:] in vars(kind)}
-            self.assertEqual(settings - commands, set())
+            methods = {name for name in vars(kind) if name.startswith("Set")}
+            settings = {name for name in methods if "Get" + name[3:] in vars(kind)}
+            own = {"Set" + name for name in STAGES} if kind.__name__ == "vtkSonoUltrasound" else set()
+            self.assertEqual(settings - own - commands, set())
+            for element in (e for e in description if e.tag in VECTOR_PROPERTIES and not e.get("information_only")):
+                with self.subTest(property=element.get("name")):
+                    self.assertTrue(hasattr(kind, element.get("command")))
+
+    def test_names_are_alike_in_cpp_xml_and_python(self):
+        """ParaView makes Python's names of the labels, without all that is neither letter nor digit."""
+        for _, _, description in self.each():
+            for element in (e for e in description if e.tag in VECTOR_PROPERTIES + ("InputProperty",)):
+                name, label, command = (element.get(key) or element.get("name") for key in ("name", "label", "command"))
+                if element.get("information_only") or (description.get("name"), name) in OTHER_LABELS:
+                    continue
+                with self.subTest(property=name):
+                    self.assertIn(plain(name), (plain(label), plain(label.partition("(")[0])))
+                    if element.tag != "InputProperty" and not element.get("repeat_command"):
+                        self.assertEqual(command, "Set" + name)
 
     def test_every_property_is_documented_and_has_its_number_of_elements(self):
         for _, _, description in self.each():
@@ -100,30 +134,51 @@ class TestProxies(unittest.TestCase):
 
     def test_simple_panels_are_short(self):
         """What few people touch is advanced: of Simulate Ultrasound's settings the most."""
-        element = described("vtkSonoUltrasound")[1]
-        own = [e for e in element if e.tag in VECTOR_PROPERTIES]
-        simple_ones = [e for e in own if not e.get("panel_visibility")]
-        self.assertLess(len(simple_ones), 0.5 * len(own))
+        proxy = servermanager.ProxyManager().NewProxy("filters", "SonoUltrasound")
+        shown = [proxy.GetProperty(name).GetPanelVisibility() for name in exposed()]
+        self.assertGreater(len(shown), 50)
+        self.assertLess(shown.count("default"), 0.5 * len(shown))
 
-    def test_simulate_ultrasound_describes_settings_as_the_stages_do(self):
-        """Labels, ranges and tooltips are those of the stage whose setting it is; some defaults differ."""
-        stages = ("SceneBuilder", "ProbeSource", "ImageFormation", "RayTracer", "BMode", "ScanConverter")
-        theirs = {element.get("name"): element for stage in stages
-                  for element in described("vtkSono" + stage)[1] if element.tag in VECTOR_PROPERTIES}
-        defaults = {"MaxCollisions", "CoherenceMm", "LobeSigmaDeg", "TgcDbPerCm"}
-        own = [element for element in described("vtkSonoUltrasound")[1] if element.tag in VECTOR_PROPERTIES]
-        self.assertGreater(len(own), 50)
+    def test_simulate_ultrasound_has_the_settings_of_its_stages(self):
+        """As they describe them: with their labels and tooltips, and all of them, but for what the filter sets."""
+        manager = servermanager.ProxyManager()
+        proxy = manager.NewProxy("filters", "SonoUltrasound")
+        set_here = {"Device", "SelectInputScalars", "PresetFile"}  # formation's device; the labels' array
+        for stage in STAGES:
+            inner = proxy.GetSubProxy(stage)
+            alone = manager.NewProxy(inner.GetXMLGroup(), inner.GetXMLName())
+            for element in described(inner.GetVTKClassName())[1]:
+                name = element.get("name")
+                if element.tag not in VECTOR_PROPERTIES or name in set_here:
+                    continue
+                with self.subTest(stage=stage, property=name):
+                    shown, expected = proxy.GetProperty(name), alone.GetProperty(name)
+                    self.assertIsNotNone(shown)
+                    self.assertEqual(shown.GetXMLLabel(), expected.GetXMLLabel())
+                    self.assertEqual(shown.GetDocumentation().GetDescription(),
+                                     expected.GetDocumentation().GetDescription())
+                    self.assertEqual(shown.GetDomain("range") is None, expected.GetDomain("range") is None)
 
-        def text(element):
-            # Which of them are advanced is this filter's own choice.
-            hidden = ("panel_visibility",) + (("default_values",) if element.get("name") in defaults else ())
-            attributes = {key: value for key, value in element.attrib.items() if key not in hidden}
-            return [element.tag, attributes, (element.text or "").strip(), [text(child) for child in element]]
-
-        for element in own:
-            with self.subTest(property=element.get("name")):
-                if element.get("name") not in ("Seed", "ErrorMap"):  # which seeds two stages, which switches one on
-                    self.assertEqual(text(element), text(theirs[element.get("name")]))
+    def test_simulate_ultrasound_starts_as_in_cpp(self):
+        """The stages that a fresh proxy hands to the filter have the defaults of a fresh filter's own."""
+        proxy, fresh = servermanager.ProxyManager().NewProxy("filters", "SonoUltrasound"), CLASSES["vtkSonoUltrasound"]()
+        proxy.UpdateVTKObjects()
+        differ = set()
+        for stage in STAGES:
+            inner, own = getattr(proxy.GetClientSideObject(), "Get" + stage)(), getattr(fresh, "Get" + stage)()
+            self.assertIsNot(inner, own)
+            alone = CLASSES[own.GetClassName()]()
+            for name in vars(type(own)):
+                if name.startswith("Get") and "Set" + name[3:] in vars(type(own)):
+                    with self.subTest(stage=stage, setting=name[3:]):
+                        self.assertEqual(getattr(inner, name)(), getattr(own, name)())
+                        if name[3:] in exposed():
+                            shown = proxy.GetProperty(name[3:])
+                            self.assertEqual([shown.GetElement(i) for i in range(shown.GetNumberOfElements())],
+                                             values(getattr(own, name)()))
+                    if getattr(own, name)() != getattr(alone, name)():
+                        differ.add(name[3:])
+        self.assertEqual(differ, {"MaxCollisions", "CoherenceMm", "LobeSigmaDeg", "TgcDbPerCm"})
 
     def test_every_filter_is_in_the_ultrasound_menu(self):
         for _, _, description in self.each():

@@ -56,18 +56,18 @@ class TestServer(WithServer):
         self.start(["pvserver", f"--server-port={port}"], port)
 
     def test_simulation_runs_on_the_server(self):
-        thorax = simple.ThoraxPhantom(VoxelSizemm=4)
-        ultrasound = simple.SimulateUltrasound(Input=thorax, NumberofLines=12, Depthmm=90, PathsperLine=20)
+        thorax = simple.ThoraxPhantom(Spacingmm=4)
+        ultrasound = simple.SimulateUltrasound(Input=thorax, LineCount=12, DepthMm=90, PathsPerLine=20)
         field = Fetch(thorax).GetFieldData()
-        self.assertEqual(tuple(ultrasound.Positionmm), field.GetArray("A4CPositionMm").GetTuple3(0))
+        self.assertEqual(tuple(ultrasound.PositionMm), field.GetArray("A4CPositionMm").GetTuple3(0))
         self.assertIsNone(ultrasound.GetClientSideObject())  # it lives on the server
         image = Fetch(ultrasound)
         self.assertGreater(image.GetPointData().GetArray("BMode").GetRange()[1], 200)
         self.assertGreater(Fetch(ultrasound, idx=4).GetNumberOfPoints(), 1000)
         before = image.GetPointData().GetArray("BMode").GetRange(), image.GetNumberOfPoints()
-        ultrasound.GaindB = -200
+        ultrasound.GainDb = -200
         self.assertEqual(Fetch(ultrasound).GetPointData().GetArray("BMode").GetRange(), (0, 1))  # all black
-        ultrasound.GaindB = 0
+        ultrasound.GainDb = 0
         image = Fetch(ultrasound)
         self.assertEqual((image.GetPointData().GetArray("BMode").GetRange(), image.GetNumberOfPoints()), before)
         # As a surface: an image would arrive at the client without the matrix that turns it.
@@ -81,7 +81,7 @@ class TestServer(WithServer):
 
     def test_presets_and_files_are_the_servers(self):
         """A preset is found, and a text written, where the server is."""
-        probe = simple.UltrasoundProbe(Preset="linear_l14")
+        probe = simple.UltrasoundProbe(PresetFile="linear_l14")
         field = Fetch(probe).GetFieldData()
         self.assertEqual(field.GetArray("DepthMm").GetValue(0), 40)
         presets = simple.ProbePresets()

@@ -12,11 +12,11 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 PLUGIN = os.environ["SONOVDB_PLUGIN"]
 simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
-QUICK = {"NumberofLines": 12, "Depthmm": 90, "PathsperLine": 20, "BuildSurfaces": 0}
+QUICK = {"LineCount": 12, "DepthMm": 90, "PathsPerLine": 20, "BuildSurfaces": 0}
 
 
 def make_ultrasound(**settings):
-    thorax = simple.ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
+    thorax = simple.ThoraxPhantom(registrationName="thorax", Spacingmm=4)
     return simple.SimulateUltrasound(registrationName="ultrasound", Input=thorax, **{**QUICK, **settings})
 
 
@@ -31,7 +31,7 @@ def grey(ultrasound):
 
 
 PHASE_BOUNDS = [-145, 145, -105, 105, -124, 124]
-POSE = {"Positionmm": [87, -86, -45], "AxialDirection": [-0.5, 0.65, 0.545], "LateralDirection": [0.84, 0.33, 0.42]}
+POSE = {"PositionMm": [87, -86, -45], "Axial": [-0.5, 0.65, 0.545], "Lateral": [0.84, 0.33, 0.42]}
 
 
 def errors_of(proxy, **settings):
@@ -56,7 +56,7 @@ class TestUltrasound(unittest.TestCase):
             simple.Delete(proxy)
 
     def test_picture_and_the_other_outputs(self):
-        ultrasound = make_ultrasound(NumberofShownPaths=5)
+        ultrasound = make_ultrasound(NumberOfShownPaths=5)
         self.assertGreater(grey(ultrasound).max(), 200)
         self.assertEqual([ultrasound.GetOutputPort(i).GetDataInformation().GetDataSetTypeAsString() for i in range(10)],
                          4 * ["vtkImageData"] + ["vtkMultiBlockDataSet", "vtkPolyData", "vtkPolyData"]
@@ -71,12 +71,12 @@ class TestUltrasound(unittest.TestCase):
     def test_a_new_one_stands_where_the_acoustic_window_is(self):
         ultrasound = make_ultrasound()
         window = Fetch(simple.AcousticWindow(Input=simple.FindSource("thorax"))).GetFieldData()
-        for name, array in (("Positionmm", "ProbePositionMm"), ("AxialDirection", "ProbeAxial"),
-                            ("LateralDirection", "ProbeLateral")):
+        for name, array in (("PositionMm", "ProbePositionMm"), ("Axial", "ProbeAxial"),
+                            ("Lateral", "ProbeLateral")):
             self.assertEqual(tuple(getattr(ultrasound, name)), window.GetArray(array).GetTuple3(0))
 
     def test_a_pose_that_was_given_stays(self):
-        self.assertEqual(list(make_ultrasound(Positionmm=[80, -86, -45]).Positionmm), [80, -86, -45])
+        self.assertEqual(list(make_ultrasound(PositionMm=[80, -86, -45]).PositionMm), [80, -86, -45])
 
     def test_gain_does_not_build_or_trace_again(self):
         ultrasound = make_ultrasound()
@@ -88,19 +88,19 @@ class TestUltrasound(unittest.TestCase):
                     outputs.GetOutputDataObject(3).GetPointData().GetArray("Intensity").GetMTime())
 
         scene_and_lines = made()
-        ultrasound.GaindB = 10
+        ultrasound.GainDb = 10
         self.assertFalse((grey(ultrasound) == before).all())
         self.assertEqual(made(), scene_and_lines)
 
     def test_state_file_brings_the_picture_back(self):
-        before = grey(make_ultrasound(GaindB=3, TGCCurvemmdB=[0, 0, 50, 12], **POSE))
+        before = grey(make_ultrasound(GainDb=3, TgcPoints=[0, 0, 50, 12], **POSE))
         with tempfile.TemporaryDirectory() as folder:
             path = str(pathlib.Path(folder, "ultrasound.pvsm"))
             simple.SaveState(path)
             self.tearDown()
             simple.LoadState(path)
         again = simple.FindSource("ultrasound")
-        self.assertEqual(list(again.Positionmm), POSE["Positionmm"])
+        self.assertEqual(list(again.PositionMm), POSE["PositionMm"])
         self.assertTrue((grey(again) == before).all())
 
     def test_a_named_preset_survives_states_and_traces(self):
@@ -108,18 +108,18 @@ class TestUltrasound(unittest.TestCase):
             return Fetch(simple.FindSource("ultrasound"), idx=5).GetFieldData().GetArray("WidthMm").GetValue(0)
 
         smtrace.start_trace()
-        make_ultrasound(Preset="linear_l14").UpdatePipeline()
+        make_ultrasound(PresetFile="linear_l14").UpdatePipeline()
         texts = [smtrace.stop_trace(), smstate.get_state()]
         self.assertEqual(lines(), 38.7096)
         for text in texts:
             self.tearDown()
             exec(compile(text, "text", "exec"), {})
-            self.assertEqual(simple.FindSource("ultrasound").Preset, "linear_l14")
+            self.assertEqual(simple.FindSource("ultrasound").PresetFile, "linear_l14")
             simple.FindSource("ultrasound").UpdatePipeline()
             self.assertEqual(lines(), 38.7096)
 
     def test_python_state_brings_the_picture_back(self):
-        before = grey(make_ultrasound(GaindB=3, **POSE))
+        before = grey(make_ultrasound(GainDb=3, **POSE))
         state = smstate.get_state()
         self.tearDown()
         exec(compile(state, "state", "exec"), {})
@@ -127,13 +127,13 @@ class TestUltrasound(unittest.TestCase):
 
     def test_trace_replays(self):
         smtrace.start_trace()
-        before = grey(make_ultrasound(GaindB=4, LobeSigmadegrees=8))
+        before = grey(make_ultrasound(GainDb=4, LobeSigmaDeg=8))
         trace = smtrace.stop_trace()
         self.assertIn("SimulateUltrasound", trace)
         self.tearDown()
         exec(compile(trace, "trace", "exec"), {})
         again = simple.FindSource("ultrasound")
-        self.assertEqual((again.GaindB, again.LobeSigmadegrees), (4, 8))
+        self.assertEqual((again.GainDb, again.LobeSigmaDeg), (4, 8))
         self.assertTrue((grey(again) == before).all())
 
     def test_state_file_whose_data_are_gone(self):
@@ -146,7 +146,7 @@ class TestUltrasound(unittest.TestCase):
         on_error.CallDataType = "string0"
         with tempfile.TemporaryDirectory() as folder:
             labels, state = pathlib.Path(folder, "labels.vti"), str(pathlib.Path(folder, "gone.pvsm"))
-            simple.SaveData(str(labels), proxy=simple.ThoraxPhantom(VoxelSizemm=5))
+            simple.SaveData(str(labels), proxy=simple.ThoraxPhantom(Spacingmm=5))
             reader = simple.LabelMapReader(registrationName="labels.vti", FileName=str(labels))
             before = grey(simple.SimulateUltrasound(registrationName="ultrasound", Input=reader, **QUICK))
             simple.SaveState(state)
@@ -170,7 +170,7 @@ class TestUltrasound(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             files = [str(pathlib.Path(folder, f"phase_{i}.vti")) for i in range(2)]
             for file, size in zip(files, (4, 5)):
-                simple.SaveData(file, proxy=simple.ResampleToImage(Input=simple.ThoraxPhantom(VoxelSizemm=size),
+                simple.SaveData(file, proxy=simple.ResampleToImage(Input=simple.ThoraxPhantom(Spacingmm=size),
                                                                    UseInputBounds=0, SamplingBounds=PHASE_BOUNDS,
                                                                    SamplingDimensions=[60, 45, 50]),
                                 PointDataArrays=["Labels"])
@@ -189,7 +189,7 @@ class TestUltrasound(unittest.TestCase):
 
     def test_no_label_map_selected(self):
         """The menus offer the filters only for what can be their input; a script may go without."""
-        for make, setting in ((simple.SimulateUltrasound, "LateralBeamSigmamm"),
+        for make, setting in ((simple.SimulateUltrasound, "LateralSigmaMm"),
                               (simple.AcousticWindow, "CentreFrequencyMHz")):
             simple.SetActiveSource(None)
             (sentence,) = errors_of(make(), **{setting: 2})
@@ -203,14 +203,14 @@ class TestUltrasound(unittest.TestCase):
     def test_switching_the_input(self):
         ultrasound = make_ultrasound()
         first = grey(ultrasound)
-        ultrasound.Input = simple.ThoraxPhantom(VoxelSizemm=5)
+        ultrasound.Input = simple.ThoraxPhantom(Spacingmm=5)
         self.assertFalse((grey(ultrasound) == first).all())
         ultrasound.Input = simple.UltrasoundScene(Input=simple.FindSource("thorax"), BuildSurfaces=0)
         self.assertTrue((grey(ultrasound) == first).all())
 
     def test_first_display_of_the_outputs(self):
         """A bold outline of the probe; paths and hits in colours that lie over 80 dB until a person sets others."""
-        ultrasound = make_ultrasound(NumberofShownPaths=5)
+        ultrasound = make_ultrasound(NumberOfShownPaths=5)
         view = simple.CreateView("RenderView")
         self.addCleanup(simple.Delete, view)  # the animation would render it
 

@@ -69,7 +69,7 @@ class GuiCase(unittest.TestCase):
     def label_map(self, folder):
         """A thorax that is quick to show, as a file that ParaView opens itself."""
         path = str(pathlib.Path(folder, "thorax.vti"))
-        self.run_script("SaveData(sys.argv[1], proxy=ThoraxPhantom(VoxelSizemm=4))", folder, path)
+        self.run_script("SaveData(sys.argv[1], proxy=ThoraxPhantom(Spacingmm=4))", folder, path)
         return path
 
     def play(self, name, folder, *arguments):

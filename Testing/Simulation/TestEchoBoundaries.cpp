@@ -91,7 +91,7 @@ TEST(EchoBoundary, OfATracedMirrorHasItsReflectionCoefficientAndPlace)
               [](const Vec3d& p) { return p.z < 30.0 ? 0 : 1; });
   TraceSettings tracing;
   tracing.deterministic = true;
-  tracing.lobeSigmaRad = 0.0;
+  tracing.lobeSigmaDeg = 0.0;
   tracing.depthMm = 55.0;
   EchoSettings s;
   s.depthMm = 55.0;

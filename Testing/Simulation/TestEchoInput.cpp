@@ -42,10 +42,10 @@ TEST(EchoInput, EachBadParameterIsNamed)
     { &EchoSettings::fractionalBandwidth, { 0.0, -0.1, 2.0, nan }, "fractional bandwidth" },
     { &EchoSettings::samplingMHz, { 0.0, 5.0, 4.9, 1e9, nan }, "sampling frequency" }, // 2.5 MHz needs more than 5
     { &EchoSettings::depthMm, { 0.0, -10.0, 1e6, nan }, "depth" },
-    { &EchoSettings::lateralSigmaMm, { 0.0, -1.0, 1e3, nan }, "lateral beam sigma" },
-    { &EchoSettings::elevationalSigmaMm, { 0.0, -1.0, 1e3, nan }, "elevational beam sigma" },
-    { &EchoSettings::scattererCellMm, { 0.0, -1.0, 1e-3, nan }, "scatterer cell" },
-    { &EchoSettings::scattererLevelDb, { nan, INFINITY, 1e3 }, "scatterer level" },
+    { &EchoSettings::lateralSigmaMm, { 0.0, -1.0, 1e3, nan }, "lateralSigmaMm" },
+    { &EchoSettings::elevationalSigmaMm, { 0.0, -1.0, 1e3, nan }, "elevationalSigmaMm" },
+    { &EchoSettings::scattererCellMm, { 0.0, -1.0, 1e-3, nan }, "scattererCellMm" },
+    { &EchoSettings::scattererLevelDb, { nan, INFINITY, 1e3 }, "scattererLevelDb" },
   };
   for (const Case& c : cases)
   {

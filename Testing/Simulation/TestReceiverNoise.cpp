@@ -121,6 +121,7 @@ TEST(BModeNoise, IsOffUntilAskedFor)
   const auto without = makeBMode(envelope, 5, 1000, 0.1, settings).grey;
   settings.noiseSeed = 99;
   EXPECT_EQ(makeBMode(envelope, 5, 1000, 0.1, settings).grey, without);
+  settings.addNoise = true;
   settings.noiseDb = -30.0;
   EXPECT_NE(makeBMode(envelope, 5, 1000, 0.1, settings).grey, without);
 }
@@ -130,6 +131,7 @@ TEST(BModeNoise, GainLiftsTheFloorWithDepth)
   BModeSettings settings = plainSettings();
   settings.tgcDbPerCm = 2.0;
   settings.dynamicRangeDb = 120.0; // nothing is clipped
+  settings.addNoise = true;
   settings.noiseDb = -50.0;
   const auto grey = makeBMode(std::vector<float>(400 * 1000, 0.0f), 400, 1000, 0.1, settings).grey;
   // E[20 log10 |n|] of Rayleigh noise: its power's level less 10 log10(e) times Euler's constant, 2.507 dB

@@ -153,7 +153,7 @@ TEST(BoundaryHits, LieOnASphere)
   }
   TraceSettings s = plainSettings();
   s.depthMm = 75.0;
-  s.lobeSigmaRad = 0.0; // mirrored or refracted: no path grazes the surface, where the cells' steps hide it
+  s.lobeSigmaDeg = 0.0; // mirrored or refracted: no path grazes the surface, where the cells' steps hide it
   int count = 0;
   double offset = 0.0;
   double degrees = 0.0;

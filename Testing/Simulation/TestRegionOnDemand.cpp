@@ -98,7 +98,7 @@ TEST(RegionOnDemand, PathsMeetAFewOfTheRecordsAndGiveTheSameBits)
   const auto scene = makeBusyScene();
   TraceSettings settings = busySettings();
   settings.pathsPerLine = 8;
-  settings.lobeSigmaRad = 0.05;
+  settings.lobeSigmaDeg = 0.05 * 180.0 / M_PI;
   const auto lines = fan(5);
   const TracedLines onDemand = trace(*scene, lines, settings);
   const TraceSetup setup(*scene, lines, settings, {}, {}, Records::OnDemand);

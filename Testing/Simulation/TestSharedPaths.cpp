@@ -103,7 +103,7 @@ TEST(SharedPaths, KeepTheMeanOfIndependentOnes)
     for (const bool target : { false, true })
     {
       TraceSettings s = busySettings();
-      s.lobeSigmaRad = sigma;
+      s.lobeSigmaDeg = sigma * 180.0 / M_PI;
       const std::vector<TargetSurface> targets =
         target ? std::vector<TargetSurface>{ boneBox() } : std::vector<TargetSurface>{};
       s.sampling = Sampling::Independent;
@@ -125,7 +125,7 @@ TEST(SharedPaths, KeepTheEchoesOfIndependentOnes)
   const auto scene = makeBusyScene();
   const auto lines = fan(20);
   TraceSettings s = busySettings();
-  s.lobeSigmaRad = 0.03;
+  s.lobeSigmaDeg = 0.03 * 180.0 / M_PI;
   s.frequencyMHz = 0.05;
   s.sampling = Sampling::Independent;
   s.pathsPerLine = 2000;
@@ -161,7 +161,7 @@ TEST(SharedPaths, WhatCannotBeSharedIsLowDiscrepancy)
 {
   const auto scene = makeBusyScene();
   TraceSettings mirror = busySettings();
-  mirror.lobeSigmaRad = 0.0;
+  mirror.lobeSigmaDeg = 0.0;
   TraceSettings amadou = busySettings();
   amadou.model = InterfaceModel::Amadou2024;
   TraceSettings deterministic = busySettings();

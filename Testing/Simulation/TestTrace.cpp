@@ -40,7 +40,7 @@ TraceSettings straightSettings(double depthMm, double frequencyMHz)
   TraceSettings s;
   s.deterministic = true;
   s.maxCollisions = 20;
-  s.lobeSigmaRad = 0.0;
+  s.lobeSigmaDeg = 0.0;
   s.depthMm = depthMm;
   s.frequencyMHz = frequencyMHz;
   return s;
@@ -169,7 +169,7 @@ TEST(TraceSkips, EqualAcousticsAreNoBoundary)
     { 30.0, 30.0 });
   TraceSettings s = straightSettings(90.0, 2.0);
   s.deterministic = false;
-  s.lobeSigmaRad = 0.78;
+  s.lobeSigmaDeg = 0.78 * 180.0 / M_PI;
   s.pathsPerLine = 8;
   const auto traced = trace(*stack.scene, { makeLine({ 20.3, 20.2, 0.0 }, { 0, 0, 1 }) }, s);
   const double r = 75.125;

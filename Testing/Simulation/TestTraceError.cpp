@@ -172,7 +172,7 @@ TEST(TraceError, ATraceOfManyLikePathsIsThatOfAFew)
   s.radialBinMm = 1.0;
   s.coherenceMm = 1e6;
   s.frequencyMHz = 2.0;
-  s.lobeSigmaRad = 1e-4; // for shared paths it must not be 0
+  s.lobeSigmaDeg = 1e-4 * 180.0 / M_PI; // for shared paths it must not be 0
   for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::SharedPaths })
   {
     s.sampling = sampling;

@@ -233,8 +233,8 @@ TEST(TraceStress, SettingsAtTheirLimits)
   {
     for (const double mean : { 0.0, -50.0, 1.5, 50.0 })
     {
-      s.lobeSigmaRad = sigma;
-      s.lobeMeanRad = mean;
+      s.lobeSigmaDeg = sigma * 180.0 / M_PI;
+      s.lobeMeanDeg = mean * 180.0 / M_PI;
       traceBoth(*scene, lines, s, "lobe " + std::to_string(sigma) + " " + std::to_string(mean));
     }
   }
@@ -275,8 +275,8 @@ TEST(TraceStress, APathTrappedBetweenTwoBoundariesEnds)
   s.maxCollisions = 1000;
   s.depthMm = 1000.0;
   s.radialBinMm = 10.0;
-  s.lobeMinRad = 0.01;
-  s.lobeMaxRad = 0.02;
+  s.lobeMinDeg = 0.01 * 180.0 / M_PI;
+  s.lobeMaxDeg = 0.02 * 180.0 / M_PI;
   const TracedLines traced = trace(*scene, { makeLine({ 40.3, 40.2, 0.0 }, { 0, 0, 1 }) }, s);
   expectSane(traced, s, "trapped");
   expectBoundedPieces(traced, s);
@@ -336,8 +336,8 @@ void traceRandomScene(unsigned seed, int& met)
   s.maxCollisions = whole(0, 30);
   s.coherenceMm = whole(0, 3) ? uniform(0.0, 10.0) : 0.0;
   s.deterministic = whole(0, 5) == 0;
-  s.lobeSigmaRad = whole(0, 3) ? std::pow(10.0, uniform(-4.0, 1.0)) : 0.0;
-  s.lobeMeanRad = uniform(-1.0, 2.0);
+  s.lobeSigmaDeg = whole(0, 3) ? std::pow(10.0, uniform(-4.0, 1.0)) * 180.0 / M_PI : 0.0;
+  s.lobeMeanDeg = uniform(-1.0, 2.0) * 180.0 / M_PI;
   s.depthMm = std::min(1000.0, uniform(0.2, 2.5) * glm::length(extent));
   s.radialBinMm = s.depthMm / whole(1, 60);
   s.echoSampleMm = s.depthMm / whole(1, 300);

@@ -397,7 +397,7 @@ TEST(ProbePreset, MatrixAndRadial)
   EXPECT_EQ(volume.totalLineCount(), 64 * 48);
   EXPECT_EQ(volume.elevationSectorDeg, 50.0);
   write("matrix", entry("sectorDeg", "70") + entry("numberOfElevations", "2000") + entry("elevationSectorDeg", "50"));
-  expectContains(errorOf([&] { readProbePreset(path); }), "from 1 to 1024");
+  expectContains(errorOf([&] { readProbePreset(path); }), "between 1 and 65536");
   write("radial", entry("sectorDeg", "360") + entry("radiusMm", "1.2"));
   const ScanGeometry ring = readProbePreset(path).geometry;
   EXPECT_EQ(ring.kind, ScanKind::Radial);

@@ -79,24 +79,16 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
       { array(scene.localFromWorld(line.originMm) - corner), array(scene.rotationToLocal() * line.axis) });
   }
   input.outsideTissue = scene.outsideIndex();
-  input.model = int(tracing.model);
-  input.lobeMean = tracing.lobeMeanRad;
-  input.lobeSigma = tracing.lobeSigmaRad;
-  input.lobeMin = tracing.lobeMinRad;
-  input.lobeMax = tracing.lobeMaxRad;
+  TraceSettings::visit(tracing, [&input](const auto& value, const Parameter& parameter) {
+    input.settings[parameter.name] = numberOf(value);
+  });
   input.lowDiscrepancy = tracing.sampling != Sampling::Independent;
   input.sharedPaths = tracing.sampling == Sampling::SharedPaths && canSharePaths(setup.view);
-  input.deterministic = tracing.deterministic;
-  input.maxCollisions = tracing.maxCollisions;
-  input.rouletteIntensity = tracing.deterministic ? 0.0 : std::pow(10.0, tracing.rouletteDb / 20.0);
-  input.coherenceMm = tracing.coherenceMm;
   input.depthMm = tracing.depthMm;
-  input.binMm = tracing.radialBinMm;
   input.binCount = tracing.binCount();
   input.echoSampleMm = tracing.echoSampleMm;
   input.echoCount = tracing.echoCount();
   input.frequencyMHz = tracing.frequencyMHz;
-  input.seed = tracing.seed;
   input.paths = setup.paths;
   return input;
 }

@@ -26,15 +26,19 @@ kernel::TraceView makeView(const DoubleInput& input, const std::vector<kernel::T
   view.media = media.data();
   view.firstTargetMedium = input.firstTargetMedium;
   view.outsideTissue = input.outsideTissue;
-  view.rouletteIntensity = input.rouletteIntensity;
-  view.model = kernel::InterfaceModel(input.model);
-  view.lobe = kernel::makeLobe(input.lobeMean, input.lobeSigma, input.lobeMin, input.lobeMax);
+  const auto setting = [&input](const char* name) { return input.settings.at(name); };
+  const auto radians = [&setting](const char* name) { return setting(name) * M_PI / 180.0; };
+  const bool deterministic = setting("deterministic") != 0.0;
+  view.rouletteIntensity = deterministic ? 0.0 : std::pow(10.0, setting("rouletteDb") / 20.0);
+  view.model = kernel::InterfaceModel(int(setting("interfaceModel")));
+  view.lobe =
+    kernel::makeLobe(radians("lobeMeanDeg"), radians("lobeSigmaDeg"), radians("lobeMinDeg"), radians("lobeMaxDeg"));
   view.lowDiscrepancy = input.lowDiscrepancy;
-  view.deterministic = input.deterministic;
-  view.maxCollisions = input.maxCollisions;
-  view.coherenceMm = input.coherenceMm;
+  view.deterministic = deterministic;
+  view.maxCollisions = int(setting("maxCollisions"));
+  view.coherenceMm = setting("coherenceMm");
   view.depthMm = input.depthMm;
-  view.seed = input.seed;
+  view.seed = std::uint64_t(std::int64_t(setting("pathSeed")));
   return view;
 }
 
@@ -58,7 +62,7 @@ Space makeSpace(const DoubleInput& input, const std::vector<kernel::BvhNode>& no
 void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Space& space,
                const kernel::TraceLine& line, int index, kernel::TracedLines& out)
 {
-  kernel::LineTally tally(input.binCount, input.binMm, input.echoCount, input.echoSampleMm,
+  kernel::LineTally tally(input.binCount, input.settings.at("radialBinMm"), input.echoCount, input.echoSampleMm,
                           input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
   tally.start(line, view.coherenceMm);
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
@@ -122,7 +126,7 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   const Space space = makeSpace(input, nodes, triangles);
   kernel::TracedLines out;
   out.lineCount = int(lines.size());
-  out.binMm = input.binMm;
+  out.binMm = input.settings.at("radialBinMm");
   out.binCount = input.binCount;
   out.echoSampleMm = input.echoSampleMm;
   out.echoCount = input.echoCount;

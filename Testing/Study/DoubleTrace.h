@@ -3,6 +3,8 @@
 #include <array>
 #include <complex>
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace sono::study {
@@ -48,24 +50,14 @@ struct DoubleInput
   std::vector<Triangle> triangles;
   std::vector<Line> lines;
   int outsideTissue;
-  int model; ///< InterfaceModel
-  double lobeMean;
-  double lobeSigma;
-  double lobeMin;
-  double lobeMax;
+  std::map<std::string, double> settings; ///< the tracer's parameters by their names
   bool lowDiscrepancy;
   bool sharedPaths;
-  bool deterministic;
-  int maxCollisions;
-  double rouletteIntensity;
-  double coherenceMm;
   double depthMm;
-  double binMm;
   int binCount;
   double echoSampleMm;
   int echoCount;
   double frequencyMHz;
-  std::uint64_t seed;
   int paths;
 };
 

@@ -179,7 +179,7 @@ std::vector<HardScene> makeHardScenes()
     { "none", "a4c, lobe of 6 degrees, 20 collisions, C0 20 mm",
       bundled("a4c",
               [](TraceSettings& t) {
-                t.lobeSigmaRad = 0.1047;
+                t.lobeSigmaDeg = 6.0;
                 t.maxCollisions = 20;
                 t.coherenceMm = 20.0;
               }) },

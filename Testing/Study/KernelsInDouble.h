@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/Error.h"
 #include "Core/ParallelFor.h"
 #include "Core/Progress.h"
 #include "Core/Simd.h"
@@ -18,9 +19,12 @@
 #include <complex>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 // The kernels' own source with every float a double, under another name, so that both can be linked. The numbers that
@@ -28,6 +32,7 @@
 // holds a float.
 
 namespace sonoInDouble {
+using ::sono::Error;
 using ::sono::parallelFor;
 using ::sono::partOf;
 using ::sono::Progress;

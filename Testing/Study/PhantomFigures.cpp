@@ -53,7 +53,7 @@ HeartView ownView(bool quick)
 {
   HeartView view = seedView(quick);
   view.tracing.model = InterfaceModel::Acoustic;
-  view.tracing.lobeSigmaRad = 6.0 * M_PI / 180.0;
+  view.tracing.lobeSigmaDeg = 6.0;
   view.tracing.maxCollisions = 20;
   return view;
 }
@@ -230,7 +230,7 @@ ObjectView viewObject(TestObject object, double lobeSigmaDeg, bool quick)
   ObjectView view{ sceneOf(makeTestObject(object, settings)), phantomImaging(quick ? 32 : 128), {} };
   PhantomImaging& imaging = view.imaging;
   imaging.geometry.depthMm = imaging.tracing.depthMm = imaging.echo.depthMm = 110.0;
-  imaging.tracing.lobeSigmaRad = lobeSigmaDeg * M_PI / 180.0;
+  imaging.tracing.lobeSigmaDeg = lobeSigmaDeg;
   imaging.bmode.tgcDbPerCm = 3.6;
   imaging.bmode.automaticReference = true;
   const auto lines = makeScanLines(imaging.geometry, ProbePose{});

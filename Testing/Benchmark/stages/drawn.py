@@ -17,7 +17,7 @@ BODY = ("pqClientMainWindow/centralwidget/MultiViewWidget/CoreWidget/qt_tabwidge
 SCRIPT = """
 from paraview import servermanager, simple
 import os, time
-thorax = simple.ThoraxPhantom(VoxelSizemm=1)
+thorax = simple.ThoraxPhantom(Spacingmm=1)
 simple.SetActiveSource(thorax)
 drawn = open(os.environ["SONOVDB_DRAWN"], "w", buffering=1)
 watched = set()

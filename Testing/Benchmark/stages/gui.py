@@ -18,8 +18,8 @@ def drag(name, probe, picture, skin):
     def show(preview):
         """One picture at the pose of the hand, as the probe's panel asks for it; the seconds that it took."""
         start = time.perf_counter()
-        probe.Positionmm, probe.AxialDirection, probe.LateralDirection = (
-            hand.GetPositionMm(), hand.GetAxial(), hand.GetLateral())
+        for name in ("PositionMm", "Axial", "Lateral"):
+            probe.GetProperty(name).SetData(getattr(hand, "Get" + name)())
         probe.Preview = preview
         picture.UpdatePipeline()
         if picture.GetDataInformation().GetPointDataInformation().GetArrayInformation("BMode") is None:
@@ -48,7 +48,7 @@ def drag(name, probe, picture, skin):
 
 
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
-thorax = simple.ThoraxPhantom(VoxelSizemm=1)
+thorax = simple.ThoraxPhantom(Spacingmm=1)
 scene = simple.UltrasoundScene(Input=thorax)
 posed = simple.UltrasoundProbe()
 bmode = simple.UltrasoundBMode(Input=simple.UltrasoundImageFormation(

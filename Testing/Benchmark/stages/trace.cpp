@@ -253,7 +253,7 @@ void measureTrace()
   TraceSettings example = a4cSettings(); // of Plugin/examples/simulate.py
   example.maxCollisions = 20;
   example.coherenceMm = 20.0;
-  example.lobeSigmaRad = 6.0 * 3.14159265358979 / 180.0;
+  example.lobeSigmaDeg = 6.0;
   printErrorCurve(*scene, third, example, "trace_example");
 }
 

@@ -4,10 +4,10 @@ from paraview.simple import _DisableFirstRenderCameraReset
 
 _DisableFirstRenderCameraReset()
 view = GetActiveViewOrCreate("RenderView")
-thorax = ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
-ultrasound = SimulateUltrasound(registrationName="ultrasound", Input=thorax, NumberofLines=48, PathsperLine=20,
-                                BuildSurfaces=0, Positionmm=(0, 0, 0), AxialDirection=(0, 1, 0),
-                                LateralDirection=(1, 0, 0))
+thorax = ThoraxPhantom(registrationName="thorax", Spacingmm=4)
+ultrasound = SimulateUltrasound(registrationName="ultrasound", Input=thorax, LineCount=48, PathsPerLine=20,
+                                BuildSurfaces=0, PositionMm=(0, 0, 0), Axial=(0, 1, 0),
+                                Lateral=(1, 0, 0))
 line = ALine(registrationName="line", Input=OutputPort(ultrasound, 3), Line=3)
 line.UpdatePipeline()
 Show(OutputPort(ultrasound, 0), view)

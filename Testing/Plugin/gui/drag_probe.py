@@ -2,8 +2,8 @@
 from paraview.simple import *
 
 view = GetActiveViewOrCreate("RenderView")
-scene = UltrasoundScene(registrationName="scene", Input=ThoraxPhantom(registrationName="thorax", VoxelSizemm=4))
-probe = UltrasoundProbe(registrationName="probe", NumberofLines=48)
+scene = UltrasoundScene(registrationName="scene", Input=ThoraxPhantom(registrationName="thorax", Spacingmm=4))
+probe = UltrasoundProbe(registrationName="probe", LineCount=48)
 traced = UltrasoundRayTracer(registrationName="traced", Scene=scene, Probe=probe, PathsperLine=100)
 rf = UltrasoundImageFormation(registrationName="rf", Input=traced)
 picture = ScanConverter(registrationName="picture", Input=UltrasoundBMode(registrationName="bmode", Input=rf))

@@ -1,4 +1,4 @@
 """A probe whose preset is named, as ParaView's --script."""
 from paraview.simple import *
 
-SetActiveSource(UltrasoundProbe(Preset="linear_l14"))
+SetActiveSource(UltrasoundProbe(PresetFile="linear_l14"))

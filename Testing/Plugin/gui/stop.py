@@ -2,8 +2,8 @@
 from paraview.simple import *
 
 view = GetActiveViewOrCreate("RenderView")
-thorax = ThoraxPhantom(registrationName="thorax", VoxelSizemm=4)
-ultrasound = SimulateUltrasound(registrationName="ultrasound", Input=thorax, NumberofLines=48, PathsperLine=100,
+thorax = ThoraxPhantom(registrationName="thorax", Spacingmm=4)
+ultrasound = SimulateUltrasound(registrationName="ultrasound", Input=thorax, LineCount=48, PathsPerLine=100,
                                 BuildSurfaces=0)
 Show(OutputPort(ultrasound, 0), view)
 view.OrientationAxesVisibility = 0

@@ -1,0 +1,7 @@
+#include "SonoParameters.h"
+
+namespace sono {
+
+ParameterSet::~ParameterSet() = default;
+
+} // namespace sono
