@@ -44,6 +44,20 @@ add_custom_command(
   VERBATIM)
 add_custom_target(PublicHeaders ALL DEPENDS "${public_header_list}")
 
+# The same headers as pages; a wrong word in a comment fails them.
+find_program(DOXYGEN_EXECUTABLE doxygen)
+if(DOXYGEN_EXECUTABLE)
+  configure_file(Doxyfile.in "${CMAKE_CURRENT_BINARY_DIR}/Doxyfile" @ONLY)
+  add_custom_target(docs
+    COMMAND "${DOXYGEN_EXECUTABLE}" "${CMAKE_CURRENT_BINARY_DIR}/Doxyfile"
+    DEPENDS PublicHeaders
+    VERBATIM)
+  if(SONOVDB_BUILD_TESTING)
+    add_test(NAME Docs.Doxygen COMMAND "${DOXYGEN_EXECUTABLE}" "${CMAKE_CURRENT_BINARY_DIR}/Doxyfile")
+    set_tests_properties(Docs.Doxygen PROPERTIES LABELS fast)
+  endif()
+endif()
+
 target_compile_features(Simulation PUBLIC cxx_std_17)
 install(TARGETS Simulation
   EXPORT SonoVDBSimulation
