@@ -35,6 +35,9 @@ paraview_plugin_scan(
   HIDE_PLUGINS_FROM_CACHE ON)
 paraview_plugin_build(
   PLUGINS ${sono_plugins}
+  AUTOLOAD ${sono_plugins}
+  PLUGINS_COMPONENT runtime
+  TARGET_COMPONENT runtime
   PLUGINS_FILE_NAME "sonovdb.xml"
   LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
   DISABLE_XML_DOCUMENTATION OFF)
@@ -43,4 +46,5 @@ install(PROGRAMS
   "${CMAKE_SOURCE_DIR}/Plugin/examples/plain_vtk.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/state.py"
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples")
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples"
+  COMPONENT data)
