@@ -3,7 +3,7 @@
 enable_language(C) # which FindMPI asks for, inside ParaView's package
 find_package(ParaView 5.11 REQUIRED)
 
-# lib/python3/dist-packages/sonovdb and lib/paraview-5.11/plugins/SonoVDB lie three folders below the prefix.
+# The plugin lies three folders below the libraries, lib/python3/dist-packages/sonovdb four below the prefix.
 list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../../.." "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
 
 vtk_module_scan(
@@ -24,9 +24,9 @@ vtk_module_wrap_python(
   MODULES ${sono_modules}
   TARGET SonoVDB::Python
   PYTHON_PACKAGE sonovdb
+  INSTALL_HEADERS OFF # there is one, Python.h of all names, for static modules only
   MODULE_DESTINATION "${sono_python_dir}"
-  INSTALL_EXPORT SonoVDB
-  CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/sonovdb")
+  INSTALL_EXPORT SonoVDB)
 
 paraview_plugin_scan(
   PLUGIN_FILES "${CMAKE_SOURCE_DIR}/Plugin/paraview.plugin"
@@ -35,6 +35,9 @@ paraview_plugin_scan(
   HIDE_PLUGINS_FROM_CACHE ON)
 paraview_plugin_build(
   PLUGINS ${sono_plugins}
+  AUTOLOAD ${sono_plugins}
+  PLUGINS_COMPONENT runtime
+  TARGET_COMPONENT runtime
   PLUGINS_FILE_NAME "sonovdb.xml"
   LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
   DISABLE_XML_DOCUMENTATION OFF)
@@ -43,4 +46,5 @@ install(PROGRAMS
   "${CMAKE_SOURCE_DIR}/Plugin/examples/plain_vtk.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/state.py"
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples")
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples"
+  COMPONENT data)

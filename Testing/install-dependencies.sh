@@ -20,7 +20,7 @@ packages=(
 if [[ ${1:-} == tests ]]; then
   packages+=(
     libgtest-dev libbenchmark-dev libopenimageio-dev libopenvdb-tools xvfb openmpi-bin python3-mpi4py python3-xlib
-    clang-format
+    clang-format doxygen
   )
 fi
 

@@ -2,8 +2,8 @@
 
     /usr/bin/python3 plain_vtk.py [label map] [image.png]
 
-Without a label map it scans the bundled thorax. Python finds the module sonovdb in lib/python3/dist-packages below the
-place where SonoVDB is built or installed.
+Without a label map it scans the bundled thorax. Python finds the module sonovdb where SonoVDB's Debian package is
+installed; else set PYTHONPATH to lib/python3/dist-packages below the place where it is built or installed.
 """
 import sys
 

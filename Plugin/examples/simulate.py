@@ -22,8 +22,8 @@ except ImportError as error:
                      f"({sys.executable}): start the example with pvpython.") from None
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--plugin", help="the plugin's library; or set SONOVDB_PLUGIN", default=os.environ.get(
-    "SONOVDB_PLUGIN", "/usr/local/lib/paraview-5.11/plugins/SonoVDB/SonoVDB.so"))
+parser.add_argument("--plugin", default=os.environ.get("SONOVDB_PLUGIN"),
+                    help="SonoVDB.so; or set SONOVDB_PLUGIN. Needless where SonoVDB's Debian package is installed")
 parser.add_argument("--labels", help="label map: .nii, .nii.gz, .nrrd, .seg.nrrd or .vti; needs --pose")
 parser.add_argument("--pose", help="where the probe stands: file.json or file.json:NAME")
 parser.add_argument("--output", default="ultrasound.png", help="picture, in any format that OpenImageIO writes")
@@ -67,7 +67,10 @@ def save(image, path):
         subprocess.run(["oiiotool", "--nosoftwareattrib", grey.name, "-o", path], check=True)
 
 
-LoadPlugin(args.plugin, remote=False, ns=globals())
+if args.plugin:
+    LoadPlugin(args.plugin, remote=False, ns=globals())
+elif "LabelMapReader" not in globals():
+    parser.error("ParaView has not loaded SonoVDB by itself: name SonoVDB.so with --plugin")
 anatomy = timed(LabelMapReader(FileName=args.labels) if args.labels else ThoraxPhantom(Spacingmm=args.spacing))
 pose = pose_of(anatomy)
 probe = UltrasoundProbe(Positionmm=pose["position"], Axial=pose["axial"], Lateral=pose["lateral"],

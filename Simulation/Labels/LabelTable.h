@@ -18,9 +18,9 @@ namespace sono {
 /// Throws Error naming file and line for one that is missing or not of these forms.
 std::vector<LabelInfo> readLabels(const std::string& path);
 
-/// The table that belongs to the label map `<stem><ending>`: `<stem>.csv`, .label, .ctbl or .txt; else
-/// `<start>_labels` with these endings, where <stem> begins with <start>_; else `labels` with these endings. A file
-/// that holds no labels is passed over. Empty when there is none.
+/// The table that belongs to the label map STEM.nii (or with another ending): STEM.csv, .label, .ctbl or .txt; else
+/// START_labels with these endings, where STEM begins with START_; else `labels` with these endings. A file that holds
+/// no labels is passed over. Empty when there is none.
 std::string labelTableBeside(const std::string& stem);
 
 } // namespace sono
