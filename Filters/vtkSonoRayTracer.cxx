@@ -175,7 +175,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const std::string warning = probe.preview ? std::string() : sono::probeContactWarning(*scene, scanLines);
     if (!warning.empty())
     {
-      vtkWarningMacro(<< warning);
+      sono::warn(this, warning);
     }
     const sono::TracedLines traced = sono::trace(*scene, scanLines, settings, sono::progressOf(this), targets);
     if (!probe.preview)
