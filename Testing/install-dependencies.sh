@@ -13,7 +13,7 @@ packages=(
   libfreetype-dev
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libopenvdb-tools libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
-  nlohmann-json3-dev zlib1g-dev
+  nlohmann-json3-dev libpugixml-dev zlib1g-dev
   # tests
   libgtest-dev libbenchmark-dev libopenimageio-dev openimageio-tools xvfb openmpi-bin python3-mpi4py python3-xlib
 )
