@@ -77,11 +77,11 @@ class TestOutputs(unittest.TestCase):
         lateral -= (lateral @ axial) * axial
         lateral /= np.linalg.norm(lateral)
         for index in ((0, 0), (100, 30), (17, 200)):
-            at_mm, at_cm = [0.0] * 3, [0.0] * 3
-            image.TransformContinuousIndexToPhysicalPoint(*index, 0, at_mm)
-            flat.TransformContinuousIndexToPhysicalPoint(*index, 0, at_cm)
-            np.testing.assert_allclose(position + 10 * (at_cm[0] * lateral + at_cm[1] * axial), at_mm, atol=1e-9)
-            self.assertAlmostEqual(at_cm[2], 0)
+            in_world, in_flat = [0.0] * 3, [0.0] * 3
+            image.TransformContinuousIndexToPhysicalPoint(*index, 0, in_world)
+            flat.TransformContinuousIndexToPhysicalPoint(*index, 0, in_flat)
+            np.testing.assert_allclose(position + in_flat[0] * lateral + in_flat[1] * axial, in_world, atol=1e-9)
+            self.assertAlmostEqual(in_flat[2], 0)
 
     def test_black_is_one_inside_and_zero_outside(self):
         image = self.filter.GetOutputDataObject(IMAGE)
