@@ -14,8 +14,10 @@ packages=(
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libopenvdb-tools libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
   nlohmann-json3-dev libpugixml-dev zlib1g-dev
+  # the pictures that it writes
+  libopenimageio-dev
   # tests
-  libgtest-dev libbenchmark-dev libopenimageio-dev openimageio-tools xvfb openmpi-bin python3-mpi4py python3-xlib
+  libgtest-dev libbenchmark-dev openimageio-tools xvfb openmpi-bin python3-mpi4py python3-xlib
 )
 
 fail()

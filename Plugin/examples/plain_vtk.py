@@ -8,9 +8,8 @@ place where SonoVDB is built or installed.
 import sys
 
 import paraview  # noqa: F401  (only so that Debian's VTK is found, which comes with ParaView)
-from sonovdb.vtkSonoFilters import vtkSonoAcousticWindow, vtkSonoLabelMapReader, vtkSonoThoraxSource, vtkSonoUltrasound
-from vtkmodules.vtkImagingCore import vtkImageFlip
-from vtkmodules.vtkIOImage import vtkPNGWriter
+from sonovdb.vtkSonoFilters import (vtkSonoAcousticWindow, vtkSonoLabelMapReader, vtkSonoPictureWriter,
+                                    vtkSonoThoraxSource, vtkSonoUltrasound)
 
 if len(sys.argv) > 1:
     labels = vtkSonoLabelMapReader()
@@ -32,11 +31,8 @@ ultrasound.SetLateral(*pose.GetArray("ProbeLateral").GetTuple3(0))
 ultrasound.SetDepthMm(160)
 ultrasound.SetGainDb(3)
 
-upright = vtkImageFlip()  # PNG begins with its last row
-upright.SetInputConnection(ultrasound.GetOutputPort(vtkSonoUltrasound.FLAT_IMAGE))
-upright.SetFilteredAxis(1)
-writer = vtkPNGWriter()
-writer.SetInputConnection(upright.GetOutputPort())
+writer = vtkSonoPictureWriter()
+writer.SetInputConnection(ultrasound.GetOutputPort(vtkSonoUltrasound.FLAT_IMAGE))
 writer.SetFileName(sys.argv[2] if len(sys.argv) > 2 else "ultrasound.png")
 writer.Write()
 print("Wrote", writer.GetFileName())
