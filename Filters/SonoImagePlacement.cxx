@@ -9,7 +9,7 @@ namespace sono {
 
 Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose, bool isVolume)
 {
-  const Vec3d from = (worldMm - pose.positionMm) / 10.0;
+  const Vec3d from = worldMm - pose.positionMm;
   const double axial = glm::dot(from, pose.axial);
   const double elevation = glm::dot(from, glm::cross(pose.axial, pose.lateral));
   return { glm::dot(from, pose.lateral), isVolume ? elevation : axial, isVolume ? axial : elevation };
@@ -17,26 +17,26 @@ Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose, bool isVolume)
 
 ImagePlacement::ImagePlacement(const PlaneImage& plane, const ProbePose& pose)
   : size_(plane.width, plane.height, 1)
-  , pixel_(plane.pixelMm)
-  , origin_(pose.positionMm + plane.lateralMinMm * pose.lateral + plane.axialMinMm * pose.axial)
+  , pixelMm_(plane.pixelMm)
+  , originMm_(pose.positionMm + plane.lateralMinMm * pose.lateral + plane.axialMinMm * pose.axial)
 {
   setColumns(pose.lateral, pose.axial, glm::cross(pose.axial, pose.lateral));
 }
 
 ImagePlacement::ImagePlacement(const VolumeImage& volume, const ProbePose& pose)
   : size_(volume.size)
-  , pixel_(volume.voxelMm)
+  , pixelMm_(volume.voxelMm)
 {
   const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
-  origin_ = pose.positionMm + volume.minMm.x * pose.lateral + volume.minMm.y * elevation + volume.minMm.z * pose.axial;
+  originMm_ =
+    pose.positionMm + volume.minMm.x * pose.lateral + volume.minMm.y * elevation + volume.minMm.z * pose.axial;
   setColumns(pose.lateral, elevation, pose.axial);
 }
 
 ImagePlacement ImagePlacement::flat(const ProbePose& pose) const
 {
   ImagePlacement result = *this;
-  result.pixel_ = pixel_ / 10.0;
-  result.origin_ = flatFromWorld(origin_, pose, size_.z > 1);
+  result.originMm_ = flatFromWorld(originMm_, pose, size_.z > 1);
   result.setColumns({ 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 });
   return result;
 }
@@ -44,9 +44,9 @@ ImagePlacement ImagePlacement::flat(const ProbePose& pose) const
 void ImagePlacement::announce(int scalarType, vtkInformation* outInfo) const
 {
   const int extent[6] = { 0, size_.x - 1, 0, size_.y - 1, 0, size_.z - 1 };
-  const double spacing[3] = { pixel_, pixel_, pixel_ };
+  const double spacing[3] = { pixelMm_, pixelMm_, pixelMm_ };
   outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  outInfo->Set(vtkDataObject::ORIGIN(), &origin_.x, 3);
+  outInfo->Set(vtkDataObject::ORIGIN(), &originMm_.x, 3);
   outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
   outInfo->Set(vtkDataObject::DIRECTION(), direction_.data(), 9);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, scalarType, 1);
@@ -55,8 +55,8 @@ void ImagePlacement::announce(int scalarType, vtkInformation* outInfo) const
 void ImagePlacement::place(vtkImageData* image) const
 {
   image->SetDimensions(size_.x, size_.y, size_.z);
-  image->SetOrigin(&origin_.x);
-  image->SetSpacing(pixel_, pixel_, pixel_);
+  image->SetOrigin(&originMm_.x);
+  image->SetSpacing(pixelMm_, pixelMm_, pixelMm_);
   image->SetDirectionMatrix(direction_.data());
 }
 

@@ -12,13 +12,13 @@ class vtkInformation;
 namespace sono {
 
 /// What is drawn on a flat image lies so much in front of it, which is towards negative z.
-constexpr double flatDrawingCm = -0.01;
+constexpr double flatDrawingMm = -0.1;
 
-/// A place in the world as the flat image has it, in cm: x lateral, y depth, z out of the image plane; of a volume
+/// A place in the world as the flat image has it, in mm: x lateral, y depth, z out of the image plane; of a volume
 /// y elevation, z depth.
 Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose, bool isVolume);
 
-/// Where a scan-converted image lies: in the world, LPS mm, or flat in the probe's own frame, in cm.
+/// Where a scan-converted image lies: in mm: in the world, LPS, or flat in the probe's own frame.
 class ImagePlacement
 {
 public:
@@ -26,7 +26,7 @@ public:
   ImagePlacement(const PlaneImage& plane, const ProbePose& pose);
   ImagePlacement(const VolumeImage& volume, const ProbePose& pose);
 
-  /// The same in the frame of the pose, in cm: x lateral, y depth; of a volume y elevation, z depth.
+  /// The same in the frame of the pose: x lateral, y depth; of a volume y elevation, z depth.
   ImagePlacement flat(const ProbePose& pose) const;
 
   /// Size, place and scalar type (VTK_FLOAT, ...) of the image, before it is made.
@@ -37,8 +37,8 @@ private:
   void setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z);
 
   Vec3i size_;
-  double pixel_;
-  Vec3d origin_;
+  double pixelMm_;
+  Vec3d originMm_;
   std::array<double, 9> direction_{}; // row-major
 };
 

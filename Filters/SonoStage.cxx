@@ -10,6 +10,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringKey.h"
+#include "vtkInformationStringVectorKey.h"
 #include "vtkInformationUnsignedLongKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
@@ -57,6 +58,13 @@ vtkInformationUnsignedLongKey* saidAtKey()
 vtkInformationIntegerKey* quietKey()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("QUIET", "SonoVDB");
+  return key;
+}
+
+/// What a quiet algorithm has warned of.
+vtkInformationStringVectorKey* warnedKey()
+{
+  static auto* const key = vtkInformationStringVectorKey::MakeKey("WARNED", "SonoVDB");
   return key;
 }
 
@@ -151,6 +159,18 @@ Progress progressOf(vtkAlgorithm* algorithm)
   };
 }
 
+void warn(vtkAlgorithm* algorithm, const std::string& sentence)
+{
+  if (isQuiet(algorithm))
+  {
+    algorithm->GetInformation()->Append(warnedKey(), sentence);
+  }
+  else
+  {
+    vtkWarningWithObjectMacro(algorithm, << sentence);
+  }
+}
+
 void keepQuiet(vtkAlgorithm* algorithm)
 {
   algorithm->GetInformation()->Set(quietKey(), 1);
@@ -162,6 +182,18 @@ std::string saidBy(vtkAlgorithm* algorithm)
 {
   const char* said = algorithm->GetInformation()->Get(saidKey());
   return said ? said : "";
+}
+
+std::vector<std::string> takeWarnings(vtkAlgorithm* algorithm)
+{
+  vtkInformation* memory = algorithm->GetInformation();
+  std::vector<std::string> sentences;
+  for (int i = 0; i < memory->Length(warnedKey()); ++i)
+  {
+    sentences.emplace_back(memory->Get(warnedKey(), i));
+  }
+  memory->Remove(warnedKey());
+  return sentences;
 }
 
 bool runWork(vtkAlgorithm* algorithm, const std::function<void()>& work)

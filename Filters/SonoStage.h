@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 class vtkAlgorithm;
 class vtkInformationVector;
@@ -28,11 +29,19 @@ int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work);
 /// The same for work that is neither, as writing a file is; false after an exception.
 bool runWork(vtkAlgorithm* algorithm, const std::function<void()>& work);
 
-/// For a stage inside another filter: what it has to say is kept for `saidBy` and told to nobody, and a failure is a 0.
+/// Tells the observers of WarningEvent, or else the output window, what a person should know of a result that is made
+/// all the same.
+void warn(vtkAlgorithm* algorithm, const std::string& sentence);
+
+/// For a stage inside another filter: what it has to say is kept for `saidBy` and `takeWarnings` and told to nobody,
+/// and a failure is a 0.
 void keepQuiet(vtkAlgorithm* algorithm);
 
 /// What a quiet stage said in its last pass; empty where that went well.
 std::string saidBy(vtkAlgorithm* algorithm);
+
+/// What a quiet stage has warned of since this was last called, for the filter around it to `warn` of.
+std::vector<std::string> takeWarnings(vtkAlgorithm* algorithm);
 
 /// Says, once in a process, why Auto does not take a GPU.
 void announceDevice(const DeviceChoice& choice);

@@ -92,7 +92,12 @@ void StageChain::update()
     {
       continue; // not in use
     }
-    if (!link.stage->GetExecutive()->Update())
+    const bool isMade = link.stage->GetExecutive()->Update() != 0;
+    for (const std::string& sentence : takeWarnings(link.stage))
+    {
+      warn(owner_, sentence);
+    }
+    if (!isMade)
     {
       throwFailure();
     }

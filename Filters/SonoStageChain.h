@@ -8,7 +8,8 @@ class vtkAlgorithm;
 
 namespace sono {
 
-/// Stages that run inside another filter, which reports their progress and tells of their failures as its own.
+/// Stages that run inside another filter, which reports their progress and tells of their failures and warnings as
+/// its own.
 class StageChain
 {
 public:

@@ -56,7 +56,7 @@ void drawLine(int line, const sono::Vec3d& from, const sono::Vec3d& to, vtkPolyD
 sono::Vec3d drawnFlat(const sono::Vec3d& worldMm, const sono::ProbeField& probe)
 {
   const bool isVolume = probe.geometry.isVolume();
-  const sono::Vec3d front(0.0, 0.0, isVolume ? 0.0 : sono::flatDrawingCm);
+  const sono::Vec3d front(0.0, 0.0, isVolume ? 0.0 : sono::flatDrawingMm);
   return sono::flatFromWorld(worldMm, probe.pose, isVolume) + front;
 }
 

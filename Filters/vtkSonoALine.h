@@ -14,7 +14,7 @@ class vtkFieldData;
  * (cm)" and one column for each array with one component; where there is an "Envelope", also "Envelope (dB)" relative
  * to the largest one of all lines, at least -200.
  *
- * Where that line lies is on output 1 flat, in the probe's own frame and in cm, as the flat image of
+ * Where that line lies is on output 1 flat, in the probe's own frame, mm, as the flat image of
  * vtkSonoScanConverter (a hair in front of it, as seen with the transducer on top), and on output 2 in world
  * coordinates, LPS mm. Their field array "Line" is its number.
  */

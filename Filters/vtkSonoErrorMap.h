@@ -17,7 +17,7 @@
  * While the probe is being moved nothing is known: no pixel is a number and the mask is empty.
  * Between lines and radial bins the percentage is interpolated. The speckle is no error and does not count.
  *
- * Output 1 is the same image in the probe's own frame and in centimetres, as of vtkSonoScanConverter.
+ * Output 1 is the same image in the probe's own frame, mm, as of vtkSonoScanConverter.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoErrorMap : public vtkImageAlgorithm
 {

@@ -32,7 +32,7 @@ enum Part
   MARKER = 1
 };
 
-/// Strokes, discs and letters in the plane of the image, y down.
+/// Strokes, discs and letters in the plane of the image, in mm, y down.
 class Drawing
 {
 public:
@@ -94,7 +94,7 @@ public:
   }
 
 private:
-  vtkIdType point(double x, double y) { return points_->InsertNextPoint(x, y, sono::flatDrawingCm); }
+  vtkIdType point(double x, double y) { return points_->InsertNextPoint(x, y, sono::flatDrawingMm); }
 
   vtkNew<vtkPoints> points_;
   vtkNew<vtkCellArray> lines_;
@@ -103,13 +103,13 @@ private:
   vtkNew<vtkIntArray> polygonParts_;
 };
 
-/// Half the lateral width of a polyline of the outline, in cm.
-double halfWidthCm(const std::vector<sono::Vec3d>& polyline)
+/// Half the lateral width of a polyline of the outline.
+double halfWidthMm(const std::vector<sono::Vec3d>& polyline)
 {
   double widest = 0.0;
   for (const sono::Vec3d& p : polyline)
   {
-    widest = std::max(widest, std::abs(p.x) / 10.0);
+    widest = std::max(widest, std::abs(p.x));
   }
   return widest;
 }
@@ -117,25 +117,26 @@ double halfWidthCm(const std::vector<sono::Vec3d>& polyline)
 void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
 {
   const auto outline = sono::scanOutline(geometry);
-  const double depthCm = geometry.depthMm / 10.0;
-  const double faceCm = geometry.lineOrigin() == sono::LineOrigin::Catheter ? geometry.radiusMm / 10.0 : 0.0;
-  const int numbered = depthCm < 8.0 ? 1 : 5;
-  const double rulerCm = -halfWidthCm(outline[0]) - 0.03 * depthCm;
-  drawing.stroke(rulerCm, faceCm, rulerCm, faceCm + depthCm);
-  for (int cm = 0; cm <= std::floor(depthCm + 1e-9); ++cm)
+  const double depthMm = geometry.depthMm;
+  const double faceMm = geometry.lineOrigin() == sono::LineOrigin::Catheter ? geometry.radiusMm : 0.0;
+  const int numberedCm = depthMm < 80.0 ? 1 : 5;
+  const double rulerMm = -halfWidthMm(outline[0]) - 0.03 * depthMm;
+  drawing.stroke(rulerMm, faceMm, rulerMm, faceMm + depthMm);
+  for (int cm = 0; cm <= std::floor(depthMm / 10.0 + 1e-9); ++cm)
   {
-    const bool isNumbered = cm % numbered == 0;
-    const double tickCm = rulerCm - (isNumbered ? 0.03 : 0.015) * depthCm;
-    drawing.stroke(rulerCm, faceCm + cm, tickCm, faceCm + cm);
+    const bool isNumbered = cm % numberedCm == 0;
+    const double yMm = faceMm + 10.0 * cm;
+    const double tickMm = rulerMm - (isNumbered ? 0.03 : 0.015) * depthMm;
+    drawing.stroke(rulerMm, yMm, tickMm, yMm);
     if (isNumbered)
     {
-      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickCm - 0.015 * depthCm, faceCm + cm, 0.05 * depthCm,
-                   true, RULER);
+      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickMm - 0.015 * depthMm, yMm, 0.05 * depthMm, true,
+                   RULER);
     }
   }
-  const double markerCm = halfWidthCm(outline[1]) + 0.07 * depthCm;
-  drawing.disc(markerCm, 0.0, 0.02 * depthCm);
-  drawing.text("S", markerCm + 0.045 * depthCm, 0.0, 0.07 * depthCm, false, MARKER);
+  const double markerMm = halfWidthMm(outline[1]) + 0.07 * depthMm;
+  drawing.disc(markerMm, 0.0, 0.02 * depthMm);
+  drawing.text("S", markerMm + 0.045 * depthMm, 0.0, 0.07 * depthMm, false, MARKER);
 }
 
 } // namespace

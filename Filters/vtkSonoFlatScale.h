@@ -9,7 +9,7 @@
  * @brief What a scanner draws beside its image: a depth scale and the probe's marker
  *
  * Takes whatever carries a probe in its field data: the output of vtkSonoProbeSource, lines or images. The output lies
- * in the frame of the flat image of vtkSonoScanConverter, in cm, a hair in front of it as seen with the transducer on
+ * in the frame of the flat image of vtkSonoScanConverter, mm, a hair in front of it as seen with the transducer on
  * top: left of the scanned area a ruler of the depth from the transducer's face, a tick each centimetre, a longer one
  * with its number each five (each centimetre where there are fewer than eight); right of the face a dot with the letter
  * S, on the side of the probe's marker, to which the lateral direction points. The cell array "Part" is 0 on the ruler

@@ -149,7 +149,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     const std::string warning = probe.preview ? std::string() : sono::probeContactWarning(*scene, scanLines);
     if (!warning.empty())
     {
-      vtkWarningMacro(<< warning);
+      sono::warn(this, warning);
     }
     const sono::Progress progress = sono::progressOf(this);
     const double share = this->NumberOfShownPaths != 0 ? 0.9 : 1.0;

@@ -112,8 +112,8 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     const std::vector<std::string> unmapped = sono::assignTissues(volume, map, *table, this->FallbackTissue);
     if (!unmapped.empty())
     {
-      vtkWarningMacro("No pattern of the label tissue map matches these labels, which become "
-                      << this->FallbackTissue << ": " << joined(unmapped) << ".");
+      sono::warn(this, "No pattern of the label tissue map matches these labels, which become " + this->FallbackTissue +
+                         ": " + joined(unmapped) + ".");
     }
     const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
     const std::shared_ptr<const sono::Scene> scene =

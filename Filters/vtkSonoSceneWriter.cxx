@@ -45,6 +45,6 @@ void vtkSonoSceneWriter::WriteData()
   this->SetErrorCode(isWritten ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
   if (isRun && !isWritten)
   {
-    vtkWarningMacro("Stopped: '" << this->FileName << "' was not written; save it again.");
+    sono::warn(this, "Stopped: '" + this->FileName + "' was not written; save it again.");
   }
 }

@@ -26,7 +26,7 @@ class vtkSonoSceneBuilder;
  *
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
- * paths, 7 the image in the probe's own frame, in cm, 8 the error map (of vtkSonoErrorMap),
+ * paths, 7 the image in the probe's own frame, mm, 8 the error map (of vtkSonoErrorMap),
  * 9 the boundaries that the ray paths met. (ParaView has room for no more than ten.)
  *
  * The error map is empty unless ErrorMap is on. The two images have its array "ErrorPercent" then, too.

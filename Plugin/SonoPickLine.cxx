@@ -104,10 +104,8 @@ bool meetPlane(const Sight& sight, ImageKind kind, vtkFieldData* field, Meeting&
   Vector position{};
   Vector axial{ 0.0, 1.0, 0.0 };
   Vector lateral{ 1.0, 0.0, 0.0 };
-  double unitMm = 10.0;
   if (kind == ImageKind::InWorld)
   {
-    unitMm = 1.0;
     for (const auto& [name, vector] : { std::pair("ProbePositionMm", &position), std::pair("ProbeAxial", &axial),
                                         std::pair("ProbeLateral", &lateral) })
     {
@@ -136,8 +134,8 @@ bool meetPlane(const Sight& sight, ImageKind kind, vtkFieldData* field, Meeting&
   {
     at[i] = meeting.along * direction[i] - offset[i];
   }
-  meeting.lateralMm = unitMm * vtkMath::Dot(at.data(), lateral.data());
-  meeting.axialMm = unitMm * vtkMath::Dot(at.data(), axial.data());
+  meeting.lateralMm = vtkMath::Dot(at.data(), lateral.data());
+  meeting.axialMm = vtkMath::Dot(at.data(), axial.data());
   return true;
 }
 

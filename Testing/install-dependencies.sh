@@ -14,12 +14,13 @@ packages=(
   libfreetype-dev
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
-  nlohmann-json3-dev zlib1g-dev
-  openimageio-tools # writes the example's picture
+  nlohmann-json3-dev libpugixml-dev zlib1g-dev
+  # the pictures that it writes
+  libopenimageio-dev
 )
 if [[ ${1:-} == tests ]]; then
   packages+=(
-    libgtest-dev libbenchmark-dev libopenimageio-dev libopenvdb-tools xvfb openmpi-bin python3-mpi4py python3-xlib
+    libgtest-dev libbenchmark-dev openimageio-tools libopenvdb-tools xvfb openmpi-bin python3-mpi4py python3-xlib
     clang-format doxygen
   )
 fi

@@ -9,9 +9,8 @@ import sys
 
 try:
     import paraview  # noqa: F401  (only so that Debian's VTK is found, which comes with ParaView)
-    from sonovdb.vtkSonoFilters import vtkSonoAcousticWindow, vtkSonoLabelMapReader, vtkSonoThoraxSource, vtkSonoUltrasound
-    from vtkmodules.vtkImagingCore import vtkImageFlip
-    from vtkmodules.vtkIOImage import vtkPNGWriter
+    from sonovdb.vtkSonoFilters import (vtkSonoAcousticWindow, vtkSonoLabelMapReader, vtkSonoPictureWriter,
+                                        vtkSonoThoraxSource, vtkSonoUltrasound)
 except ImportError as error:
     raise SystemExit(
         f"{error}: ParaView and SonoVDB are built for Debian's Python, and this is {sys.version.split()[0]} "
@@ -39,11 +38,8 @@ probe.SetLateral(*pose.GetArray("ProbeLateral").GetTuple3(0))
 probe.SetDepthMm(160)
 ultrasound.GetBMode().SetGainDb(3)
 
-upright = vtkImageFlip()  # PNG begins with its last row
-upright.SetInputConnection(ultrasound.GetOutputPort(vtkSonoUltrasound.FLAT_IMAGE))
-upright.SetFilteredAxis(1)
-writer = vtkPNGWriter()
-writer.SetInputConnection(upright.GetOutputPort())
+writer = vtkSonoPictureWriter()
+writer.SetInputConnection(ultrasound.GetOutputPort(vtkSonoUltrasound.FLAT_IMAGE))
 writer.SetFileName(sys.argv[2] if len(sys.argv) > 2 else "ultrasound.png")
 writer.Write()
 print("Wrote", writer.GetFileName())

@@ -8,15 +8,12 @@ and lateral (LPS mm), and depth_mm and sector_deg if they are to differ; pose.js
 import argparse
 import json
 import os
-import subprocess
 import sys
-import tempfile
 import time
 
 try:
     from paraview.servermanager import Fetch
     from paraview.simple import *
-    from vtkmodules.util.numpy_support import vtk_to_numpy
 except ImportError as error:
     raise SystemExit(f"{error}: ParaView is built for Debian's Python, and this is {sys.version.split()[0]} "
                      f"({sys.executable}): start the example with pvpython.") from None
@@ -26,7 +23,7 @@ parser.add_argument("--plugin", default=os.environ.get("SONOVDB_PLUGIN"),
                     help="SonoVDB.so; or set SONOVDB_PLUGIN. Needless where SonoVDB's Debian package is installed")
 parser.add_argument("--labels", help="label map: .nii, .nii.gz, .nrrd, .seg.nrrd or .vti; needs --pose")
 parser.add_argument("--pose", help="where the probe stands: file.json or file.json:NAME")
-parser.add_argument("--output", default="ultrasound.png", help="picture, in any format that OpenImageIO writes")
+parser.add_argument("--output", default="ultrasound.png", help="picture: .png, .tif, .exr or .jpg")
 parser.add_argument("--spacing", type=float, default=1.0, help="voxel size of the bundled thorax in mm")
 parser.add_argument("--lines", type=int, default=128, help="scan lines")
 parser.add_argument("--paths", type=int, default=1000, help="paths per scan line")
@@ -57,16 +54,6 @@ def pose_of(anatomy):
     return pose["poses"][name] if name else pose
 
 
-def save(image, path):
-    """Writes the image with OpenImageIO, row 0 on top, next to the transducer."""
-    width, height, _ = image.GetDimensions()
-    with tempfile.NamedTemporaryFile(suffix=".pgm") as grey:
-        grey.write(f"P5 {width} {height} 255\n".encode())
-        grey.write(vtk_to_numpy(image.GetPointData().GetArray("BMode")).tobytes())
-        grey.flush()
-        subprocess.run(["oiiotool", "--nosoftwareattrib", grey.name, "-o", path], check=True)
-
-
 if args.plugin:
     LoadPlugin(args.plugin, remote=False, ns=globals())
 elif "LabelMapReader" not in globals():
@@ -83,5 +70,8 @@ traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.p
 rf = timed(UltrasoundImageFormation(Input=traced))
 bmode = timed(UltrasoundBMode(Input=rf, TGCdBpercm=3))
 picture = timed(ScanConverter(Input=bmode))
-save(Fetch(picture), args.output)
+writer = CreateWriter(args.output, picture)
+writer.UpdatePipeline()
+if writer.GetClientSideObject().GetErrorCode():
+    raise SystemExit("The picture was not written")
 print("Wrote", os.path.abspath(args.output))

@@ -30,8 +30,8 @@ picture.Background = [0, 0, 0]
 picture.InteractionMode = "2D"
 picture.OrientationAxesVisibility = 0
 Show(flat, picture)
-picture.CameraPosition, picture.CameraFocalPoint, picture.CameraViewUp = [0, 8, -30], [0, 8, 0], [0, -1, 0]
-picture.CameraParallelScale = 15
+picture.CameraPosition, picture.CameraFocalPoint, picture.CameraViewUp = [0, 80, -300], [0, 80, 0], [0, -1, 0]
+picture.CameraParallelScale = 150
 
 SetActiveView(body)
 SetActiveSource(ultrasound)

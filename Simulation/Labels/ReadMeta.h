@@ -10,6 +10,9 @@ namespace sono {
 /// byte order. World coordinates are LPS mm: TransformMatrix lists the world directions of i, j, k one after the other,
 /// as ITK has it; AnatomicalOrientation only describes them and is not used. `labels` stays empty: the format has no
 /// names. Throws Error as readLabelMap does.
+///
+/// Not by MetaIO, whose MetaImage::Read reports success for data that end early or do not inflate, with voxels of 0 or
+/// of whatever lay in memory.
 LabelVolume readMeta(const std::string& path);
 
 } // namespace sono

@@ -18,7 +18,7 @@ LabelPhases readNiftiPhases(const std::string& path);
 void writeNifti(const std::string& path, const LabelVolume& volume);
 
 /// The `<Label Key=".." Red=".." Green=".." Blue="..">name</Label>` elements of an XML text (Connectome Workbench's
-/// label table; colours 0..1).
+/// label table; colours 0..1). None of a text that is no XML.
 std::vector<LabelInfo> labelsFromXml(const std::string& xml);
 
 } // namespace sono

@@ -25,9 +25,9 @@ class TestALine(unittest.TestCase):
         angle = np.radians(-30 + 3 * 60 / 11)
         start, end = self.ends(1)
         np.testing.assert_allclose(start[:2], 0, atol=1e-9)
-        np.testing.assert_allclose(end[:2], [9 * np.sin(angle), 9 * np.cos(angle)], atol=1e-6)
+        np.testing.assert_allclose(end[:2], [90 * np.sin(angle), 90 * np.cos(angle)], atol=1e-5)
         self.assertLess(end[2], 0)  # in front of the image
-        self.assertGreater(end[2], -0.1)
+        self.assertGreater(end[2], -1)
 
     def test_the_line_in_the_world_is_the_flat_one_at_the_probes_place(self):
         for kind in (LINEAR, SECTOR, CURVILINEAR, RADIAL):
@@ -39,8 +39,7 @@ class TestALine(unittest.TestCase):
                 axial /= np.linalg.norm(axial)
                 lateral -= (lateral @ axial) * axial
                 lateral /= np.linalg.norm(lateral)
-                np.testing.assert_allclose(position + 10 * (flat[:, :1] * lateral + flat[:, 1:2] * axial), world,
-                                           atol=1e-6)
+                np.testing.assert_allclose(position + flat[:, :1] * lateral + flat[:, 1:2] * axial, world, atol=1e-6)
                 self.assertAlmostEqual(np.linalg.norm(world[1] - world[0]), 90, places=6)
 
     def test_a_place_on_a_line_is_that_lines(self):
@@ -52,7 +51,7 @@ class TestALine(unittest.TestCase):
                     flat = self.ends(1)
                     field = self.line.GetInputDataObject(0, 0).GetFieldData()
                     for along in (0.2, 0.9):
-                        x, y = 10 * (flat[0] + along * (flat[1] - flat[0]))[:2]
+                        x, y = (flat[0] + along * (flat[1] - flat[0]))[:2]
                         self.assertEqual(vtkSonoALine.LineAt(field, x, y), number)
 
     def test_places_beside_the_scan_are_no_lines(self):
@@ -87,13 +86,13 @@ class TestFlatScale(unittest.TestCase):
         return points[strokes], np.mean(corners, axis=0)
 
     def test_a_tick_each_centimetre_left_of_the_fan_and_the_marker_right_of_the_face(self):
-        for kind, half_width, face, offset in ((SECTOR, 4.5, 0, 0), (LINEAR, 1.9, 1.9, 0), (RADIAL, 7.5, 3, 6)):
+        for kind, half_width, face, offset in ((SECTOR, 45, 0, 0), (LINEAR, 19, 19, 0), (RADIAL, 75, 30, 60)):
             with self.subTest(kind=kind):
                 self.chain.probe.SetScanKind(kind)
                 strokes, marker = self.drawn()
                 ruler, ticks = strokes[0], strokes[1:]
-                np.testing.assert_allclose(ruler[:, 1], [offset, offset + 9], atol=1e-5)
-                np.testing.assert_allclose(ticks[:, :, 1], np.arange(10)[:, None] + [offset, offset], atol=1e-5)
+                np.testing.assert_allclose(ruler[:, 1], [offset, offset + 90], atol=1e-4)
+                np.testing.assert_allclose(ticks[:, :, 1], 10 * np.arange(10)[:, None] + [offset, offset], atol=1e-4)
                 self.assertLess(ruler[0, 0], -half_width)
                 lengths = ticks[:, 0, 0] - ticks[:, 1, 0]
                 self.assertEqual([i for i in range(10) if lengths[i] > 1.5 * lengths.min()], [0, 5])

@@ -39,8 +39,8 @@ class TestErrorMap(unittest.TestCase):
         flat = self.map.GetOutputDataObject(1)
         made, mask = array(flat, "ErrorPercent"), array(flat, "Mask")
         rows, columns = made.shape
-        x_mm = 10 * (flat.GetOrigin()[0] + flat.GetSpacing()[0] * np.arange(columns))[None, :]
-        y_mm = 10 * (flat.GetOrigin()[1] + flat.GetSpacing()[1] * np.arange(rows))[:, None]
+        x_mm = (flat.GetOrigin()[0] + flat.GetSpacing()[0] * np.arange(columns))[None, :]
+        y_mm = (flat.GetOrigin()[1] + flat.GetSpacing()[1] * np.arange(rows))[:, None]
         line = (np.degrees(np.arctan2(x_mm, y_mm)) + 30) / 60 * 12
         bins = np.hypot(x_mm, y_mm) / 0.25 - 0.5
         inside = (line > 0.01) & (line < 11.99) & (bins < 359.5) & (bins > 2)

@@ -81,11 +81,11 @@ class TestOutputs(unittest.TestCase):
         lateral -= (lateral @ axial) * axial
         lateral /= np.linalg.norm(lateral)
         for index in ((0, 0), (100, 30), (17, 200)):
-            at_mm, at_cm = [0.0] * 3, [0.0] * 3
-            image.TransformContinuousIndexToPhysicalPoint(*index, 0, at_mm)
-            flat.TransformContinuousIndexToPhysicalPoint(*index, 0, at_cm)
-            np.testing.assert_allclose(position + 10 * (at_cm[0] * lateral + at_cm[1] * axial), at_mm, atol=1e-9)
-            self.assertAlmostEqual(at_cm[2], 0)
+            in_world, in_flat = [0.0] * 3, [0.0] * 3
+            image.TransformContinuousIndexToPhysicalPoint(*index, 0, in_world)
+            flat.TransformContinuousIndexToPhysicalPoint(*index, 0, in_flat)
+            np.testing.assert_allclose(position + in_flat[0] * lateral + in_flat[1] * axial, in_world, atol=1e-9)
+            self.assertAlmostEqual(in_flat[2], 0)
 
     def test_black_is_one_inside_and_zero_outside(self):
         image = self.filter.GetOutputDataObject(IMAGE)
@@ -363,6 +363,37 @@ class TestBadInput(unittest.TestCase):
         of_reader, of_filter = listen(reader), listen(ultrasound)
         ultrasound.Update()
         self.assertEqual((len(of_reader), of_filter), (1, []))
+
+
+
+class TestWarnings(unittest.TestCase):
+    """What the stages inside warn of is an event of the filter, once each time that it is found."""
+
+    def setUp(self):
+        self.ultrasound = Ultrasound()
+        self.warnings = listen(self.ultrasound.filter, "WarningEvent")
+
+    def test_a_probe_off_the_skin(self):
+        self.ultrasound.output()
+        self.assertEqual(self.warnings, [])
+        position = np.array(self.ultrasound.stages.probe.GetPositionMm())
+        axial = np.array(self.ultrasound.stages.probe.GetAxial())
+        for run, distance_mm in enumerate((40, 50), start=1):
+            self.ultrasound.filter.SetPositionMm(*(position - distance_mm * axial / np.linalg.norm(axial)))
+            self.ultrasound.output()
+            self.assertEqual(len(self.warnings), run, self.warnings)
+            self.assertIn("skin", self.warnings[-1])
+        self.ultrasound.filter.SetGainDb(5)  # of the same lines
+        self.ultrasound.output()
+        self.assertEqual(len(self.warnings), 2)
+
+    def test_labels_without_a_tissue(self):
+        self.ultrasound.filter.SetInputDataObject(label_image(np.full((20, 20, 20), 21, np.uint8)))
+        self.ultrasound.filter.SetPositionMm(10, 10, 0)
+        self.ultrasound.filter.SetAxial(0, 0, 1)
+        self.ultrasound.filter.SetLateral(1, 0, 0)
+        self.ultrasound.output()
+        self.assertEqual(sum("label_21" in sentence for sentence in self.warnings), 1, self.warnings)
 
 
 if __name__ == "__main__":

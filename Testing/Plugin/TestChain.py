@@ -9,6 +9,7 @@ import numpy
 from paraview import simple, smtrace
 from paraview.servermanager import Fetch
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
 
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
@@ -84,6 +85,29 @@ class TestChain(unittest.TestCase):
             self.assertEqual(opened.GetXMLName(), "SonoSceneReader")
             simple.FindSource("traced").Scene = opened
             self.assertTrue((grey(simple.FindSource("picture")) == pixels).all())
+
+    def test_pictures_are_saved_with_the_transducer_on_top(self):
+        flat = simple.OutputPort(make_chain(), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder, "flat.png"))
+            simple.SaveData(path, proxy=flat)
+            simple.SaveData(path.replace("png", "tif"), proxy=flat, Array=["POINTS", "Labels"])
+            self.assertTrue(pathlib.Path(folder, "flat.tif").is_file())
+            reader = vtkPNGReader()
+            reader.SetFileName(path)
+            reader.Update()
+        image = Fetch(simple.FindSource("picture"), idx=1)
+        width, height, _ = image.GetDimensions()
+        from_top = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width)[::-1]
+        pixels = vtk_to_numpy(image.GetPointData().GetArray("BMode")).reshape(height, width)
+        self.assertTrue((from_top == pixels).all())
+        # A flat view looks along z with the smaller depths on top.
+        self.assertLess(image.GetPoint(0)[1], image.GetPoint(width * (height - 1))[1])
+        for kind in ("png", "jpg", "tiff", "exr"):
+            writer = simple.CreateWriter(path.replace("png", kind), flat)
+            self.assertEqual(writer.GetClientSideObject().GetClassName(), "vtkSonoPictureWriter")
+        other = simple.CreateWriter(path, simple.Wavelet())
+        self.assertEqual(other.GetClientSideObject().GetClassName(), "vtkPNGWriter")
 
     def test_default_probe_sees_the_thorax(self):
         make_chain()

@@ -151,7 +151,7 @@ class TestGui(GuiCase):
         return dot(at, unit(lateral)), dot(at, unit(axial))
 
     def place_in_flat_view(self, state, across, down):
-        """Where a part of the flat view's width and height is in its image: lateral and depth in cm."""
+        """Where a part of the flat view's width and height is in its image: lateral and depth in mm."""
         for view in ElementTree.parse(state).iter("Proxy"):
             if view.get("type") == "RenderView" and self.values(view, "InteractionMode") == [1] and \
                     self.values(view, "OrientationAxesVisibility") == [0]:

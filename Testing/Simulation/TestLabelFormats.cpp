@@ -3,6 +3,7 @@
 #include "Labels/AssignTissues.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadLabelMap.h"
+#include "Labels/ReadNifti.h"
 #include "NiftiBytes.h"
 
 #include <gtest/gtest.h>
@@ -245,6 +246,29 @@ TEST_F(LabelFormats, UnusualVolumes)
   EXPECT_EQ(empty.labels[0].name, "background");
   NiftiBytes({ 3, 4, 4, 4, 1, 1, 1, 1 }, 16, 4).voxels(std::vector<float>(64, 51.0f)).write(file("constant.nii"));
   EXPECT_EQ(readLabelMap(file("constant.nii")).labels[0].id, 51);
+}
+
+TEST(XmlLabelTable, IsReadAsXmlIs)
+{
+  const auto labels =
+    labelsFromXml("<?xml version='1.0'?>\n<!-- <Label Key='9'>no</Label> --><T><LabelTable>\n"
+                  "<Label\n  Key='1' Green = \"0.5\" Red='1' Blue='0'> <![CDATA[a > b]]>\n</Label>"
+                  "<Label Key='2'>&#228; &amp;lt;</Label><Label Key='3'/><Label>none</Label>"
+                  "<Label Key='70000'>large</Label><Label Key='4'>\n four \n</Label></LabelTable></T>" +
+                  std::string(5, '\0'));
+  ASSERT_EQ(labels.size(), 4u);
+  EXPECT_EQ(labels[0].id, 1);
+  EXPECT_EQ(labels[0].name, "a > b");
+  EXPECT_TRUE(labels[0].hasColor);
+  EXPECT_FLOAT_EQ(labels[0].color[1], 0.5f);
+  EXPECT_EQ(labels[1].name, "\xC3\xA4 &lt;");
+  EXPECT_FALSE(labels[1].hasColor);
+  EXPECT_EQ(labels[2].name, "");
+  EXPECT_EQ(labels[3].name, "four");
+
+  EXPECT_EQ(labelsFromXml("<T><Label Key='1'>whole</Label><Label Key='2'>bro").at(0).name, "whole");
+  EXPECT_TRUE(labelsFromXml("no XML").empty());
+  EXPECT_TRUE(labelsFromXml("").empty());
 }
 
 TEST(LabelNames, NumbersAloneNeverNameAnOrgan)
