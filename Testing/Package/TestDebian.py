@@ -37,7 +37,7 @@ CLIENT = """
 import sys
 from paraview.simple import *
 Connect("127.0.0.1", int(sys.argv[1]))
-image = SimulateUltrasound(Input=ThoraxPhantom(VoxelSizemm=4), NumberofLines=8, PathsperLine=10)
+image = SimulateUltrasound(Input=ThoraxPhantom(Spacingmm=4), LineCount=8, PathsPerLine=10)
 image.UpdatePipeline()
 print("points", image.GetDataInformation().GetNumberOfPoints())
 """
