@@ -379,19 +379,19 @@ class TestWarnings(unittest.TestCase):
         position = np.array(self.ultrasound.stages.probe.GetPositionMm())
         axial = np.array(self.ultrasound.stages.probe.GetAxial())
         for run, distance_mm in enumerate((40, 50), start=1):
-            self.ultrasound.filter.SetPositionMm(*(position - distance_mm * axial / np.linalg.norm(axial)))
+            self.ultrasound.filter.GetProbe().SetPositionMm(*(position - distance_mm * axial / np.linalg.norm(axial)))
             self.ultrasound.output()
             self.assertEqual(len(self.warnings), run, self.warnings)
             self.assertIn("skin", self.warnings[-1])
-        self.ultrasound.filter.SetGainDb(5)  # of the same lines
+        self.ultrasound.filter.GetBMode().SetGainDb(5)  # of the same lines
         self.ultrasound.output()
         self.assertEqual(len(self.warnings), 2)
 
     def test_labels_without_a_tissue(self):
         self.ultrasound.filter.SetInputDataObject(label_image(np.full((20, 20, 20), 21, np.uint8)))
-        self.ultrasound.filter.SetPositionMm(10, 10, 0)
-        self.ultrasound.filter.SetAxial(0, 0, 1)
-        self.ultrasound.filter.SetLateral(1, 0, 0)
+        self.ultrasound.filter.GetProbe().SetPositionMm(10, 10, 0)
+        self.ultrasound.filter.GetProbe().SetAxial(0, 0, 1)
+        self.ultrasound.filter.GetProbe().SetLateral(1, 0, 0)
         self.ultrasound.output()
         self.assertEqual(sum("label_21" in sentence for sentence in self.warnings), 1, self.warnings)
 
