@@ -109,9 +109,9 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   {
     return traceOnDevice(setup, settings, tracing);
   }
-  out.intensity.assign(std::size_t(out.lineCount) * out.binCount, 0.0f);
-  out.standardError.assign(out.intensity.size(), 0.0f);
-  out.boundaryEcho.assign(std::size_t(out.lineCount) * out.echoCount, {});
+  TracedLines::visitArrays(out, [&out](auto& values, const char*, TracedAxis axis) {
+    values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::Bins ? out.binCount : out.echoCount), {});
+  });
 
   if (settings.sampling == Sampling::SharedPaths && canSharePaths(setup.view))
   {

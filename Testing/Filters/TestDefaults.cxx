@@ -37,8 +37,9 @@ void expectPrinted(Filter* filter)
 {
   std::ostringstream stream;
   filter->Print(stream);
-  sono::requireInRange(Settings());
-  Settings::visit(Settings(), [&](const auto& value, const sono::Parameter& parameter) {
+  const Settings defaults = {};
+  sono::requireInRange(defaults);
+  Settings::visit(defaults, [&](const auto& value, const sono::Parameter& parameter) {
     std::ostringstream line;
     line << sono::propertyName(parameter) << ": " << sono::numberOf(value) << "\n";
     EXPECT_NE(stream.str().find(line.str()), std::string::npos) << line.str();
