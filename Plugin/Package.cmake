@@ -32,13 +32,13 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_LIBRARY_OUTPUT_DIRECTOR
 math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_SONOVDB_PACKAGE_DEPENDS
   "python3-paraview, python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_python})")
-set(CPACK_DEBIAN_SONOVDB_PACKAGE_RECOMMENDS openimageio-tools) # the example writes its picture with it
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsonovdb-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries to simulate ultrasound from C++")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "sonovdb (= ${PROJECT_VERSION}), \
-libopenvdb-dev, libboost-iostreams-dev, libembree-dev, libtbb-dev, libglm-dev, libnifti-dev, libteem-dev, zlib1g-dev")
+libopenvdb-dev, libboost-iostreams-dev, libembree-dev, libtbb-dev, libglm-dev, libnifti-dev, libteem-dev, \
+libpugixml-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS paraview-dev) # for the component Filters
 
 include(CPack)
