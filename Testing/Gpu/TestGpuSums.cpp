@@ -35,7 +35,7 @@ struct Plates
     settings.depthMm = 40.0;
     settings.radialBinMm = 0.5;
     settings.frequencyMHz = frequencyMHz;
-    settings.lobeSigmaRad = 0.0; // straight on or straight back
+    settings.lobeSigmaDeg = 0.0; // straight on or straight back
     settings.maxCollisions = 2;
     for (int i = 0; i < 128; ++i)
     {
@@ -135,7 +135,7 @@ TEST(GpuSums, DoNotDependOnTheOrder)
   SONO_GPU_OR_SKIP();
   Plates plates;
   plates.lines.resize(16);
-  plates.settings.lobeSigmaRad = 0.3;
+  plates.settings.lobeSigmaDeg = 17.0;
   plates.settings.maxCollisions = 7;
   plates.settings.pathsPerLine = 300000;
   const TracedLines first = trace(*plates.scene, plates.lines, plates.settings);
