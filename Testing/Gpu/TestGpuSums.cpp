@@ -97,7 +97,8 @@ TEST(GpuSums, MillionsOfEqualPathsKeepTheirMean)
         worst = std::max(worst, std::abs(measured / expected - 1.0));
       }
     }
-    EXPECT_LT(worst, 3e-5) << paths << " paths"; // 512 floats of about the same size add up to 2e-5
+    // 512 floats of about the same size add up to 2e-5; the share that is reflected comes within 1e-5.
+    EXPECT_LT(worst, 4e-5) << paths << " paths";
   }
 }
 
