@@ -35,7 +35,7 @@ struct Plates
     settings.depthMm = 40.0;
     settings.radialBinMm = 0.5;
     settings.frequencyMHz = frequencyMHz;
-    settings.lobeSigmaRad = 0.0; // straight on or straight back
+    settings.lobeSigmaDeg = 0.0; // straight on or straight back
     settings.maxCollisions = 2;
     for (int i = 0; i < 128; ++i)
     {
@@ -97,7 +97,8 @@ TEST(GpuSums, MillionsOfEqualPathsKeepTheirMean)
         worst = std::max(worst, std::abs(measured / expected - 1.0));
       }
     }
-    EXPECT_LT(worst, 3e-5) << paths << " paths"; // 512 floats of about the same size add up to 2e-5
+    // 512 floats of about the same size add up to 2e-5; the share that is reflected comes within 1e-5.
+    EXPECT_LT(worst, 4e-5) << paths << " paths";
   }
 }
 
@@ -135,7 +136,7 @@ TEST(GpuSums, DoNotDependOnTheOrder)
   SONO_GPU_OR_SKIP();
   Plates plates;
   plates.lines.resize(16);
-  plates.settings.lobeSigmaRad = 0.3;
+  plates.settings.lobeSigmaDeg = 17.0;
   plates.settings.maxCollisions = 7;
   plates.settings.pathsPerLine = 300000;
   const TracedLines first = trace(*plates.scene, plates.lines, plates.settings);
