@@ -17,7 +17,8 @@ Vec3d defaultTarget(const Scene& scene);
 /// transmission through every boundary on a straight way taken together, over 17 ways from that point of the skin: to
 /// the target, and to eight points each 15 and 30 degrees around it. `lateral` points to the patient's left, or, for a
 /// pose from the side, to the feet.
-/// `frequencyMHz`, > 0, sets the attenuation. Throws Error when the target is not within the label map's box, or no direction is left.
+/// `frequencyMHz`, > 0, sets the attenuation. Throws Error when the target is not within the label map's box, or no
+/// direction is left.
 ProbePose findAcousticWindow(const Scene& scene, const Vec3d& targetMm, double frequencyMHz);
 
 } // namespace sono

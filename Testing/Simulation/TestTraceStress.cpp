@@ -44,8 +44,8 @@ void expectSane(const TracedLines& traced, const TraceSettings& s, const std::st
   }
 }
 
-/// Without tissues of equal acoustics a path has one piece between two boundaries, and one more for each other line that
-/// shares it.
+/// Without tissues of equal acoustics a path has one piece between two boundaries, and one more for each other line
+/// that shares it.
 void expectBoundedPieces(const TracedLines& traced, const TraceSettings& s)
 {
   const int sharing = s.sampling == Sampling::SharedPaths ? traced.lineCount - 1 : 0;
