@@ -5,7 +5,7 @@
 #include <atomic>
 #include <mutex>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(SONO_TELL_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -17,7 +17,7 @@ namespace {
 /// the loop, and before what comes after it. Between two tasks there is no order.
 struct LoopOrder
 {
-#if defined(__SANITIZE_THREAD__)
+#if defined(SONO_TELL_THREAD_SANITIZER)
   void begin()
   {
     __tsan_release(&begun);
