@@ -13,7 +13,7 @@ namespace {
 constexpr int launchWarps = 4096;              // few lines of many paths are cut into so many warps, to fill a device
 constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
 constexpr double binsPerLaunch = 1.25e8;       // 1 GB of sums
-constexpr int pathsWithoutRests = 1024;        // whose echoes are exact to 2^-32
+constexpr int fewPaths = 1024;                 // of a line: nothing is lost of their sums, so nothing need be folded
 constexpr std::size_t sharedBytes = 96 * 1024; // more would keep other blocks away
 
 /// From blocks to rows, border included; a block takes a row.
@@ -43,17 +43,17 @@ int ceilDiv(int a, int b)
 }
 
 template<class Targets>
-void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool folds, cudaStream_t stream)
+void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
   const std::size_t scrambleBytes = std::size_t(launch.view.maxCollisions) * sizeof(BounceScramble);
   const std::size_t bytes = scrambleBytes + (inShared ? blockWarps * launch.binCount * sizeof(float) : 0);
-  const auto kernel = !inShared ? tracePaths<false, true, Targets>
-                      : folds   ? tracePaths<true, true, Targets>
-                                : tracePaths<true, false, Targets>;
+  const auto kernel = !inShared   ? tracePaths<false, true, Targets>
+                      : manyPaths ? tracePaths<true, true, Targets>
+                                  : tracePaths<true, false, Targets>;
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)), "preparing to trace");
   startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
   kernel<<<dim3(launch.batches * launch.slices, lines), blockPaths, bytes, stream>>>(launch);
-  const int parts = folds ? launch.slices * blockWarps : launch.slices;
+  const int parts = manyPaths ? launch.slices * blockWarps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
   check(cudaGetLastError(), "tracing");
 }
@@ -118,9 +118,8 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const std::size_t binBytes = blockWarps * bins * sizeof(float);
   const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, BvhTargets>));
   const bool inShared = binBytes + scrambleBytes <= sharedLimit;
-  const int pathsOfWarp = ceilDiv(longest, slices * blockPaths) * warpLanes;
-  const bool folds = !inShared || pathsOfWarp > pathsPerFold;
-  const int parts = folds ? slices * blockWarps : slices;
+  const bool manyPaths = !inShared || paths_ > fewPaths;
+  const int parts = manyPaths ? slices * blockWarps : slices;
 
   starts_.resize(lineCount * sizeof(LineStart));
   shared_.resize(lineCount * bins);
@@ -129,8 +128,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   error_.resize(lineCount * bins);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echo_.clear(stream);
-  const bool keepsRests = paths_ > pathsWithoutRests;
-  if (keepsRests)
+  if (manyPaths)
   {
     echoRest_.resize(echo_.size());
     echoRest_.clear(stream);
@@ -158,7 +156,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      intensity_.data() + skip * bins,
                      error_.data() + skip * bins,
                      echo_.data() + skip * std::size_t(echoCount_) * 2,
-                     keepsRests ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
+                     manyPaths ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
                      segments_.data(),
                      first + from,
                      linesPerImage_,
@@ -174,11 +172,11 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     };
     if (targets_.any())
     {
-      launchKernels(launchOf(targets_), lines, inShared, folds, stream);
+      launchKernels(launchOf(targets_), lines, inShared, manyPaths, stream);
     }
     else
     {
-      launchKernels(launchOf(NoTargets()), lines, inShared, folds, stream);
+      launchKernels(launchOf(NoTargets()), lines, inShared, manyPaths, stream);
     }
     if (progress && perLaunch < count)
     {
@@ -186,7 +184,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
       report(progress, double(from + lines) / count);
     }
   }
-  if (keepsRests)
+  if (manyPaths)
   {
     const std::size_t sums = echo_.size();
     carryRests<<<unsigned((sums + 255) / 256), 256, 0, stream>>>(echo_.data(), echoRest_.data(), sums);

@@ -50,7 +50,7 @@ struct TraceLaunch
   __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
 };
 
-template<class Launch>
+template<bool KeepsRest, class Launch>
 __device__ void addEcho(const Launch& launch, int line, const Vec3f& point, float amplitude)
 {
   const EchoSplit split = splitEcho(launch.lines[line], point, amplitude, launch.view.coherenceMm, launch.echoSampleMm,
@@ -65,7 +65,7 @@ __device__ void addEcho(const Launch& launch, int line, const Vec3f& point, floa
     const float units = split.amplitude[c] * launch.echoScale;
     const float whole = rintf(units);
     atomicAdd(launch.echo + at + c, EchoSum(__float2ll_rn(whole)));
-    if (launch.echoRest)
+    if (KeepsRest)
     {
       atomicAdd(launch.echoRest + at + c, EchoSum(__float2ll_rn((units - whole) * float(1 << restBits))));
     }
@@ -98,7 +98,7 @@ struct CommonSink : PathSink
   {
     if (lane == 0)
     {
-      addEcho(launch, line, point, amplitude * float(launch.paths)); // sums are divided by the paths
+      addEcho<false>(launch, line, point, amplitude * float(launch.paths)); // sums are divided by the paths
     }
   }
 };
@@ -122,7 +122,7 @@ __global__ void startLines(TraceLaunch<Targets> launch, int count)
 }
 
 /// Each lane follows a path of its own, and stages its segment for the warp.
-template<class Launch>
+template<bool ManyPaths, class Launch>
 struct LaneSink : PathSink
 {
   __device__ LaneSink(const Launch& theLaunch, int theLine, StagedSegment& theStaged)
@@ -140,7 +140,7 @@ struct LaneSink : PathSink
   {
     staged = stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
   }
-  __device__ void echo(const Vec3f& point, float amplitude) { addEcho(launch, line, point, amplitude); }
+  __device__ void echo(const Vec3f& point, float amplitude) { addEcho<ManyPaths>(launch, line, point, amplitude); }
 };
 
 /// Takes up the lane's next path that gets away from the first boundary; the key holds the last one. Returns false when
@@ -173,10 +173,10 @@ __device__ inline void foldBins(int binCount, int lane, float* bins, double* sum
 
 /// One block traces one slice of a batch of a line, each lane one path after the other. The paths of a warp step
 /// together, each to its next boundary; what they leave is added to the warp's bins by all its lanes, one segment
-/// after the other. As on the CPU (LineTally), a long sum of floats would lose its last digits: warps that trace many
-/// paths fold their bins into doubles of their own, which are added up in the end. No sum depends on which warp is
-/// first.
-template<bool BinsInShared, bool Folds, class Targets>
+/// after the other. As on the CPU (LineTally), a long sum of floats would lose its last digits: where there are many
+/// paths, warps fold their bins into doubles of their own, which are added up in the end, and keep what rounding leaves
+/// of echoes. No sum depends on which warp is first.
+template<bool BinsInShared, bool ManyPaths, class Targets>
 __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
 {
   extern __shared__ float dynamic[];
@@ -196,7 +196,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
   for (int b = lane; b < launch.binCount; b += warpLanes)
   {
     bins[b] = 0.0f;
-    if (Folds)
+    if (ManyPaths)
     {
       launch.sums[warpRow + b] = 0.0;
     }
@@ -213,7 +213,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
   const int step = launch.slices * blockPaths;
   const TraceLine axis = launch.lines[line];
   const LineStart& start = launch.starts[line];
-  LaneSink<TraceLaunch<Targets>> sink(launch, line, staged[warp][lane]);
+  LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, staged[warp][lane]);
   PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * blockPaths + int(threadIdx.x) - step), scrambles };
   PathState path;
   bool walks = start.meets && nextPath(launch, start, end, step, key, path, sink);
@@ -235,7 +235,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     {
       depositByWarp(staged[warp][__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
     }
-    if (Folds && untilFold <= 0)
+    if (ManyPaths && untilFold <= 0)
     {
       foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
       untilFold = pathsPerFold;
@@ -250,7 +250,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
   {
     atomicAdd(reinterpret_cast<unsigned long long*>(launch.segments), static_cast<unsigned long long>(segments));
   }
-  if (Folds)
+  if (ManyPaths)
   {
     foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
     return;
