@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests and the benchmark of the GPU, for a machine with a GPU and a driver but none of the simulator's libraries.
-#   run-gpu.sh pack [PART] here: builds, and packs programs, libraries and jobs (or one of them) into build-gpu
+#   run-gpu.sh pack [PART] here: builds, and packs programs and libraries (or one of them) into build-gpu
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
@@ -20,7 +20,7 @@ archive()
 
 pack_programs()
 {
-  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark WriteGpuJobs study_curves
+  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark study_curves
   local work
   work="$(mktemp -d)"
   cp "$bin/GpuTests" "$bin/GpuBenchmark" "$bin/study_curves" "$root"/Data/*.csv "$work"
@@ -35,14 +35,6 @@ pack_libraries()
   ldd "$bin/GpuTests" "$bin/study_curves" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' |
     sort -u | xargs -I{} cp -L {} "$work"
   archive libraries "$work"
-}
-
-pack_jobs()
-{
-  local work
-  work="$(mktemp -d)"
-  "$bin/WriteGpuJobs" "$work"
-  archive jobs "$work"
 }
 
 unpack()
@@ -67,7 +59,7 @@ with_libraries()
 case "${1:-}" in
   pack)
     mkdir -p "$pack"
-    for part in ${2:-programs libraries jobs}; do
+    for part in ${2:-programs libraries}; do
       "pack_$part"
     done
     ls -l "$pack"
@@ -77,8 +69,8 @@ case "${1:-}" in
     with_libraries "$unpacked/programs/GpuTests"
     ;;
   benchmark)
-    unpack programs libraries jobs
-    with_libraries "$unpacked/programs/GpuBenchmark" "$unpacked/jobs/a4c.sonojob" "$unpacked/jobs/s1.sonojob"
+    unpack programs libraries
+    with_libraries "$unpacked/programs/GpuBenchmark"
     ;;
   study)
     unpack programs libraries
