@@ -89,6 +89,8 @@ class TestDrag(unittest.TestCase):
                 ultrasound.GetProbe().SetPreview(preview)
                 ultrasound.Update()
             for port in range(dragged.GetNumberOfOutputPorts()):
+                dragged.Update(port)
+                fresh.Update(port)
                 made, expected = dragged.GetOutputDataObject(port), fresh.GetOutputDataObject(port)
                 if made.IsA("vtkImageData"):
                     with self.subTest(preview=preview, port=port):
