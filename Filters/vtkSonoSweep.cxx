@@ -3,6 +3,7 @@
 #include "Core/ParallelFor.h"
 #include "Probe/PulseFile.h"
 #include "Simulator.h"
+#include "SonoChestDefaults.h"
 #include "SonoContent.h"
 #include "SonoLabelImage.h"
 #include "SonoPoses.h"
@@ -95,11 +96,15 @@ vtkSonoSweep::vtkSonoSweep()
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::AttributeTypes::SCALARS);
   this->SetProgressText("Sweeping");
-  // As the one filter.
-  this->RayTracer->SetMaxCollisions(20);
-  this->RayTracer->SetCoherenceMm(20.0);
-  this->RayTracer->SetLobeSigmaDeg(6.0);
-  this->BMode->SetTgcDbPerCm(3.0);
+  sono::TraceSettings tracing;
+  sono::BModeSettings grey;
+  sono::setChestDefaults(tracing);
+  sono::setChestDefaults(grey);
+  this->RayTracer->SetMaxCollisions(tracing.maxCollisions);
+  this->RayTracer->SetCoherenceMm(tracing.coherenceMm);
+  this->RayTracer->SetLobeSigmaDeg(tracing.lobeSigmaDeg);
+  this->BMode->SetTgcDbPerCm(grey.tgcDbPerCm);
+  this->HideSurfaces();
 }
 
 vtkSonoSweep::~vtkSonoSweep() = default;
@@ -141,9 +146,15 @@ void vtkSonoSweep::SetSceneBuilder(vtkSonoSceneBuilder* stage)
   {
     this->Builder.reset(); // listens to the one before
     this->SceneBuilder = stage;
+    this->HideSurfaces();
     this->Builder = std::make_unique<Inner>(this, stage);
     this->Modified();
   }
+}
+
+void vtkSonoSweep::HideSurfaces()
+{
+  this->SceneBuilder->SetBuildSurfaces(false); // nobody sees them
 }
 
 vtkSonoSceneBuilder* vtkSonoSweep::GetSceneBuilder()

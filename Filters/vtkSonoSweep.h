@@ -97,6 +97,7 @@ private:
   void operator=(const vtkSonoSweep&) = delete;
 
   sono::ImageSettings Settings(const sono::ProbeField& probe) const;
+  void HideSurfaces();
   /// The scene's blocks, built here from a label image.
   vtkMultiBlockDataSet* Anatomy(vtkDataObject* input);
 

@@ -112,7 +112,6 @@ class TestSweep(unittest.TestCase):
         self.sweep.SetInputData(2, poses)
         self.sweep.Update()
         of_scene = stack(self.sweep.GetOutputDataObject(0), "BMode").copy()
-        self.sweep.GetSceneBuilder().SetBuildSurfaces(False)
         self.sweep.SetInputConnection(0, self.chain.thorax.GetOutputPort())
         self.sweep.Update()
         np.testing.assert_array_equal(stack(self.sweep.GetOutputDataObject(0), "BMode"), of_scene)

@@ -84,9 +84,9 @@ vtkSmartPointer<vtkPolyData> sweepOf(const sono::ProbePose& start)
 void place(vtkSonoUltrasound* ultrasound, const sono::ProbePose& pose)
 {
   const auto set = [](const sono::Vec3d& v, const auto& setter) { setter(v.x, v.y, v.z); };
-  set(pose.positionMm, [&](double x, double y, double z) { ultrasound->SetPositionMm(x, y, z); });
-  set(pose.axial, [&](double x, double y, double z) { ultrasound->SetAxial(x, y, z); });
-  set(pose.lateral, [&](double x, double y, double z) { ultrasound->SetLateral(x, y, z); });
+  set(pose.positionMm, [&](double x, double y, double z) { ultrasound->GetProbe()->SetPositionMm(x, y, z); });
+  set(pose.axial, [&](double x, double y, double z) { ultrasound->GetProbe()->SetAxial(x, y, z); });
+  set(pose.lateral, [&](double x, double y, double z) { ultrasound->GetProbe()->SetLateral(x, y, z); });
 }
 
 void measure(sono::Device device)
@@ -95,12 +95,12 @@ void measure(sono::Device device)
   vtkNew<vtkSonoThoraxSource> thorax;
   vtkNew<vtkSonoUltrasound> ultrasound;
   ultrasound->SetInputConnection(thorax->GetOutputPort());
-  ultrasound->SetBuildSurfaces(false);
-  ultrasound->SetDevice(static_cast<int>(device));
-  ultrasound->SetMaxCollisions(7);
-  ultrasound->SetCoherenceMm(100.0);
-  ultrasound->SetLobeSigmaDeg(45.0);
-  ultrasound->SetTgcDbPerCm(5.0);
+  ultrasound->GetSceneBuilder()->SetBuildSurfaces(false);
+  ultrasound->GetRayTracer()->SetDevice(static_cast<int>(device));
+  ultrasound->GetRayTracer()->SetMaxCollisions(7);
+  ultrasound->GetRayTracer()->SetCoherenceMm(100.0);
+  ultrasound->GetRayTracer()->SetLobeSigmaDeg(45.0);
+  ultrasound->GetBMode()->SetTgcDbPerCm(5.0);
   place(ultrasound, pose);
   ultrasound->Update();
 
@@ -121,7 +121,8 @@ void measure(sono::Device device)
       picture = simulator.picture(simulator.image(input), input.pose, true);
     });
     const double throughMs = wallMs([&] {
-      ultrasound->SetSeed(10 + i);
+      ultrasound->GetRayTracer()->SetPathSeed(10 + i);
+      ultrasound->GetImageFormation()->SetScattererSeed(10 + i);
       ultrasound->Update();
     });
     if (i >= 0)

@@ -1,6 +1,6 @@
 // Sums over millions of paths: against closed forms, since that is where digits are lost.
 #include "Core/SoundSpeed.h"
-#include "GpuOrSkip.h"
+#include "GpuParity.h"
 #include "TestScenes.h"
 #include "Trace/Trace.h"
 
