@@ -10,6 +10,7 @@
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "SonoStageChain.h"
+#include "Trace/TraceDevice.h"
 #include "vtkSonoBMode.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoRayTracer.h"
@@ -286,7 +287,7 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
       settings.echo.pulse =
         std::make_shared<const sono::SampledPulse>(sono::readPulse(this->ImageFormation->GetPulseFileName()));
     }
-    sono::announceDevice(settings.tracing.device);
+    sono::announceDevice(sono::chooseDevice(settings.tracing));
     vtkDataObject* anatomy = vtkDataObject::GetData(input[LABELS_OR_SCENE]);
     const double begin = vtkImageData::SafeDownCast(anatomy) ? 0.3 : 0.0;
     const auto scene = vtkSonoSceneHandle::Get(this->Anatomy(anatomy));
