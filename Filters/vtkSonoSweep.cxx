@@ -49,8 +49,6 @@ enum InputPorts
   POSES = 2
 };
 
-constexpr double mmPerCm = 10.0;
-
 template<class Array>
 Array* addArray(const char* name, std::size_t count, vtkPointData* arrays)
 {
@@ -237,9 +235,8 @@ int vtkSonoSweep::RequestInformation(vtkInformation*, vtkInformationVector** inp
     const int count = static_cast<int>(sono::posesOf(vtkDataObject::GetData(input[POSES])).size());
     vtkInformation* outInfo = output->GetInformationObject(0);
     const int extent[6] = { 0, layout.width - 1, 0, layout.height - 1, 0, count - 1 };
-    const double pixelCm = layout.pixelMm / mmPerCm;
-    const double origin[3] = { layout.lateralMinMm / mmPerCm, layout.axialMinMm / mmPerCm, 0.0 };
-    const double spacing[3] = { pixelCm, pixelCm, 1.0 };
+    const double origin[3] = { layout.lateralMinMm, layout.axialMinMm, 0.0 };
+    const double spacing[3] = { layout.pixelMm, layout.pixelMm, 1.0 };
     outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
     outInfo->Set(vtkDataObject::ORIGIN(), origin, 3);
     outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
@@ -316,10 +313,9 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     this->Simulator->sweep(poses, settings, this->WithLabels, take, sono::partOf(sono::progressOf(this), begin, 1.0));
 
     vtkImageData* images = vtkImageData::GetData(output, 0);
-    const double pixelCm = layout.pixelMm / mmPerCm;
     images->SetDimensions(layout.width, layout.height, static_cast<int>(poses.size()));
-    images->SetOrigin(layout.lateralMinMm / mmPerCm, layout.axialMinMm / mmPerCm, 0.0);
-    images->SetSpacing(pixelCm, pixelCm, 1.0);
+    images->SetOrigin(layout.lateralMinMm, layout.axialMinMm, 0.0);
+    images->SetSpacing(layout.pixelMm, layout.pixelMm, 1.0);
     arrays->SetActiveScalars("BMode");
     images->GetPointData()->ShallowCopy(arrays);
     if (labels)

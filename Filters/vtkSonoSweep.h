@@ -29,7 +29,7 @@ class vtkSonoSceneBuilder;
  * orthogonal to "Axial", and both are made of length 1.
  *
  * Output 0: the images flat, each in the probe's own frame as of output 1 of vtkSonoScanConverter, one on the other: x
- * lateral and y depth in cm, z the number of the pose. Point arrays: "BMode" (1, black, to 255 in the scanned area, 0
+ * lateral and y depth in mm, z the number of the pose. Point arrays: "BMode" (1, black, to 255 in the scanned area, 0
  * outside), "Mask" (1 inside it) and, unless WithLabels is off, "Labels": the label of the scene's nearest voxel.
  * Output 1: the poses as they were used, a table of the columns above, a row an image.
  *
