@@ -163,7 +163,7 @@ class TestWhatIsMade(unittest.TestCase):
         ultrasound = Ultrasound()
         ultrasound.output(IMAGE)
         rf = values(ultrasound.output(RF_LINES), "RF").copy()
-        ultrasound.filter.SetPathsPerLine(30)
+        ultrasound.filter.GetRayTracer().SetPathsPerLine(30)
         ultrasound.output(IMAGE)
         np.testing.assert_array_equal(values(ultrasound.filter.GetOutputDataObject(RF_LINES), "RF"), rf)
         self.assertFalse(np.array_equal(values(ultrasound.output(RF_LINES), "RF"), rf))
