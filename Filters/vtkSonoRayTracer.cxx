@@ -25,7 +25,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
-
 vtkStandardNewMacro(vtkSonoRayTracer);
 
 namespace {

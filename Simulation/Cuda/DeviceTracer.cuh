@@ -28,10 +28,7 @@ public:
   void run(int first, int count, const Progress& progress, cudaStream_t stream);
 
   /// Hands over what run() has just made.
-  TracedArrays take()
-  {
-    return { std::move(intensity_), std::move(error_), std::move(echo_), std::move(segments_) };
-  }
+  TracedArrays take() { return { std::move(intensity_), std::move(error_), std::move(echo_), std::move(segments_) }; }
   float echoPerUnit() const { return echoPerUnit_; } ///< turns an EchoSum into an amplitude
   int binCount() const { return binCount_; }
   int echoCount() const { return echoCount_; }

@@ -329,8 +329,9 @@ bool Scene::hasInteractiveRegion() const
 std::shared_ptr<const Scene::Making> Scene::makingInteractive(const VoxelBox& box, bool allRecords) const
 {
   const VoxelBox inside = clipped(box);
-  const VoxelBox wanted = clipped({ inside.first / interactiveEdgeVoxels * interactiveEdgeVoxels,
-                                    (inside.last + (interactiveEdgeVoxels - 1)) / interactiveEdgeVoxels * interactiveEdgeVoxels });
+  const VoxelBox wanted =
+    clipped({ inside.first / interactiveEdgeVoxels * interactiveEdgeVoxels,
+              (inside.last + (interactiveEdgeVoxels - 1)) / interactiveEdgeVoxels * interactiveEdgeVoxels });
   std::shared_ptr<const Making> before; // goes after the lock, since its end is waited for
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!interactive_ || !(interactive_->box == wanted))
