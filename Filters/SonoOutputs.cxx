@@ -196,7 +196,7 @@ void addArrays(vtkImageData* image)
   }
 }
 
-void fillImage(const ImageResult& image, const Picture& picture, const ProbePose& pose, vtkImageData* world,
+void fillImage(const ImageResult& image, const ScanPicture& picture, const ProbePose& pose, vtkImageData* world,
                vtkImageData* flat)
 {
   const ImagePlacement placement = placementOf(image, pose);

@@ -44,7 +44,7 @@ BModeResult bmodeOf(vtkImageData* image);
 void addArrays(vtkImageData* image);
 
 /// The point arrays "BMode", "Mask" and, where there are labels, "Labels"; in the world, and flat.
-void fillImage(const ImageResult& image, const Picture& picture, const ProbePose& pose, vtkImageData* world,
+void fillImage(const ImageResult& image, const ScanPicture& picture, const ProbePose& pose, vtkImageData* world,
                vtkImageData* flat);
 
 /// The point arrays "ErrorPercent", NaN outside the mask, and "Mask"; in the world, and flat.

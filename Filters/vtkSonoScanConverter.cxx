@@ -118,7 +118,7 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
     const sono::ImageResult image =
       this->Simulator->scanConvert(probe.geometry, bmode, pixelMm, sono::progressOf(this));
-    sono::Picture picture = this->Simulator->picture(image, probe.pose, scene && !connected);
+    sono::ScanPicture picture = this->Simulator->picture(image, probe.pose, scene && !connected);
     if (connected)
     {
       picture.labels = sono::SharedSpan<std::uint16_t>(

@@ -51,7 +51,7 @@ private:
 };
 
 /// An image as it is shown, lateral fastest.
-struct Picture
+struct ScanPicture
 {
   SharedSpan<std::uint8_t> grey;    ///< see greyBytes
   SharedSpan<std::uint8_t> mask;    ///< 1 inside the scanned area

@@ -237,7 +237,7 @@ struct Simulator::Last
   LastResult<BModeJobFrom, std::shared_ptr<const BModeJob>> bmodeJob;
   LastResult<BModeFrom, BModeResult> bmode;
   LastResult<ImageFrom, ImageResult> image;
-  LastResult<PictureFrom, Picture> picture;
+  LastResult<PictureFrom, ScanPicture> picture;
   LastResult<ErrorFrom, ImageResult> errorMap;
 
   const std::shared_ptr<const BModeJob>& bmodeJobFor(const BModeSettings& settings, int sampleCount, double sampleMm)
@@ -353,13 +353,13 @@ ImageResult Simulator::scanConvert(const ScanGeometry& geometry, const BModeResu
   });
 }
 
-Picture Simulator::picture(const ImageResult& image, const ProbePose& pose, bool withLabels)
+ScanPicture Simulator::picture(const ImageResult& image, const ProbePose& pose, bool withLabels)
 {
   return last_->picture.get({ image, pose, withLabels }, [&] {
     const auto onHost = [&](const auto& made) {
-      Picture picture{ SharedSpan<std::uint8_t>(greyBytes(made.value, made.mask)),
-                       SharedSpan<std::uint8_t>(made.mask),
-                       {} };
+      ScanPicture picture{ SharedSpan<std::uint8_t>(greyBytes(made.value, made.mask)),
+                           SharedSpan<std::uint8_t>(made.mask),
+                           {} };
       if (withLabels)
       {
         picture.labels = SharedSpan<std::uint16_t>(sliceLabels(needScene().volume(), pose, made));
@@ -379,7 +379,7 @@ Picture Simulator::picture(const ImageResult& image, const ProbePose& pose, bool
     const auto labels =
       withLabels ? imager.slice(makeLabelJob(needScene(), &pose, 1, image.plane().layout()), *picture) : nullptr;
     const PictureCopy copy = imager.wait(imager.beginDownload(picture, labels));
-    return Picture{ copy.bytes, copy.mask, copy.labels };
+    return ScanPicture{ copy.bytes, copy.mask, copy.labels };
   });
 }
 
@@ -457,7 +457,7 @@ void Simulator::sweepOnCpu(const std::vector<ProbePose>& poses, const ImageSetti
   {
     const double done = double(i) / double(poses.size());
     input.pose = poses[i];
-    Picture picture;
+    ScanPicture picture;
     try
     {
       picture = each.picture(each.image(input, partOf(progress, done, done + 1.0 / double(poses.size()))), input.pose,

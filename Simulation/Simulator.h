@@ -64,7 +64,7 @@ public:
   ImageResult scanConvert(const ScanGeometry& geometry, const BModeResult& bmode, double pixelMm,
                           const Progress& progress = {});
   /// The image's bytes, and the scene's own labels in it if wanted.
-  Picture picture(const ImageResult& image, const ProbePose& pose, bool withLabels);
+  ScanPicture picture(const ImageResult& image, const ProbePose& pose, bool withLabels);
   /// The Monte-Carlo error in the image, percent; see errorPlane. Nothing is known, and the mask is empty, where the
   /// lines are those of a moving probe.
   ImageResult errorMap(const ScanGeometry& geometry, const TracedResult& traced, bool interactive, double pixelMm,

@@ -113,7 +113,7 @@ void measure(sono::Device device)
   // Turn by turn, so that both see the same machine; each image is another one.
   std::vector<double> bare;
   std::vector<double> through;
-  sono::Picture picture;
+  sono::ScanPicture picture;
   for (int i = -5; i < repeats; ++i)
   {
     const double bareMs = wallMs([&] {

@@ -189,7 +189,7 @@ TEST(GpuStages, WholeImagesAndSweeps)
       EXPECT_EQ(pictures.firstPose + n, seen);
       Simulator alone(borrowed(&thorax()));
       const ImageInput input{ poses[std::size_t(seen)], s, {}, nullptr };
-      const Picture picture = alone.picture(alone.image(input), input.pose, true);
+      const ScanPicture picture = alone.picture(alone.image(input), input.pose, true);
       const std::size_t first = std::size_t(n) * picture.grey.size;
       int differing = 0;
       for (std::size_t p = 0; p < picture.grey.size; ++p)
@@ -212,7 +212,7 @@ TEST(GpuStages, APictureIsItsLevelsInBytesAndHasTheCpusLabels)
   input.settings.setDevice(Device::Cuda);
   Simulator simulator(borrowed(&thorax()));
   const ImageResult image = simulator.image(input);
-  const Picture picture = simulator.picture(image, input.pose, true);
+  const ScanPicture picture = simulator.picture(image, input.pose, true);
   const PlaneImage& levels = image.plane().host(); // which WholeImagesAndSweeps holds against the CPU's
   const auto same = [](const auto& span, const auto& expected) {
     return std::vector<std::decay_t<decltype(expected[0])>>(span.begin(), span.end()) == expected;

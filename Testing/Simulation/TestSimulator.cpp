@@ -102,7 +102,7 @@ TEST(Simulator, GivesWhatTheStagesGiveToTheBit)
   EXPECT_EQ(handles.image.plane().host().value, image.value);
   EXPECT_EQ(handles.image.plane().host().mask, image.mask);
 
-  const Picture picture = simulator.picture(handles.image, input.pose, true);
+  const ScanPicture picture = simulator.picture(handles.image, input.pose, true);
   const auto labels = sliceLabels(busyScene()->volume(), input.pose, image);
   EXPECT_EQ(std::vector<std::uint16_t>(picture.labels.begin(), picture.labels.end()), labels);
   EXPECT_EQ(std::vector<std::uint8_t>(picture.mask.begin(), picture.mask.end()), image.mask);
@@ -119,7 +119,7 @@ TEST(Simulator, TheSameSettingsGiveTheSameHandles)
   Simulator simulator(busyScene());
   const Handles first = ask(simulator, smallInput());
   EXPECT_EQ(changed(first, ask(simulator, smallInput())), "");
-  const Picture one = simulator.picture(first.image, {}, false);
+  const ScanPicture one = simulator.picture(first.image, {}, false);
   EXPECT_EQ(simulator.picture(first.image, {}, false).grey.data, one.grey.data);
 }
 
@@ -203,7 +203,7 @@ TEST(Simulator, HandlesOutliveWhatIsMadeNext)
   ImageInput input = smallInput();
   const Handles first = ask(simulator, input);
   const std::vector<float> value = first.image.plane().host().value;
-  const Picture picture = simulator.picture(first.image, input.pose, false);
+  const ScanPicture picture = simulator.picture(first.image, input.pose, false);
   const std::vector<std::uint8_t> grey(picture.grey.begin(), picture.grey.end());
   input.settings.tracing.seed = 2;
   const Handles second = ask(simulator, input);
@@ -274,7 +274,7 @@ TEST(Simulator, ASweepGivesThePicturesOfItsPoses)
         Simulator alone(busyScene());
         ImageInput one = input;
         one.pose = poses[std::size_t(seen)];
-        const Picture picture = alone.picture(alone.image(one), one.pose, true);
+        const ScanPicture picture = alone.picture(alone.image(one), one.pose, true);
         const std::size_t first = std::size_t(n) * picture.grey.size;
         EXPECT_TRUE(std::equal(picture.grey.begin(), picture.grey.end(), pictures.grey + first)) << seen;
         EXPECT_TRUE(std::equal(picture.labels.begin(), picture.labels.end(), pictures.labels + first)) << seen;
