@@ -1,5 +1,7 @@
 #include "SonoImagePlacement.h"
 
+#include "Core/Policy.h"
+
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -72,7 +74,7 @@ void ImagePlacement::setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z)
 
 double pixelMmOf(const ProbeField& probe, double settingMm)
 {
-  return probe.preview ? 2.0 * settingMm : settingMm;
+  return probe.preview ? interactivePixelMm(settingMm) : settingMm;
 }
 
 ImagePlacement placementOf(const ProbeField& probe, double pixelMm)

@@ -42,8 +42,7 @@ private:
   std::array<double, 9> direction_{}; // row-major
 };
 
-/// The edge of a pixel that is made of the one that is set: twice as wide while the probe is being moved, since
-/// ParaView looks at each pixel of each image for its ranges.
+/// The edge of a pixel that is made of the one that is set: wider while the probe is being moved.
 double pixelMmOf(const ProbeField& probe, double settingMm);
 
 /// Of the image of a probe with pixels or voxels of this edge in mm. Throws Error as planeImageLayout().

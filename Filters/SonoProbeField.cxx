@@ -76,6 +76,7 @@ void writeProbe(const ProbeField& probe, vtkFieldData* field)
   writeVector("ProbeAxial", probe.pose.axial, field);
   writeVector("ProbeLateral", probe.pose.lateral, field);
   writeNumber("Preview", probe.preview ? 1.0 : 0.0, field);
+  writeNumber("PrepareInteraction", probe.prepares ? 1.0 : 0.0, field);
 }
 
 ProbeField readProbe(vtkFieldData* field)
@@ -89,6 +90,7 @@ ProbeField readProbe(vtkFieldData* field)
   probe.pose.axial = readVector("ProbeAxial", field);
   probe.pose.lateral = readVector("ProbeLateral", field);
   probe.preview = readNumber("Preview", field) != 0.0;
+  probe.prepares = field->HasArray("PrepareInteraction") && readNumber("PrepareInteraction", field) != 0.0;
   return probe;
 }
 

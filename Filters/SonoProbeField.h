@@ -11,7 +11,8 @@ namespace sono {
 struct ProbeField : ProbeSettings
 {
   ProbePose pose;
-  bool preview = false; ///< the probe is being moved: coarse and quick is better than fine and late
+  bool preview = false;  ///< the probe is being moved: coarse and quick is better than fine and late
+  bool prepares = false; ///< somebody may move the probe: the anatomy is made ready for that in the background
 };
 
 /// One array a number or vector, units in the names (DepthMm, ProbePositionMm, CentreFrequencyMHz, ...), and what the

@@ -100,14 +100,9 @@ enum class Outcome
   Failed
 };
 
-bool isQuiet(vtkAlgorithm* algorithm)
-{
-  return algorithm->GetInformation()->Has(quietKey());
-}
-
 Outcome attempt(vtkAlgorithm* algorithm, const std::function<void()>& work)
 {
-  if (isQuiet(algorithm))
+  if (isInner(algorithm))
   {
     algorithm->GetInformation()->Remove(saidKey());
   }
@@ -161,7 +156,7 @@ Progress progressOf(vtkAlgorithm* algorithm)
 
 void warn(vtkAlgorithm* algorithm, const std::string& sentence)
 {
-  if (isQuiet(algorithm))
+  if (isInner(algorithm))
   {
     algorithm->GetInformation()->Append(warnedKey(), sentence);
   }
@@ -169,6 +164,11 @@ void warn(vtkAlgorithm* algorithm, const std::string& sentence)
   {
     vtkWarningWithObjectMacro(algorithm, << sentence);
   }
+}
+
+bool isInner(vtkAlgorithm* algorithm)
+{
+  return algorithm->GetInformation()->Has(quietKey());
 }
 
 void keepQuiet(vtkAlgorithm* algorithm)
@@ -208,7 +208,7 @@ int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
     algorithm->GetInformation()->Remove(refusedKey());
     return 1;
   }
-  if (isQuiet(algorithm))
+  if (isInner(algorithm))
   {
     return 0;
   }
@@ -237,15 +237,15 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
     abortOutputs(algorithm);
     return 1;
   }
-  const bool isInner = isQuiet(algorithm);
+  const bool inner = isInner(algorithm);
   const Outcome outcome = attempt(algorithm, work);
-  if (outcome == Outcome::Done && !isInner)
+  if (outcome == Outcome::Done && !inner)
   {
     keepOutputs(algorithm, outputVector);
   }
   else if (outcome == Outcome::Stopped && !algorithm->GetAbortOutput()) // not by VTK, which empties the outputs
   {
-    if (isInner)
+    if (inner)
     {
       algorithm->SetAbortExecute(1); // for the filter around it
       algorithm->SetAbortOutput(true);
@@ -257,7 +257,7 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
   }
   else if (outcome == Outcome::Failed)
   {
-    if (isInner)
+    if (inner)
     {
       return 0;
     }

@@ -8,6 +8,7 @@
 #include "vtkExecutive.h"
 #include "vtkNew.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sono {
@@ -84,16 +85,18 @@ void StageChain::updateInformation()
   }
 }
 
-void StageChain::update()
+void StageChain::update(vtkAlgorithm* last)
 {
-  for (const Link& link : links_)
+  const auto end = std::find_if(links_.begin(), links_.end(), [&](const Link& link) { return link.stage == last; }) + 1;
+  for (auto link = links_.begin(); link != end; ++link)
   {
-    if (link.stage->GetNumberOfInputPorts() > 0 && link.stage->GetNumberOfInputConnections(0) == 0)
+    vtkAlgorithm* stage = link->stage;
+    if (stage->GetNumberOfInputPorts() > 0 && stage->GetNumberOfInputConnections(0) == 0)
     {
       continue; // not in use
     }
-    const bool isMade = link.stage->GetExecutive()->Update() != 0;
-    for (const std::string& sentence : takeWarnings(link.stage))
+    const bool isMade = stage->GetExecutive()->Update() != 0;
+    for (const std::string& sentence : takeWarnings(stage))
     {
       warn(owner_, sentence);
     }
@@ -101,10 +104,10 @@ void StageChain::update()
     {
       throwFailure();
     }
-    if (link.stage->GetAbortExecute())
+    if (stage->GetAbortExecute())
     {
-      link.stage->AbortExecuteOff();
-      link.stage->Modified(); // what it left is not whole
+      stage->AbortExecuteOff();
+      stage->Modified(); // what it left is not whole
       throw Aborted();
     }
   }

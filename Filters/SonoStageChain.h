@@ -29,8 +29,9 @@ public:
   /// The information pass of the last link and all before it. Throws Error with the sentence of the one that failed.
   void updateInformation();
 
-  /// Makes the data of all links that are not up to date. Throws Error as above, Aborted when the owner is to stop.
-  void update();
+  /// Makes the data of the links up to `last` that are not up to date. Throws Error as above, Aborted when the owner is
+  /// to stop.
+  void update(vtkAlgorithm* last);
 
 private:
   void reportProgress(std::size_t link, double fraction);

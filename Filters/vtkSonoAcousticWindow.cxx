@@ -39,7 +39,7 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, bool fillBody, 
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
   builder->SetProgressText(owner->GetProgressText()); // it is a part of that
-  sono::StageChain(owner, { { builder, 0.5 } }).update();
+  sono::StageChain(owner, { { builder, 0.5 } }).update(builder);
   return vtkSonoSceneHandle::Get(builder->GetOutput());
 }
 

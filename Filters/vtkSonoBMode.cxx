@@ -1,7 +1,9 @@
 #include "vtkSonoBMode.h"
 
 #include "Image/BMode.h"
+#include "Simulator.h"
 #include "SonoLineImage.h"
+#include "SonoOutputs.h"
 #include "SonoProbeField.h"
 #include "SonoSettings.h"
 #include "SonoStage.h"
@@ -19,6 +21,7 @@ vtkStandardNewMacro(vtkSonoBMode);
 
 vtkSonoBMode::vtkSonoBMode()
   : Parameters(new sono::SettingsOf<sono::BModeSettings>)
+  , Simulator(new sono::Simulator)
 {
   this->SetProgressText("Making grey");
 }
@@ -82,14 +85,15 @@ int vtkSonoBMode::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
+    const sono::Carries carries = sono::isInner(this) ? sono::Carries::HandleAlone : sono::Carries::Arrays;
+    if (const sono::RfResult rf = sono::rfOf(lines))
+    {
+      return sono::fillBMode(this->Simulator->makeBMode(rf, this->Settings()), carries, vtkImageData::GetData(output));
+    }
     const std::vector<float> envelope =
       sono::lineValues("Envelope", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
-    const sono::BModeLines result =
-      sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm, this->Settings());
-
-    vtkImageData* image = vtkImageData::GetData(output);
-    sono::setLineImageLayout(layout, image);
-    image->GetPointData()->SetScalars(sono::lineArray("BMode", result.grey));
-    sono::writeNumber("ReferenceAmplitude", result.referenceAmplitude, image->GetFieldData());
+    sono::fillBMode(sono::BModeResult(sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm,
+                                                      this->Settings())),
+                    carries, vtkImageData::GetData(output));
   });
 }

@@ -8,6 +8,7 @@
 #include <memory>
 
 namespace sono {
+class Simulator;
 struct BModeSettings;
 }
 
@@ -76,6 +77,7 @@ private:
   void operator=(const vtkSonoBMode&) = delete;
 
   std::unique_ptr<sono::ParameterSet> Parameters;
+  std::unique_ptr<sono::Simulator> Simulator;
 };
 
 #endif

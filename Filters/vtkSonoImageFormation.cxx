@@ -1,15 +1,16 @@
 #include "vtkSonoImageFormation.h"
 
-#include "Echo/FormRf.h"
+#include "Core/Policy.h"
+#include "Simulator.h"
 #include "SonoFieldImage.h"
 #include "SonoLineImage.h"
+#include "SonoOutputs.h"
 #include "SonoProbeField.h"
 #include "SonoSettings.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
 #include "vtkDataArray.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -17,47 +18,19 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
-#include <algorithm>
-#include <optional>
-#include <type_traits>
+#include <memory>
+#include <vector>
 
 vtkStandardNewMacro(vtkSonoImageFormation);
 
 namespace {
 
-constexpr double previewCell = 2.0; // of the cell's edge that is set
-constexpr double widestCellMm = 10.0;
-
-sono::TracedLines tracedLines(vtkImageData* image, const sono::ProbeField& probe, double echoSampleMm)
-{
-  const sono::LineImageLayout layout = sono::lineImageLayout(image, probe.geometry.totalLineCount());
-  const std::size_t count = std::size_t(layout.lineCount) * layout.sampleCount;
-  sono::TracedLines traced;
-  traced.lineCount = layout.lineCount;
-  traced.binCount = layout.sampleCount;
-  traced.binMm = layout.sampleMm;
-  sono::TracedLines::visitArrays(traced, [&](auto& values, const char* name, sono::TracedAxis axis) {
-    vtkFieldData* from = axis == sono::TracedAxis::Bins ? image->GetPointData() : image->GetFieldData();
-    if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<float>>)
-    {
-      values = sono::lineValues(name, from, count);
-    }
-    else
-    {
-      values = sono::complexLineValues(name, from);
-    }
-  });
-  traced.echoCount = static_cast<int>(traced.boundaryEcho.size() / layout.lineCount);
-  traced.echoSampleMm = echoSampleMm;
-  return traced;
-}
-
-/// Nothing where no scatterers are connected.
-std::optional<sono::PointScatterers> pointScatterers(vtkPointSet* points)
+/// Null where no scatterers are connected.
+std::shared_ptr<const sono::PointScatterers> pointScatterers(vtkPointSet* points)
 {
   if (!points || points->GetNumberOfPoints() == 0)
   {
-    return std::nullopt;
+    return nullptr;
   }
   vtkDataArray* amplitude = points->GetPointData()->GetArray("Amplitude");
   if (!amplitude || amplitude->GetNumberOfComponents() != 1)
@@ -72,13 +45,14 @@ std::optional<sono::PointScatterers> pointScatterers(vtkPointSet* points)
     points->GetPoint(id, &scatterers[i].positionMm.x);
     scatterers[i].amplitude = static_cast<float>(amplitude->GetTuple1(id));
   }
-  return sono::PointScatterers(scatterers);
+  return std::make_shared<const sono::PointScatterers>(scatterers);
 }
 
 } // namespace
 
 vtkSonoImageFormation::vtkSonoImageFormation()
   : Parameters(new sono::SettingsOf<sono::EchoSettings>)
+  , Simulator(new sono::Simulator)
 {
   this->SetNumberOfInputPorts(3);
   this->SetProgressText("Forming echoes");
@@ -111,11 +85,8 @@ sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) co
   settings.fractionalBandwidth = probe.fractionalBandwidth;
   settings.samplingMHz = sono::readNumber("SamplingMHz", acquisition);
   settings.depthMm = probe.geometry.depthMm;
-  if (probe.preview)
-  {
-    settings.scattererCellMm =
-      std::min(previewCell * settings.scattererCellMm, std::max(settings.scattererCellMm, widestCellMm));
-  }
+  settings.scattererCellMm =
+    probe.preview ? sono::interactiveCellMm(settings.scattererCellMm) : settings.scattererCellMm;
   settings.validate();
   return settings;
 }
@@ -154,18 +125,12 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
     {
       settings.pulse = std::make_shared<const sono::SampledPulse>(sono::readPulse(this->PulseFileName));
     }
-    const auto scene = vtkSonoSceneHandle::Get(input0->GetFieldData());
-    const sono::TracedLines traced = tracedLines(input0, probe, settings.sampleMm());
-    const auto points = pointScatterers(vtkPointSet::GetData(input[1]));
-    const sono::EchoSources sources{ scene.get(), &traced, points ? &*points : nullptr };
-    const sono::RfLines lines =
-      sono::formRf(sources, sono::makeScanLines(probe.geometry, probe.pose), settings, sono::progressOf(this));
-
-    vtkImageData* image = vtkImageData::GetData(output);
-    sono::setLineImageLayout({ lines.sampleCount, lines.lineCount, 0.0, lines.sampleMm }, image);
-    image->GetPointData()->SetScalars(sono::lineArray("Envelope", lines.envelope()));
-    image->GetPointData()->AddArray(sono::lineArray("RF", lines.rf()));
-    image->GetPointData()->AddArray(sono::lineArray("IQ", lines.iq));
-    image->GetFieldData()->RemoveArray("BoundaryEcho"); // it came along from the input and is part of RF now
+    this->Simulator->setScene(vtkSonoSceneHandle::Get(input0->GetFieldData()));
+    const sono::TracedResult traced = sono::tracedOf(input0, probe, settings.sampleMm());
+    const sono::RfResult rf =
+      this->Simulator->formRf(sono::makeScanLines(probe.geometry, probe.pose), traced, settings,
+                              pointScatterers(vtkPointSet::GetData(input[1])), sono::progressOf(this));
+    sono::fillRf(rf, sono::isInner(this) ? sono::Carries::HandleAlone : sono::Carries::Arrays,
+                 vtkImageData::GetData(output));
   });
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 namespace sono {
+class Simulator;
 struct EchoSettings;
 }
 class vtkFieldData;
@@ -79,6 +80,7 @@ private:
   void operator=(const vtkSonoImageFormation&) = delete;
 
   std::unique_ptr<sono::ParameterSet> Parameters;
+  std::unique_ptr<sono::Simulator> Simulator;
   std::string PulseFileName;
 };
 

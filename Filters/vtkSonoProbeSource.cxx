@@ -61,6 +61,7 @@ void vtkSonoProbeSource::PrintSelf(ostream& os, vtkIndent indent)
   printVector("Axial", this->Axial);
   printVector("Lateral", this->Lateral);
   os << indent << "Preview: " << this->Preview << endl;
+  os << indent << "PrepareInteraction: " << this->PrepareInteraction << endl;
 }
 
 void vtkSonoProbeSource::SetNumber(const char* name, double value)
@@ -79,6 +80,7 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
                                                : sono::readProbePreset(presetPath(this->PresetFile));
   probe.geometry.validate();
   probe.preview = this->Preview;
+  probe.prepares = this->PrepareInteraction;
 
   const auto vector = [](const double* v) { return sono::Vec3d(v[0], v[1], v[2]); };
   const sono::ProbePose pose{ vector(this->PositionMm), vector(this->Axial), vector(this->Lateral) };

@@ -102,6 +102,15 @@ public:
   vtkBooleanMacro(Preview, bool);
   ///@}
 
+  ///@{
+  /**
+   * A widget may move the probe: after each full image the anatomy is made ready for that in the background, which
+   * takes memory and cores. Changes nothing in an image, so that nothing runs again for it. Default off.
+   */
+  void SetPrepareInteraction(bool prepare) { this->PrepareInteraction = prepare; }
+  vtkGetMacro(PrepareInteraction, bool);
+  ///@}
+
   /**
    * The probe, of the preset where one is named. Throws sono::Error for what is out of range.
    */
@@ -124,6 +133,7 @@ private:
   double Axial[3] = { -0.53, 0.65, 0.545 };
   double Lateral[3] = { 0.843, 0.333, 0.423 };
   bool Preview = false;
+  bool PrepareInteraction = false;
 };
 
 #endif

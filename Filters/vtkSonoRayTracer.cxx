@@ -1,7 +1,10 @@
 #include "vtkSonoRayTracer.h"
 
+#include "Core/Policy.h"
 #include "Echo/FormRf.h"
+#include "Simulator.h"
 #include "SonoLineImage.h"
+#include "SonoOutputs.h"
 #include "SonoPaths.h"
 #include "SonoProbeField.h"
 #include "SonoSettings.h"
@@ -9,23 +12,18 @@
 #include "SonoTargets.h"
 #include "Trace/ProbeContact.h"
 #include "Trace/RecordPaths.h"
-#include "Trace/Trace.h"
 #include "Trace/TraceDevice.h"
 #include "vtkSonoSceneHandle.h"
 
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
-
-#include <algorithm>
 
 vtkStandardNewMacro(vtkSonoRayTracer);
 
@@ -40,13 +38,10 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
   return grid;
 }
 
-constexpr int previewPaths = 60;
-constexpr double previewSamplesPerPeriod = 4.0;
-
 /// Of the RF of this probe.
 double rfSamplingMHz(double settingMHz, const sono::ProbeField& probe)
 {
-  return probe.preview ? std::min(settingMHz, previewSamplesPerPeriod * probe.centreFrequencyMHz) : settingMHz;
+  return probe.preview ? sono::interactiveSamplingMHz(settingMHz, probe.centreFrequencyMHz) : settingMHz;
 }
 
 /// The tissues by the numbers that recorded paths give them.
@@ -68,6 +63,7 @@ std::vector<std::string> mediaNames(const sono::Scene& scene, const std::vector<
 
 vtkSonoRayTracer::vtkSonoRayTracer()
   : Parameters(new sono::SettingsOf<sono::TraceSettings>)
+  , Simulator(new sono::Simulator)
 {
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(4);
@@ -104,7 +100,7 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
 {
   auto settings = sono::settingsIn<sono::TraceSettings>(*this->Parameters);
-  settings.pathsPerLine = probe.preview ? std::min(settings.pathsPerLine, previewPaths) : settings.pathsPerLine;
+  settings.pathsPerLine = probe.preview ? sono::interactivePaths(settings.pathsPerLine) : settings.pathsPerLine;
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
   settings.depthMm = probe.geometry.depthMm;
@@ -153,11 +149,12 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     }
     const sono::Progress progress = sono::progressOf(this);
     const double share = this->NumberOfShownPaths != 0 ? 0.9 : 1.0;
-    const sono::TracedLines traced =
-      sono::trace(*scene, scanLines, settings, sono::partOf(progress, 0.0, share), targets);
-    if (!probe.preview)
+    this->Simulator->setScene(scene);
+    const sono::TracedResult traced =
+      this->Simulator->trace(scanLines, settings, targets, sono::partOf(progress, 0.0, share));
+    if (probe.prepares && !probe.preview)
     {
-      sono::prepareInteractive(*scene, scanLines, settings);
+      this->Simulator->prepareInteractive(scanLines, settings);
     }
     if (this->NumberOfShownPaths != 0)
     {
@@ -166,26 +163,15 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
       sono::fillPaths(paths, vtkPolyData::GetData(output, 2));
       sono::fillHits(paths, mediaNames(*scene, targets), vtkPolyData::GetData(output, 3));
     }
-
+    const sono::Carries carries = sono::isInner(this) ? sono::Carries::HandleAlone : sono::Carries::Arrays;
     vtkImageData* lines = vtkImageData::GetData(output, 0);
-    sono::setLineImageLayout({ traced.binCount, traced.lineCount, traced.binMm / 2.0, traced.binMm }, lines);
-    vtkImageData* echoes = vtkImageData::GetData(output, 1);
-    sono::setLineImageLayout({ traced.echoCount, traced.lineCount, 0.0, traced.echoSampleMm }, echoes);
-    for (vtkImageData* image : { lines, echoes })
+    sono::fillTraced(traced, probe, rfSamplingMHz(this->SamplingMHz, probe), carries, lines);
+    if (carries == sono::Carries::Arrays)
     {
-      sono::writeProbe(probe, image->GetFieldData());
-      sono::writeNumber("SamplingMHz", rfSamplingMHz(this->SamplingMHz, probe), image->GetFieldData());
+      vtkImageData* echoes = vtkImageData::GetData(output, 1);
+      sono::fillEchoes(traced, lines, echoes);
+      sono::writeProbe(probe, echoes->GetFieldData());
+      sono::writeNumber("SamplingMHz", rfSamplingMHz(this->SamplingMHz, probe), echoes->GetFieldData());
     }
-    sono::TracedLines::visitArrays(traced, [&](const auto& values, const char* name, sono::TracedAxis axis) {
-      const bool isOfBins = axis == sono::TracedAxis::Bins;
-      const auto array = sono::lineArray(name, values);
-      (isOfBins ? lines : echoes)->GetPointData()->AddArray(array);
-      if (!isOfBins)
-      {
-        lines->GetFieldData()->AddArray(array); // it alone suffices for the image formation
-      }
-    });
-    lines->GetPointData()->SetActiveScalars("Intensity");
-    echoes->GetPointData()->SetActiveScalars("BoundaryEcho");
   });
 }

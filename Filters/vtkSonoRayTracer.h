@@ -9,6 +9,7 @@
 #include <string>
 
 namespace sono {
+class Simulator;
 struct ProbeField;
 struct TraceSettings;
 }
@@ -122,6 +123,7 @@ private:
   void operator=(const vtkSonoRayTracer&) = delete;
 
   std::unique_ptr<sono::ParameterSet> Parameters;
+  std::unique_ptr<sono::Simulator> Simulator;
   double SamplingMHz = 50.0;
   std::string TargetTissue = "cortical_bone";
   int NumberOfShownPaths = 0;

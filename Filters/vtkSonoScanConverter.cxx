@@ -1,12 +1,12 @@
 #include "vtkSonoScanConverter.h"
 
 #include "Image/LabelSlice.h"
-#include "Image/ScanConvert.h"
-#include "Image/ScanConvertVolume.h"
 #include "Scene/Scene.h"
+#include "Simulator.h"
 #include "SonoImagePlacement.h"
 #include "SonoLabelImage.h"
 #include "SonoLineImage.h"
+#include "SonoOutputs.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
@@ -14,78 +14,30 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkUnsignedShortArray.h"
-
-#include <algorithm>
-#include <cmath>
 
 vtkStandardNewMacro(vtkSonoScanConverter);
 
 namespace {
 
-template<class Array, class Values, class Change>
-void addArray(const char* name, const Values& values, vtkPointData* arrays, const Change& change)
-{
-  vtkNew<Array> array;
-  array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
-  std::transform(values.begin(), values.end(), array->GetPointer(0), change);
-  arrays->AddArray(array);
-}
-
-/// Of the scene that was traced; null where the data lost it, as in files.
-std::shared_ptr<const sono::LabelVolume> sceneLabels(vtkFieldData* field)
+/// That was traced; null where the data lost it, as in files.
+std::shared_ptr<const sono::Scene> sceneOf(vtkFieldData* field)
 {
   for (int i = 0; i < field->GetNumberOfArrays(); ++i)
   {
     if (vtkSonoSceneHandle::SafeDownCast(field->GetAbstractArray(i)))
     {
-      const auto scene = vtkSonoSceneHandle::Get(field);
-      return { scene, &scene->volume() };
+      return vtkSonoSceneHandle::Get(field);
     }
   }
   return nullptr;
 }
 
-/// A plane or a volume, and the labels there.
-template<class Converted>
-void fillImage(const Converted& converted, const sono::ProbePose& pose, const sono::LabelVolume* labels,
-               vtkImageData* image, vtkImageData* flat)
-{
-  const sono::ImagePlacement placement(converted, pose);
-  placement.place(image);
-  vtkPointData* arrays = image->GetPointData();
-  // From 1 on, so that a colour map can leave out what was not scanned and still show black.
-  addArray<vtkUnsignedCharArray>("BMode", converted.value, arrays, [](float value) {
-    return static_cast<unsigned char>(std::max(1L, std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))));
-  });
-  auto* grey = vtkUnsignedCharArray::SafeDownCast(arrays->GetArray("BMode"));
-  for (std::size_t i = 0; i < converted.mask.size(); ++i)
-  {
-    if (!converted.mask[i])
-    {
-      grey->SetValue(static_cast<vtkIdType>(i), 0);
-    }
-  }
-  arrays->SetActiveScalars("BMode");
-  addArray<vtkUnsignedCharArray>("Mask", converted.mask, arrays, [](std::uint8_t inside) { return inside; });
-  if (labels)
-  {
-    addArray<vtkUnsignedShortArray>("Labels", sono::sliceLabels(*labels, pose, converted), arrays,
-                                    [](std::uint16_t label) { return label; });
-    sono::writeLabelTable(labels->labels, image->GetFieldData());
-  }
-  flat->ShallowCopy(image);
-  placement.flat(pose).place(flat);
-}
-
 } // namespace
 
 vtkSonoScanConverter::vtkSonoScanConverter()
+  : Simulator(new sono::Simulator)
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
@@ -153,26 +105,31 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
-    const std::vector<float> grey =
-      sono::lineValues("BMode", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
-    auto labels = this->ConnectedLabels(vtkImageData::GetData(input[1]));
-    if (!labels)
+    sono::BModeResult bmode = sono::bmodeOf(lines);
+    if (!bmode)
     {
-      labels = sceneLabels(lines->GetFieldData());
+      bmode = sono::BModeResult(
+        { layout.lineCount, layout.sampleCount, layout.sampleMm, 0.0,
+          sono::lineValues("BMode", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount) });
     }
+    const auto connected = this->ConnectedLabels(vtkImageData::GetData(input[1]));
+    const auto scene = sceneOf(lines->GetFieldData());
+    this->Simulator->setScene(scene);
     const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
-    const auto fill = [&](const auto& converted) {
-      fillImage(converted, probe.pose, labels.get(), vtkImageData::GetData(output, 0),
-                vtkImageData::GetData(output, 1));
-    };
-    if (probe.geometry.isVolume())
+    const sono::ImageResult image =
+      this->Simulator->scanConvert(probe.geometry, bmode, pixelMm, sono::progressOf(this));
+    sono::ScanPicture picture = this->Simulator->picture(image, probe.pose, scene && !connected);
+    if (connected)
     {
-      fill(sono::scanConvertVolume(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm,
-                                   sono::progressOf(this)));
+      picture.labels = sono::SharedSpan<std::uint16_t>(
+        image.isVolume() ? sono::sliceLabels(*connected, probe.pose, image.volume())
+                         : sono::sliceLabels(*connected, probe.pose, image.plane().host()));
     }
-    else
+    vtkImageData* world = vtkImageData::GetData(output, 0);
+    if (connected || scene)
     {
-      fill(sono::scanConvert(probe.geometry, grey, layout.sampleCount, layout.sampleMm, pixelMm));
+      sono::writeLabelTable(connected ? connected->labels : scene->volume().labels, world->GetFieldData());
     }
+    sono::fillImage(image, picture, probe.pose, world, vtkImageData::GetData(output, 1));
   });
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 namespace sono {
+class Simulator;
 struct LabelVolume;
 }
 
@@ -57,6 +58,7 @@ private:
 
   std::shared_ptr<const sono::LabelVolume> ConnectedLabels(vtkImageData* image);
 
+  std::unique_ptr<sono::Simulator> Simulator;
   double PixelMm = 0.23;
   std::shared_ptr<const sono::LabelVolume> Labels; // of port 1, kept while its image is unchanged
   vtkMTimeType LabelsTime = 0;                     // of that image

@@ -35,6 +35,8 @@ void vtkSonoSceneHandle::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Scene: " << (this->Scene ? summary(*this->Scene) : "none") << endl;
+  os << indent << "Prepared for a moving probe: " << (this->Scene && this->Scene->hasInteractiveRegion() ? "yes" : "no")
+     << endl;
 }
 
 void vtkSonoSceneHandle::Attach(std::shared_ptr<const sono::Scene> scene,

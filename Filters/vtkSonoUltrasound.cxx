@@ -1,6 +1,8 @@
 #include "vtkSonoUltrasound.h"
 
 #include "SonoChestDefaults.h"
+#include "SonoContent.h"
+#include "SonoOutputs.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "SonoStageChain.h"
@@ -17,13 +19,13 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
-#include "vtkMatrix3x3.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -59,12 +61,10 @@ void announceSame(vtkInformation* from, vtkInformation* to)
   sono::announceFields(sono::announcedFields(from), to);
 }
 
-void appendTimes(vtkFieldData* arrays, std::vector<double>& content)
+/// The output that somebody asks for; the image where nobody does.
+int portAsked(vtkInformation* request)
 {
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    content.push_back(static_cast<double>(arrays->GetAbstractArray(i)->GetMTime()));
-  }
+  return std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
 }
 
 /// A data object belongs to one pipeline. Null of null.
@@ -79,32 +79,11 @@ vtkSmartPointer<vtkDataObject> copyOf(vtkDataObject* input)
   return copy;
 }
 
-/// What tells one input from another. The time of a data object itself does not: ParaView makes a new shallow copy of
-/// the same data for each run. Times are unique, so that equal ones of the arrays mean the same arrays.
-std::vector<double> contentOf(vtkDataObject* input)
+/// Whether an output is made when another is asked for. Those that are not keep their data until they are asked for.
+bool isMadeFor(int asked, int port)
 {
-  std::vector<double> content;
-  appendTimes(input->GetFieldData(), content);
-  if (auto* image = vtkImageData::SafeDownCast(input))
-  {
-    appendTimes(image->GetPointData(), content);
-    content.insert(content.end(), image->GetExtent(), image->GetExtent() + 6);
-    content.insert(content.end(), image->GetOrigin(), image->GetOrigin() + 3);
-    content.insert(content.end(), image->GetSpacing(), image->GetSpacing() + 3);
-    const double* direction = image->GetDirectionMatrix()->GetData();
-    content.insert(content.end(), direction, direction + 9);
-  }
-  if (auto* points = vtkPointSet::SafeDownCast(input))
-  {
-    appendTimes(points->GetPointData(), content);
-    appendTimes(points->GetCellData(), content);
-    content.push_back(points->GetPoints() ? static_cast<double>(points->GetPoints()->GetMTime()) : 0.0);
-  }
-  if (auto* surface = vtkPolyData::SafeDownCast(input))
-  {
-    content.push_back(static_cast<double>(surface->GetMeshMTime()));
-  }
-  return content;
+  const auto isImage = [](int p) { return p == vtkSonoUltrasound::IMAGE || p == vtkSonoUltrasound::FLAT_IMAGE; };
+  return port == asked || (isImage(asked) && isImage(port));
 }
 
 } // namespace
@@ -124,6 +103,8 @@ public:
   void share(bool wantsErrorMap);
   /// The stage and its port that make an output.
   vtkAlgorithmOutput* port(int outputPort) const;
+  /// The last stage that an output needs.
+  vtkAlgorithm* stageOf(int outputPort) const;
   /// Whether that stage runs.
   bool isMade(int outputPort) const;
   /// Those that have settings.
@@ -193,7 +174,7 @@ void vtkSonoUltrasound::Stages::connect(vtkInformationVector** input)
 
 void vtkSonoUltrasound::Stages::connectOptional(int port, vtkDataObject* input, vtkAlgorithm* stage, int stagePort)
 {
-  std::vector<double> content = input ? contentOf(input) : std::vector<double>();
+  std::vector<double> content = input ? sono::contentOf(input) : std::vector<double>();
   if (content != connected_[port])
   {
     connected_[port] = std::move(content);
@@ -207,7 +188,7 @@ void vtkSonoUltrasound::Stages::connectMain(vtkDataObject* input)
   {
     throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
   }
-  std::vector<double> content = contentOf(input);
+  std::vector<double> content = sono::contentOf(input);
   if (content == connected_[LABELS_OR_SCENE] && tracer->GetNumberOfInputConnections(0) > 0)
   {
     return;
@@ -245,6 +226,11 @@ void vtkSonoUltrasound::Stages::share(bool wantsErrorMap)
 bool vtkSonoUltrasound::Stages::isMade(int outputPort) const
 {
   return outputPort != ERROR_MAP || errors->GetNumberOfInputConnections(0) > 0;
+}
+
+vtkAlgorithm* vtkSonoUltrasound::Stages::stageOf(int outputPort) const
+{
+  return outputPort == ANATOMY ? static_cast<vtkAlgorithm*>(scene) : port(outputPort)->GetProducer();
 }
 
 vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
@@ -399,23 +385,47 @@ int vtkSonoUltrasound::RequestUpdateExtent(vtkInformation*, vtkInformationVector
   return 1;
 }
 
-int vtkSonoUltrasound::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+int vtkSonoUltrasound::ProcessRequest(vtkInformation* request, vtkInformationVector** input,
+                                      vtkInformationVector* output)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()))
+  {
+    for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+    {
+      if (!isMadeFor(portAsked(request), port))
+      {
+        output->GetInformationObject(port)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+      }
+    }
+  }
+  return this->Superclass::ProcessRequest(request, input, output);
+}
+
+int vtkSonoUltrasound::RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
     this->Chain->connect(input);
     this->Chain->chooseLabels(this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME()));
-    this->Chain->chain->update();
+    const int asked = portAsked(request);
+    this->Chain->chain->update(this->Chain->stageOf(asked));
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
     {
-      if (this->Chain->isMade(port))
+      if (isMadeFor(asked, port) && this->Chain->isMade(port))
       {
         vtkAlgorithmOutput* made = this->Chain->port(port);
-        vtkDataObject::GetData(output, port)->ShallowCopy(made->GetProducer()->GetOutputDataObject(made->GetIndex()));
+        vtkDataObject* data = made->GetProducer()->GetOutputDataObject(made->GetIndex());
+        if (auto* lines = vtkImageData::SafeDownCast(data))
+        {
+          sono::addArrays(lines);
+        }
+        vtkDataObject::GetData(output, port)->ShallowCopy(data);
       }
     }
-    if (this->Chain->isMade(ERROR_MAP))
+    if (isMadeFor(asked, IMAGE) && this->Chain->isMade(ERROR_MAP))
     {
-      vtkDataArray* percent = vtkImageData::GetData(output, ERROR_MAP)->GetPointData()->GetScalars();
+      vtkAlgorithmOutput* map = this->Chain->port(ERROR_MAP);
+      vtkDataArray* percent =
+        vtkImageData::SafeDownCast(map->GetProducer()->GetOutputDataObject(0))->GetPointData()->GetScalars();
       for (int port : { IMAGE, FLAT_IMAGE })
       {
         vtkImageData::GetData(output, port)->GetPointData()->AddArray(percent);

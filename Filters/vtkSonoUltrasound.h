@@ -97,6 +97,12 @@ public:
   vtkBooleanMacro(ErrorMap, bool);
   ///@}
 
+  /**
+   * An output is made when it is asked for: the images by Update(), another by Update(port).
+   */
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** input,
+                             vtkInformationVector* output) override;
+
 protected:
   vtkSonoUltrasound();
   ~vtkSonoUltrasound() override;

@@ -23,7 +23,7 @@ set(public_headers
   Probe/PulseEchoFieldFile.h
   Probe/PulseFile.h
   Scene/SceneFile.h
-  Simulate.h
+  Simulator.h
   Trace/ProbeContact.h
   Trace/RecordPaths.h
   Trace/Trace.h)

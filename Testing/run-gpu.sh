@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # The tests and the benchmark of the GPU, for a machine with a GPU and a driver but none of the simulator's libraries.
-#   run-gpu.sh pack [PART] here: builds, and packs programs, libraries and jobs (or one of them) into build-gpu
+#   run-gpu.sh pack [PART] here: builds, and packs programs and libraries (or one of them) into build-gpu
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
+#   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh sanitize    there: the checks of compute-sanitizer on small scenes
 set -euo pipefail
@@ -20,29 +21,41 @@ archive()
 
 pack_programs()
 {
-  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark WriteGpuJobs study_curves
+  "$root/Testing/build-preset.sh" simulation GpuTests GpuBenchmark study_curves
   local work
   work="$(mktemp -d)"
   cp "$bin/GpuTests" "$bin/GpuBenchmark" "$bin/study_curves" "$root"/Data/*.csv "$work"
   archive programs "$work"
 }
 
+# All but the C library and the loader, which must be those of the machine.
+libraries_of()
+{
+  ldd "$1" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' | sort -u |
+    xargs -I{} cp -L {} "$2"
+}
+
 pack_libraries()
 {
   local work
   work="$(mktemp -d)"
-  # All but the C library and the loader, which must be those of the machine.
-  ldd "$bin/GpuTests" "$bin/study_curves" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' |
-    sort -u | xargs -I{} cp -L {} "$work"
+  libraries_of "$bin/GpuTests" "$work"
+  libraries_of "$bin/study_curves" "$work"
   archive libraries "$work"
 }
 
-pack_jobs()
+pack_filters()
 {
+  local build="$root/build"
+  "$root/Testing/build-preset.sh" release FilterBenchmark
   local work
   work="$(mktemp -d)"
-  "$bin/WriteGpuJobs" "$work"
-  archive jobs "$work"
+  mkdir -p "$work/lib" "$work/share"
+  cp "$build/bin/FilterBenchmark" "$root"/Data/*.csv "$work"
+  cp -rL "$build/share/sonovdb" "$work/share"
+  cp "$build"/lib/libvtkSonoFilters.so* "$work/lib"
+  libraries_of "$build/bin/FilterBenchmark" "$work/lib"
+  archive filters "$work"
 }
 
 unpack()
@@ -67,7 +80,7 @@ with_libraries()
 case "${1:-}" in
   pack)
     mkdir -p "$pack"
-    for part in ${2:-programs libraries jobs}; do
+    for part in ${2:-programs libraries}; do
       "pack_$part"
     done
     ls -l "$pack"
@@ -77,8 +90,12 @@ case "${1:-}" in
     with_libraries "$unpacked/programs/GpuTests"
     ;;
   benchmark)
-    unpack programs libraries jobs
-    with_libraries "$unpacked/programs/GpuBenchmark" "$unpacked/jobs/a4c.sonojob" "$unpacked/jobs/s1.sonojob"
+    unpack programs libraries
+    with_libraries "$unpacked/programs/GpuBenchmark"
+    ;;
+  filters)
+    unpack filters
+    SONOVDB_DATA_DIR="$unpacked/filters" LD_LIBRARY_PATH="$unpacked/filters/lib" "$unpacked/filters/FilterBenchmark"
     ;;
   study)
     unpack programs libraries
@@ -92,7 +109,7 @@ case "${1:-}" in
     done
     ;;
   *)
-    sed -n '2,7s/^# *//p' "$0" >&2
+    sed -n '2,8s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac

@@ -84,6 +84,8 @@ bool hasChangesBeside(vtkSMProxy* moving)
 pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
   : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, withLayout(smproxy, group), parentObject)
 {
+  // Somebody may drag this probe. It is no change of an image and waits for no Apply.
+  vtkSMPropertyHelper(smproxy, "PrepareInteraction", true).Set(1);
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setHorizontalSpacing(4);

@@ -1,5 +1,7 @@
 #include "Cuda/DeviceDisplay.cuh"
 
+#include "Kernel/GreyByte.h"
+
 #include <algorithm>
 
 namespace sono {
@@ -8,13 +10,14 @@ namespace {
 
 constexpr int threads = 256;
 
-__global__ void addNoise(float* envelope, std::size_t count, int lines, int samples, float rms, std::uint64_t seed)
+__global__ void addNoise(const float* envelope, float* noisy, std::size_t count, int lines, int samples, float rms,
+                         std::uint64_t seed)
 {
   const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
   if (i < count)
   {
     const std::size_t line = i / samples;
-    envelope[i] = noisyEnvelope(envelope[i], rms, seed, std::uint32_t(line % lines), std::uint32_t(i % samples));
+    noisy[i] = noisyEnvelope(envelope[i], rms, seed, std::uint32_t(line % lines), std::uint32_t(i % samples));
   }
 }
 
@@ -162,13 +165,23 @@ __global__ void compressSamples(const float* envelope, const double* gainDb, con
   }
 }
 
-__global__ void fillPixels(PlaneScan scan, const float* grey, std::size_t perImage, float* pixels, std::uint8_t* mask)
+/// What a thread's pixel is, with the place of its value; blockIdx.z is the image.
+struct Pixel
+{
+  bool exists;
+  bool inside;
+  float line;
+  float depthMm;
+  std::size_t at;
+};
+
+__device__ Pixel pixelOf(const PlaneScan& scan)
 {
   const int i = blockIdx.y * blockDim.x + threadIdx.x;
   const int j = blockIdx.x * blockDim.y + threadIdx.y; // the longer axis of a grid, for any height
   if (i >= scan.width || j >= scan.height)
   {
-    return;
+    return { false, false, 0.0f, 0.0f, 0 };
   }
   const float lateral = scan.lateralMm(i);
   const float x = scan.beams.axialFromCentre(scan.axialMm(j));
@@ -176,38 +189,76 @@ __global__ void fillPixels(PlaneScan scan, const float* grey, std::size_t perIma
   const float line =
     parallel ? scan.beams.lineOfParallel(lateral) : scan.beams.lineOfFan(lateral, PlaneBeams::notZero(x));
   const float depth = parallel ? x - scan.beams.faceRadiusMm : scan.beams.depthInFan(lateral, x);
-  const bool inside = scan.area.contains(line, depth);
-  const std::size_t at = (std::size_t(blockIdx.z) * scan.height + std::size_t(j)) * scan.width + std::size_t(i);
-  pixels[at] = inside ? scan.samples(grey + blockIdx.z * perImage).at(line, depth * scan.samplesPerMm) : 0.0f;
-  if (blockIdx.z == 0)
+  return { true, scan.area.contains(line, depth), line, depth,
+           (std::size_t(blockIdx.z) * scan.height + std::size_t(j)) * scan.width + std::size_t(i) };
+}
+
+__device__ float levelOf(const PlaneScan& scan, const float* grey, const Pixel& pixel)
+{
+  const std::size_t perImage = std::size_t(scan.lineCount) * scan.sampleCount;
+  return scan.samples(grey + blockIdx.z * perImage).at(pixel.line, pixel.depthMm * scan.samplesPerMm);
+}
+
+__global__ void fillBytes(PlaneScan scan, const float* grey, std::uint8_t* bytes)
+{
+  const Pixel pixel = pixelOf(scan);
+  if (pixel.exists)
   {
-    mask[at] = inside ? 1 : 0; // the same for all images
+    bytes[pixel.at] = pixel.inside ? greyByte(levelOf(scan, grey, pixel)) : std::uint8_t(0);
   }
+}
+
+__global__ void fillLevels(PlaneScan scan, const float* grey, float* levels)
+{
+  const Pixel pixel = pixelOf(scan);
+  if (pixel.exists)
+  {
+    levels[pixel.at] = pixel.inside ? levelOf(scan, grey, pixel) : 0.0f;
+  }
+}
+
+__global__ void fillMask(PlaneScan scan, std::uint8_t* mask)
+{
+  const Pixel pixel = pixelOf(scan);
+  if (pixel.exists)
+  {
+    mask[pixel.at] = pixel.inside ? 1 : 0;
+  }
+}
+
+constexpr int blockWidth = 32;
+constexpr int blockHeight = 8;
+
+dim3 pixelGrid(const PlaneScan& scan, int images)
+{
+  return dim3((scan.height + blockHeight - 1) / blockHeight, (scan.width + blockWidth - 1) / blockWidth, images);
 }
 
 } // namespace
 
-void DeviceDisplay::prepare(const ImageJob& job, cudaStream_t stream, Traffic& traffic)
+void DeviceDisplay::prepare(const BModeJob& job, cudaStream_t stream, Traffic& traffic)
 {
-  settings_ = *job.bmode;
-  factor_.upload(settings_.gainFactor, stream, traffic);
-  gainDb_.upload(settings_.gainDb, stream, traffic);
-  lines_ = job.linesPerImage();
-  samples_ = job.echo->sampleCount;
-  scan_ = job.scan;
+  settings_ = job;
+  settings_.gainFactor.clear();
+  settings_.gainDb.clear();
+  factor_.upload(job.gainFactor, stream, traffic);
+  gainDb_.upload(job.gainDb, stream, traffic);
 }
 
-void DeviceDisplay::compress(float* envelope, int images, cudaStream_t stream)
+GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines, int samples, cudaStream_t stream)
 {
-  const std::size_t perImage = std::size_t(lines_) * samples_;
+  const std::size_t perImage = std::size_t(lines) * samples;
   const std::size_t count = perImage * images;
-  reference_.resize(images);
-  grey_.resize(count);
+  GreyArrays out;
+  out.reference.resize(images);
+  out.grey.resize(count);
   const int imageBlocks = (images + threads - 1) / threads;
   if (settings_.noiseRms > 0.0f)
   {
+    noisy_.resize(count);
     addNoise<<<unsigned((count + threads - 1) / threads), threads, 0, stream>>>(
-      envelope, count, lines_, samples_, settings_.noiseRms, settings_.noiseSeed);
+      envelope, noisy_.data(), count, lines, samples, settings_.noiseRms, settings_.noiseSeed);
+    envelope = noisy_.data();
   }
   if (settings_.automaticReference)
   {
@@ -218,29 +269,49 @@ void DeviceDisplay::compress(float* envelope, int images, cudaStream_t stream)
     const auto rank = std::uint32_t(perImage - perImage / 1000);
     for (const auto pass : { findRank<0>, findRank<1>, findRank<2> })
     {
-      pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples_, perImage, rank, states, reference_.data());
+      pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples, perImage, rank, states,
+                                         out.reference.data());
     }
   }
   else
   {
-    setReference<<<imageBlocks, threads, 0, stream>>>(reference_.data(), images, settings_.referenceAmplitude);
+    setReference<<<imageBlocks, threads, 0, stream>>>(out.reference.data(), images, settings_.referenceAmplitude);
   }
   const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 1024, 2048))), images);
-  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), reference_.data(), samples_, perImage,
-                                                settings_.rangeDb, settings_.rejectDb, settings_.greyMap, grey_.data());
+  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), out.reference.data(), samples, perImage,
+                                                settings_.rangeDb, settings_.rejectDb, settings_.greyMap,
+                                                out.grey.data());
   check(cudaGetLastError(), "compressing grey levels");
+  return out;
 }
 
-void DeviceDisplay::convert(int images, cudaStream_t stream)
+DeviceArray<std::uint8_t> DeviceDisplay::convert(const PlaneScan& scan, const float* grey, int images,
+                                                 cudaStream_t stream)
 {
-  const std::size_t perImage = std::size_t(scan_->width) * scan_->height;
-  pixels_.resize(perImage * images);
-  mask_.resize(perImage);
-  const dim3 block(32, 8);
-  const dim3 grid((scan_->height + block.y - 1) / block.y, (scan_->width + block.x - 1) / block.x, images);
-  fillPixels<<<grid, block, 0, stream>>>(*scan_, grey_.data(), std::size_t(lines_) * samples_, pixels_.data(),
-                                         mask_.data());
+  DeviceArray<std::uint8_t> bytes;
+  bytes.resize(std::size_t(scan.width) * scan.height * images);
+  fillBytes<<<pixelGrid(scan, images), dim3(blockWidth, blockHeight), 0, stream>>>(scan, grey, bytes.data());
   check(cudaGetLastError(), "converting lines into an image");
+  return bytes;
+}
+
+DeviceArray<float> DeviceDisplay::convertLevels(const PlaneScan& scan, const float* grey, int images,
+                                                cudaStream_t stream)
+{
+  DeviceArray<float> levels;
+  levels.resize(std::size_t(scan.width) * scan.height * images);
+  fillLevels<<<pixelGrid(scan, images), dim3(blockWidth, blockHeight), 0, stream>>>(scan, grey, levels.data());
+  check(cudaGetLastError(), "converting lines into an image");
+  return levels;
+}
+
+DeviceArray<std::uint8_t> DeviceDisplay::maskOf(const PlaneScan& scan, cudaStream_t stream)
+{
+  DeviceArray<std::uint8_t> mask;
+  mask.resize(std::size_t(scan.width) * scan.height);
+  fillMask<<<pixelGrid(scan, 1), dim3(blockWidth, blockHeight), 0, stream>>>(scan, mask.data());
+  check(cudaGetLastError(), "converting lines into an image");
+  return mask;
 }
 
 } // namespace sono

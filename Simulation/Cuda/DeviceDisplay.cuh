@@ -5,32 +5,34 @@
 
 namespace sono {
 
+/// Grey levels in beam space on the device.
+struct GreyArrays
+{
+  DeviceArray<float> grey;       ///< lines x samples
+  DeviceArray<double> reference; ///< of each image
+};
+
 /// Grey levels and pixels on the device.
 class DeviceDisplay
 {
 public:
-  void prepare(const ImageJob& job, cudaStream_t stream, Traffic& traffic);
-  /// Grey levels of `images` images; `envelope` (lines x samples) gets the receiver's noise.
-  void compress(float* envelope, int images, cudaStream_t stream);
-  void convert(int images, cudaStream_t stream);
-
-  const float* grey() const { return grey_.data(); }
-  const double* reference() const { return reference_.data(); }
-  const float* pixels() const { return pixels_.data(); }
-  const std::uint8_t* mask() const { return mask_.data(); }
+  /// Uploads the tables of a job.
+  void prepare(const BModeJob& job, cudaStream_t stream, Traffic& traffic);
+  /// Grey levels of `images` images of `lines` lines each, from their envelopes.
+  GreyArrays compress(const float* envelope, int images, int lines, int samples, cudaStream_t stream);
+  /// Of each image its pixels as bytes (see greyByte).
+  DeviceArray<std::uint8_t> convert(const PlaneScan& scan, const float* grey, int images, cudaStream_t stream);
+  /// The same as levels from 0 to 1, and 0 outside.
+  DeviceArray<float> convertLevels(const PlaneScan& scan, const float* grey, int images, cudaStream_t stream);
+  /// 1 for each pixel inside the scanned area, else 0.
+  DeviceArray<std::uint8_t> maskOf(const PlaneScan& scan, cudaStream_t stream);
 
 private:
   BModeJob settings_; ///< without its tables
-  int lines_ = 0;     ///< of an image
-  int samples_ = 0;
-  std::optional<PlaneScan> scan_;
   DeviceArray<float> factor_;
   DeviceArray<double> gainDb_;
   DeviceArray<std::uint8_t> rank_;
-  DeviceArray<double> reference_;
-  DeviceArray<float> grey_;
-  DeviceArray<float> pixels_;
-  DeviceArray<std::uint8_t> mask_;
+  DeviceArray<float> noisy_;
 };
 
 } // namespace sono

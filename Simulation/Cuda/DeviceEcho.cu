@@ -238,6 +238,25 @@ Vec2f DeviceEcho::ellipse(const Sight& sight) const
   return sight.some ? Vec2f(1.4143f * sight.lateralMm, 1.4143f * sight.elevationalMm) : beamCutSigma * sigmas_;
 }
 
+void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  const double radPerSample = job.radPerMm * job.sampleMm;
+  if (carrier_.size() == std::size_t(job.sumCount) && carrierRadPerSample_ == radPerSample)
+  {
+    return;
+  }
+  std::vector<float2> carrier;
+  carrier.reserve(std::size_t(job.sumCount));
+  for (int s = 0; s < job.sumCount; ++s)
+  {
+    const double phase = job.radPerMm * s * job.sampleMm;
+    carrier.push_back({ float(std::cos(phase)), float(-std::sin(phase)) });
+  }
+  carrierRadPerSample_ = 0.0; // stays so when the upload fails
+  carrier_.upload(carrier, stream, traffic);
+  carrierRadPerSample_ = radPerSample;
+}
+
 void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
 {
   sampleCount_ = job.sampleCount;
@@ -249,13 +268,7 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   std::vector<float> pulse = job.pulseRe;
   pulse.insert(pulse.end(), job.pulseIm.begin(), job.pulseIm.end());
   pulse_.upload(pulse, stream, traffic);
-  std::vector<float2> carrier;
-  for (int s = 0; s < job.sumCount; ++s)
-  {
-    const double phase = job.radPerMm * s * job.sampleMm;
-    carrier.push_back({ float(std::cos(phase)), float(-std::sin(phase)) });
-  }
-  carrier_.upload(carrier, stream, traffic);
+  uploadCarrier(job, stream, traffic);
   level_.upload(job.boundaryLevel, stream, traffic);
   field_.reset();
   if (job.field)

@@ -6,6 +6,7 @@
 #include "Cuda/LineChunk.cuh"
 
 #include <optional>
+#include <utility>
 
 namespace sono {
 
@@ -33,8 +34,9 @@ public:
   /// What the job gives in place of a tracer, for lines from `first` on; nothing of it where it gives none.
   TracedOnDevice given(int first) const;
 
-  float2* iq() const { return iq_.data(); }            ///< lines x samples
-  float* envelope() const { return envelope_.data(); } ///< the same
+  /// Hand over what run() has just made, lines x samples.
+  DeviceArray<float2> takeIq() { return std::move(iq_); }
+  DeviceArray<float> takeEnvelope() { return std::move(envelope_); }
   int sampleCount() const { return sampleCount_; }
 
 private:
@@ -48,6 +50,7 @@ private:
     bool some = false;
     void upload(const std::optional<SightJob>& job, cudaStream_t stream, Traffic& traffic);
   };
+  void uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   void setBeams(const std::vector<Beam>& beams);
   Vec2f ellipse(const Sight& sight) const;
   /// What a launch for these beams holds.
@@ -65,6 +68,7 @@ private:
   bool complexPulse_ = false;
   DeviceArray<float> pulse_; ///< re, then im
   DeviceArray<float2> carrier_;
+  double carrierRadPerSample_ = 0.0; ///< of that carrier
   DeviceArray<float> level_;
   std::optional<BeamFieldView> field_;
   SharedVector<float> fieldSource_;

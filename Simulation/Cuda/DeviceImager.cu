@@ -1,82 +1,16 @@
 #include "Cuda/DeviceImager.h"
 
-#include "Cuda/CopyImages.h"
-#include "Cuda/DeviceDisplay.cuh"
-#include "Cuda/DeviceEcho.cuh"
-#include "Cuda/DeviceTracer.cuh"
+#include "Core/Policy.h"
+#include "Cuda/DeviceLabels.cuh"
+#include "Cuda/DeviceResults.cuh"
 
 #include <algorithm>
 #include <array>
-#include <future>
 #include <mutex>
 
 namespace sono {
 
 namespace {
-
-/// Images that go through the stages together where pictures are wanted: enough to fill a GPU, and few enough that the
-/// host copies those of one group while the next is computed.
-constexpr int picturesTogether = 16;
-
-/// Moments of a run on the device.
-class StageClock
-{
-public:
-  enum Mark
-  {
-    Start,
-    Uploaded,
-    Traced,
-    Formed,
-    Compressed,
-    Converted,
-    Downloaded,
-    Marks
-  };
-
-  StageClock()
-  {
-    for (cudaEvent_t& e : event_)
-    {
-      check(cudaEventCreate(&e), "creating an event");
-    }
-  }
-  ~StageClock()
-  {
-    for (cudaEvent_t e : event_)
-    {
-      cudaEventDestroy(e);
-    }
-  }
-  StageClock(const StageClock&) = delete;
-  StageClock& operator=(const StageClock&) = delete;
-
-  void mark(Mark m, cudaStream_t stream) { check(cudaEventRecord(event_[m], stream), "timing"); }
-  double between(Mark a, Mark b) const
-  {
-    float ms = 0.0f;
-    check(cudaEventElapsedTime(&ms, event_[a], event_[b]), "timing");
-    return ms;
-  }
-
-private:
-  std::array<cudaEvent_t, Marks> event_{};
-};
-
-/// Bytes that the stages need for an image, without what a single launch of the tracer needs.
-double bytesPerImage(const ImageJob& job)
-{
-  double bytesPerLine = 0.0;
-  if (job.trace)
-  {
-    bytesPerLine += 16.0 * job.trace->echoCount + 12.0 * job.trace->binCount;
-  }
-  if (job.echo)
-  {
-    bytesPerLine += 24.0 * job.echo->sumCount;
-  }
-  return bytesPerLine * job.linesPerImage() + (job.scan ? 4.0 * job.scan->width * job.scan->height : 0.0);
-}
 
 /// Works on the first device, whichever the caller's thread works on.
 class FirstDevice
@@ -95,253 +29,139 @@ private:
   int before_ = 0;
 };
 
-/// Lets what the device writes to outlive its writing, when an exception comes between.
-class WaitAtEnd
+/// The device's time between two moments of a stream.
+class Stopwatch
 {
 public:
-  explicit WaitAtEnd(cudaStream_t stream)
-    : stream_(stream)
+  Stopwatch()
   {
+    for (cudaEvent_t& e : event_)
+    {
+      check(cudaEventCreate(&e), "creating an event");
+    }
   }
-  ~WaitAtEnd() { cudaStreamSynchronize(stream_); }
-  WaitAtEnd(const WaitAtEnd&) = delete;
-  WaitAtEnd& operator=(const WaitAtEnd&) = delete;
+  void start() { check(cudaEventRecord(event_[0], deviceStream()), "timing"); }
+  void stop()
+  {
+    check(cudaEventRecord(event_[1], deviceStream()), "timing");
+    ran_ = true;
+  }
+  double ms() const
+  {
+    float ms = 0.0f;
+    if (ran_)
+    {
+      check(cudaEventElapsedTime(&ms, event_[0], event_[1]), "timing");
+    }
+    return ms;
+  }
 
 private:
-  cudaStream_t stream_;
+  std::array<cudaEvent_t, 2> event_{};
+  bool ran_ = false;
 };
 
+bool sameScan(const PlaneScan& a, const PlaneScan& b)
+{
+  const auto all = [](const PlaneScan& s) {
+    return std::make_tuple(s.beams.parallel, s.beams.faceRadiusMm, s.beams.centreAxialMm, s.beams.firstUnit,
+                           s.beams.linesPerUnit, s.area.lastLine, s.area.firstMm, s.area.lastMm, s.width, s.height,
+                           s.pixelMm, s.lateralMinMm, s.axialMinMm);
+  };
+  return all(a) == all(b);
+}
+
+__global__ void echoesFromSums(const EchoSum* sums, std::size_t count, float perUnit, float2* echo)
+{
+  const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
+  if (i < count)
+  {
+    echo[i] = { float((long long)(sums[2 * i])) * perUnit, float((long long)(sums[2 * i + 1])) * perUnit };
+  }
+}
+
+template<class T>
+SharedSpan<T> pinnedSpan(const std::shared_ptr<void>& memory, std::size_t count)
+{
+  return { std::shared_ptr<const T>(memory, static_cast<const T*>(memory.get())), count };
+}
+
 } // namespace
+
+/// Holds what is read until it has been.
+class DeviceImager::Download
+{
+public:
+  Download() { check(cudaEventCreateWithFlags(&done, cudaEventDisableTiming), "creating an event"); }
+  ~Download()
+  {
+    cudaEventSynchronize(done);
+    cudaEventDestroy(done);
+  }
+  Download(const Download&) = delete;
+  Download& operator=(const Download&) = delete;
+
+  cudaEvent_t done = nullptr;
+  PictureCopy copy;
+  std::shared_ptr<const DevicePicture> picture;
+  std::shared_ptr<const DeviceLabelSlice> labels;
+};
 
 struct DeviceImager::Work
 {
   std::mutex mutex;
-  cudaStream_t stream = nullptr;
+  Traffic traffic;
   std::unique_ptr<DeviceTracer> tracer = std::make_unique<DeviceTracer>();
   std::unique_ptr<DeviceEcho> echo = std::make_unique<DeviceEcho>();
   std::unique_ptr<DeviceDisplay> display = std::make_unique<DeviceDisplay>();
-  std::unique_ptr<StageClock> clock;
-  std::array<PinnedArray<float>, 2> pictures; ///< in turn: one is filled while the other is copied
+  std::unique_ptr<DeviceLabels> labels = std::make_unique<DeviceLabels>();
+  // The jobs whose numbers are on the device.
+  std::shared_ptr<const TraceJob> traceJob;
+  std::shared_ptr<const EchoJob> echoJob;
+  std::shared_ptr<const BModeJob> bmodeJob;
+  // The last layout's mask.
+  PlaneScan scan{};
+  std::shared_ptr<const DeviceArray<std::uint8_t>> mask;
+  SharedSpan<std::uint8_t> hostMask;
+  Stopwatch tracing, forming, compressing, converting;
+  cudaEvent_t converted = nullptr;
 
   void forget()
   {
+    traceJob = nullptr;
+    echoJob = nullptr;
+    bmodeJob = nullptr;
+    mask = nullptr;
     tracer = std::make_unique<DeviceTracer>();
     echo = std::make_unique<DeviceEcho>();
     display = std::make_unique<DeviceDisplay>();
-    for (PinnedArray<float>& picture : pictures)
-    {
-      picture.release();
-    }
+    labels = std::make_unique<DeviceLabels>();
+    cudaStreamSynchronize(deviceStream());
+    trimDeviceMemory();
   }
 
-  /// Images that go through the stages together: at most what fits in a quarter of the device's memory.
-  int imagesAtOnce(const ImageJob& job, const DeviceWants& wants) const
+  template<class T, class U>
+  std::vector<U> bring(const T* from, std::size_t count)
   {
-    const double total = double(cudaStatus().memoryBytes);
-    const double fitting = std::min(0.25 * total / std::max(1.0, bytesPerImage(job)), 65535.0); // of a grid
-    const int together = wants.image ? std::min(job.images, picturesTogether) : job.images;
-    return std::max(1, std::min(together, int(fitting)));
+    std::vector<U> values(count);
+    download(from, count, values.data(), deviceStream(), traffic);
+    return values;
   }
 
-  void upload(const ImageJob& job, Traffic& traffic)
+  void findMask(const PlaneScan& wanted)
   {
-    if (job.trace)
+    if (mask && sameScan(scan, wanted))
     {
-      tracer->prepare(*job.trace, job.linesPerImage(), stream, traffic);
+      return;
     }
-    if (job.echo)
-    {
-      echo->prepare(*job.echo, stream, traffic);
-    }
-    if (job.bmode)
-    {
-      display->prepare(job, stream, traffic);
-    }
-    check(cudaStreamSynchronize(stream), "uploading"); // what was uploaded may go
-  }
-
-  TracedOnDevice traced(const ImageJob& job, int firstLine) const
-  {
-    if (!job.trace)
-    {
-      return echo->given(firstLine);
-    }
-    TracedOnDevice t;
-    t.intensity = tracer->intensity();
-    t.binCount = tracer->binCount();
-    t.binMm = tracer->binMm();
-    t.echoSums = tracer->echo();
-    t.echoCount = tracer->echoCount();
-    t.echoPerUnit = tracer->echoPerUnit();
-    return t;
-  }
-
-  void allocateResult(const ImageJob& job, const DeviceWants& wants, DeviceResult& result) const
-  {
-    const std::size_t lines = std::size_t(job.lineCount());
-    if (wants.traced)
-    {
-      result.intensity.resize(lines * job.trace->binCount);
-      result.standardError.resize(result.intensity.size());
-      result.boundaryEcho.resize(lines * job.trace->echoCount);
-    }
-    if (wants.rf)
-    {
-      result.iq.resize(lines * job.echo->sampleCount);
-    }
-    if (wants.bmode)
-    {
-      result.grey.resize(lines * job.echo->sampleCount);
-    }
-    if (job.bmode)
-    {
-      result.referenceAmplitude.resize(std::size_t(job.images));
-    }
-    if (wants.image)
-    {
-      result.pixels.resize(std::size_t(job.images));
-      result.mask.resize(std::size_t(job.scan->width) * job.scan->height);
-    }
-  }
-
-  /// Brings back what is wanted of the images that were just made.
-  void bringBack(const ImageJob& job, const DeviceWants& wants, int firstImage, int images, PinnedArray<float>& picture,
-                 DeviceResult& result, Traffic& traffic)
-  {
-    const std::size_t firstLine = std::size_t(firstImage) * job.linesPerImage();
-    const std::size_t lines = std::size_t(images) * job.linesPerImage();
-    std::vector<EchoSum> sums;
-    const WaitAtEnd wait(stream);
-    if (wants.traced)
-    {
-      const std::size_t bins = std::size_t(job.trace->binCount);
-      download(tracer->intensity(), lines * bins, result.intensity, firstLine * bins, stream, traffic);
-      download(tracer->standardError(), lines * bins, result.standardError, firstLine * bins, stream, traffic);
-      sums.resize(2 * lines * job.trace->echoCount);
-      download(tracer->echo(), sums.size(), sums, 0, stream, traffic);
-    }
-    if (wants.rf)
-    {
-      const std::size_t samples = std::size_t(job.echo->sampleCount);
-      download(echo->iq(), lines * samples, result.iq, firstLine * samples, stream, traffic);
-    }
-    if (wants.bmode)
-    {
-      const std::size_t samples = std::size_t(job.echo->sampleCount);
-      download(display->grey(), lines * samples, result.grey, firstLine * samples, stream, traffic);
-    }
-    if (job.bmode)
-    {
-      download(display->reference(), std::size_t(images), result.referenceAmplitude, std::size_t(firstImage), stream,
-               traffic);
-    }
-    if (wants.image)
-    {
-      const std::size_t pixels = std::size_t(job.scan->width) * job.scan->height;
-      picture.resize(images * pixels);
-      download(display->pixels(), images * pixels, picture.data(), stream, traffic);
-      if (firstImage == 0)
-      {
-        download(display->mask(), pixels, result.mask, 0, stream, traffic);
-      }
-    }
-    check(cudaStreamSynchronize(stream), "computing");
-    const float perUnit = tracer->echoPerUnit();
-    for (std::size_t i = 0; i + 1 < sums.size(); i += 2)
-    {
-      result.boundaryEcho[firstLine * job.trace->echoCount + i / 2] = { float(std::int64_t(sums[i])) * perUnit,
-                                                                        float(std::int64_t(sums[i + 1])) * perUnit };
-    }
-  }
-
-  DeviceResult run(const ImageJob& job, const DeviceWants& wants, const Progress& progress, DeviceTimes* times)
-  {
-    Traffic traffic;
-    DeviceResult result;
-    DeviceTimes sum;
-    allocateResult(job, wants, result);
-    const WaitAtEnd wait(stream);
-    std::array<std::future<void>, 2> copying; // into the result, which outlives them
-    clock->mark(StageClock::Start, stream);
-    upload(job, traffic);
-    clock->mark(StageClock::Uploaded, stream);
-    const int atOnce = imagesAtOnce(job, wants);
-    int group = 0;
-    for (int image = 0; image < job.images; image += atOnce)
-    {
-      const int images = std::min(atOnce, job.images - image);
-      const int firstLine = image * job.linesPerImage();
-      const int lines = images * job.linesPerImage();
-      if (image > 0)
-      {
-        clock->mark(StageClock::Uploaded, stream);
-      }
-      if (job.trace)
-      {
-        const double share = double(images) / job.images;
-        const double before = double(image) / job.images;
-        tracer->run(firstLine, lines, partOf(progress, before, before + share), stream);
-      }
-      clock->mark(StageClock::Traced, stream);
-      if (job.echo)
-      {
-        echo->run(firstLine, lines, traced(job, firstLine), wants.rf, stream);
-      }
-      clock->mark(StageClock::Formed, stream);
-      if (job.bmode)
-      {
-        display->compress(echo->envelope(), images, stream);
-      }
-      clock->mark(StageClock::Compressed, stream);
-      if (job.scan)
-      {
-        display->convert(images, stream);
-      }
-      clock->mark(StageClock::Converted, stream);
-      PinnedArray<float>& picture = pictures[group % 2];
-      std::future<void>& copied = copying[group % 2];
-      if (copied.valid())
-      {
-        copied.get(); // what it held may go
-      }
-      bringBack(job, wants, image, images, picture, result, traffic);
-      clock->mark(StageClock::Downloaded, stream);
-      check(cudaStreamSynchronize(stream), "computing");
-      if (wants.image)
-      {
-        const std::size_t pixels = std::size_t(job.scan->width) * job.scan->height;
-        copied = std::async(std::launch::async, [from = picture.data(), pixels, to = &result.pixels[image], images] {
-          copyImages(from, pixels, to, images);
-        });
-      }
-      ++group;
-      sum.upload += image == 0 ? clock->between(StageClock::Start, StageClock::Uploaded) : 0.0;
-      sum.trace += clock->between(StageClock::Uploaded, StageClock::Traced);
-      sum.echo += clock->between(StageClock::Traced, StageClock::Formed);
-      sum.bmode += clock->between(StageClock::Formed, StageClock::Compressed);
-      sum.scan += clock->between(StageClock::Compressed, StageClock::Converted);
-      sum.download += clock->between(StageClock::Converted, StageClock::Downloaded);
-      report(progress, double(image + images) / job.images);
-    }
-    if (job.trace)
-    {
-      check(cudaMemcpy(&result.segments, tracer->segments(), sizeof result.segments, cudaMemcpyDeviceToHost),
-            "downloading");
-    }
-    for (std::future<void>& copied : copying)
-    {
-      if (copied.valid())
-      {
-        copied.get();
-      }
-    }
-    sum.uploadedBytes = traffic.up;
-    sum.downloadedBytes = traffic.down;
-    if (times)
-    {
-      *times = sum;
-    }
-    return result;
+    mask = nullptr;
+    const auto made = std::make_shared<const DeviceArray<std::uint8_t>>(display->maskOf(wanted, deviceStream()));
+    const std::shared_ptr<void> memory = pinnedMemory(made->size());
+    download(made->data(), made->size(), static_cast<std::uint8_t*>(memory.get()), deviceStream(), traffic);
+    check(cudaStreamSynchronize(deviceStream()), "computing");
+    hostMask = pinnedSpan<std::uint8_t>(memory, made->size());
+    scan = wanted;
+    mask = made;
   }
 };
 
@@ -382,16 +202,15 @@ const DeviceStatus& cudaStatus()
 }
 
 DeviceImager::DeviceImager()
-  : work_(std::make_unique<Work>())
 {
-  const DeviceStatus status = cudaStatus();
+  const DeviceStatus& status = cudaStatus();
   if (!status.usable)
   {
     throw Error("the GPU cannot be used: " + status.what + "; choose the CPU");
   }
   const FirstDevice device;
-  check(cudaStreamCreateWithFlags(&work_->stream, cudaStreamNonBlocking), "opening a stream");
-  work_->clock = std::make_unique<StageClock>();
+  work_ = std::make_unique<Work>();
+  check(cudaEventCreateWithFlags(&work_->converted, cudaEventDisableTiming), "creating an event");
 }
 
 DeviceImager::~DeviceImager() = default;
@@ -403,27 +222,226 @@ DeviceImager& DeviceImager::instance()
   return *imager;
 }
 
-DeviceResult DeviceImager::run(const ImageJob& job, const DeviceWants& wants, const Progress& progress,
-                               DeviceTimes* times)
+template<class Do>
+auto DeviceImager::guarded(const Do& work)
 {
   const std::lock_guard<std::mutex> lock(work_->mutex);
   const FirstDevice device;
   try
   {
-    return work_->run(job, wants, progress, times);
+    return work(*work_, deviceStream());
   }
   catch (const Aborted&)
   {
-    cudaStreamSynchronize(work_->stream);
+    cudaStreamSynchronize(deviceStream());
     throw;
   }
   catch (...)
   {
-    cudaStreamSynchronize(work_->stream);
     cudaGetLastError();
     work_->forget();
     throw;
   }
+}
+
+std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<const TraceJob>& job, LineRange lines,
+                                                        const Progress& progress)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    if (w.traceJob != job)
+    {
+      w.traceJob = nullptr; // stays so when the upload fails
+      w.tracer->prepare(*job, job->linesPerImage, stream, w.traffic);
+      w.traceJob = job;
+    }
+    w.tracing.start();
+    w.tracer->run(lines.first, lines.count, progress, stream);
+    w.tracing.stop();
+    const auto made = std::make_shared<DeviceTraced>();
+    made->arrays = w.tracer->take();
+    made->lineCount = lines.count;
+    made->view.intensity = made->arrays.intensity.data();
+    made->view.binCount = job->binCount;
+    made->view.binMm = job->binMm;
+    made->view.echoSums = made->arrays.echo.data();
+    made->view.echoCount = job->echoCount;
+    made->view.echoPerUnit = w.tracer->echoPerUnit();
+    return std::shared_ptr<const DeviceTraced>(made);
+  });
+}
+
+std::shared_ptr<const DeviceRf> DeviceImager::formRf(const std::shared_ptr<const EchoJob>& job, LineRange lines,
+                                                     const DeviceTraced* traced, bool wantsIq)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    if (w.echoJob != job)
+    {
+      w.echoJob = nullptr;
+      w.echo->prepare(*job, stream, w.traffic);
+      w.echoJob = job;
+    }
+    w.forming.start();
+    w.echo->run(lines.first, lines.count, traced ? traced->view : w.echo->given(lines.first), wantsIq, stream);
+    w.forming.stop();
+    const auto made = std::make_shared<DeviceRf>();
+    made->iq = w.echo->takeIq();
+    made->envelope = w.echo->takeEnvelope();
+    made->lineCount = lines.count;
+    made->sampleCount = job->sampleCount;
+    return std::shared_ptr<const DeviceRf>(made);
+  });
+}
+
+std::shared_ptr<const DeviceGrey> DeviceImager::compress(const std::shared_ptr<const BModeJob>& job, const DeviceRf& rf,
+                                                         int images)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    if (w.bmodeJob != job)
+    {
+      w.bmodeJob = nullptr;
+      w.display->prepare(*job, stream, w.traffic);
+      w.bmodeJob = job;
+    }
+    w.compressing.start();
+    const auto made = std::make_shared<DeviceGrey>();
+    made->arrays = w.display->compress(rf.envelope.data(), images, rf.lineCount / images, rf.sampleCount, stream);
+    made->images = images;
+    w.compressing.stop();
+    return std::shared_ptr<const DeviceGrey>(made);
+  });
+}
+
+std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan& scan,
+                                                           std::shared_ptr<const DeviceGrey> grey)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    w.findMask(scan);
+    w.converting.start();
+    const auto made = std::make_shared<DevicePicture>();
+    made->bytes = w.display->convert(scan, grey->arrays.grey.data(), grey->images, stream);
+    w.converting.stop();
+    made->mask = w.mask;
+    made->hostMask = w.hostMask;
+    made->scan = scan;
+    made->images = grey->images;
+    made->grey = grey;
+    return std::shared_ptr<const DevicePicture>(made);
+  });
+}
+
+std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob& job, const DevicePicture& picture)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const auto made = std::make_shared<DeviceLabelSlice>();
+    made->labels =
+      w.labels->slice(job, picture.scan.width, picture.scan.height, picture.mask->data(), stream, w.traffic);
+    return std::shared_ptr<const DeviceLabelSlice>(made);
+  });
+}
+
+FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const TracedArrays& arrays = traced.arrays;
+    DeviceArray<float2> echo;
+    echo.resize(arrays.echo.size() / 2);
+    constexpr int threads = 256;
+    if (echo.size() > 0)
+    {
+      echoesFromSums<<<unsigned((echo.size() + threads - 1) / threads), threads, 0, stream>>>(
+        arrays.echo.data(), echo.size(), traced.view.echoPerUnit, echo.data());
+      check(cudaGetLastError(), "computing");
+    }
+    FetchedTrace out;
+    out.intensity = w.bring<float, float>(arrays.intensity.data(), arrays.intensity.size());
+    out.standardError = w.bring<float, float>(arrays.standardError.data(), arrays.standardError.size());
+    out.boundaryEcho = w.bring<float2, std::complex<float>>(echo.data(), echo.size());
+    download(arrays.segments.data(), 1, &out.segments, stream, w.traffic);
+    check(cudaStreamSynchronize(stream), "computing");
+    return out;
+  });
+}
+
+std::vector<std::complex<float>> DeviceImager::fetchIq(const DeviceRf& rf)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    auto iq = w.bring<float2, std::complex<float>>(rf.iq.data(), rf.iq.size());
+    check(cudaStreamSynchronize(stream), "computing");
+    return iq;
+  });
+}
+
+std::vector<float> DeviceImager::fetch(const DeviceGrey& grey, std::vector<double>& reference)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    auto levels = w.bring<float, float>(grey.arrays.grey.data(), grey.arrays.grey.size());
+    reference = w.bring<double, double>(grey.arrays.reference.data(), grey.arrays.reference.size());
+    check(cudaStreamSynchronize(stream), "computing");
+    return levels;
+  });
+}
+
+std::vector<float> DeviceImager::fetchLevels(const DevicePicture& picture)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const DeviceArray<float> levels =
+      w.display->convertLevels(picture.scan, picture.grey->arrays.grey.data(), picture.images, stream);
+    auto values = w.bring<float, float>(levels.data(), levels.size());
+    check(cudaStreamSynchronize(stream), "computing");
+    return values;
+  });
+}
+
+SharedSpan<std::uint8_t> DeviceImager::maskOf(const DevicePicture& picture)
+{
+  return picture.hostMask;
+}
+
+std::shared_ptr<DeviceImager::Download> DeviceImager::beginDownload(std::shared_ptr<const DevicePicture> picture,
+                                                                    std::shared_ptr<const DeviceLabelSlice> labels)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const auto begun = std::make_shared<Download>();
+    check(cudaEventRecord(w.converted, stream), "computing");
+    check(cudaStreamWaitEvent(copyStream(), w.converted), "computing");
+    const std::size_t count = picture->bytes.size();
+    const std::shared_ptr<void> bytes = pinnedMemory(count);
+    begun->picture = picture;
+    begun->labels = labels;
+    begun->copy.bytes = pinnedSpan<std::uint8_t>(bytes, count);
+    begun->copy.mask = picture->hostMask;
+    download(picture->bytes.data(), count, static_cast<std::uint8_t*>(bytes.get()), copyStream(), w.traffic);
+    if (labels)
+    {
+      const std::shared_ptr<void> memory = pinnedMemory(count * sizeof(std::uint16_t));
+      begun->copy.labels = pinnedSpan<std::uint16_t>(memory, count);
+      download(labels->labels.data(), count, static_cast<std::uint16_t*>(memory.get()), copyStream(), w.traffic);
+    }
+    check(cudaEventRecord(begun->done, copyStream()), "computing");
+    return begun;
+  });
+}
+
+PictureCopy DeviceImager::wait(const std::shared_ptr<Download>& download)
+{
+  const cudaError_t error = cudaEventSynchronize(download->done);
+  guarded([&](Work&, cudaStream_t) { check(error, "computing"); });
+  return download->copy;
+}
+
+int DeviceImager::imagesThatFit(double bytesPerImage)
+{
+  const double fitting = groupShareOfDeviceMemory * double(cudaStatus().memoryBytes) / std::max(1.0, bytesPerImage);
+  return std::max(1, int(std::min(fitting, 65535.0))); // of a grid
+}
+
+DeviceTimes DeviceImager::lastTimes()
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    check(cudaStreamSynchronize(stream), "computing");
+    return DeviceTimes{ w.tracing.ms(),    w.forming.ms(), w.compressing.ms(),
+                        w.converting.ms(), w.traffic.up,   w.traffic.down };
+  });
 }
 
 } // namespace sono

@@ -6,8 +6,10 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sono {
@@ -51,14 +53,43 @@ std::size_t sharedMemoryFor(Kernel kernel)
   return known[kernel] = std::size_t(most) - attributes.sharedSizeBytes;
 }
 
+/// The stream on which everything is computed, allocated and freed, in the order of the calls; and one for copies to
+/// the host beside it.
+cudaStream_t deviceStream();
+cudaStream_t copyStream();
+
+/// Memory for what the device does from now on; free means when all that was asked for before is done. From a pool, so
+/// that both cost little. Throws Error naming the bytes when there is no room.
+void* allocateOnDevice(std::size_t bytes);
+void freeOnDevice(void* memory);
+/// Gives back what the pool keeps.
+void trimDeviceMemory();
+
+/// Uploads without waiting, unless it is much; `from` may go afterwards.
+void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t stream);
+
+/// Memory of the host that the device writes at the bus's full speed; from a pool.
+std::shared_ptr<void> pinnedMemory(std::size_t bytes);
+
 /// An array on the device that only grows.
 template<class T>
 class DeviceArray
 {
 public:
   DeviceArray() = default;
-  DeviceArray(const DeviceArray&) = delete;
-  DeviceArray& operator=(const DeviceArray&) = delete;
+  DeviceArray(DeviceArray&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr))
+    , size_(std::exchange(other.size_, 0))
+    , capacity_(std::exchange(other.capacity_, 0))
+  {
+  }
+  DeviceArray& operator=(DeviceArray&& other) noexcept
+  {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+    return *this;
+  }
   ~DeviceArray() { release(); }
 
   T* data() const { return data_; }
@@ -66,7 +97,7 @@ public:
 
   void release()
   {
-    cudaFree(data_);
+    freeOnDevice(data_);
     data_ = nullptr;
     capacity_ = size_ = 0;
   }
@@ -77,21 +108,7 @@ public:
     if (count > capacity_)
     {
       release();
-      const std::size_t bytes = count * sizeof(T);
-      void* memory = nullptr;
-      const cudaError_t error = cudaMalloc(&memory, bytes);
-      if (error == cudaErrorMemoryAllocation)
-      {
-        cudaGetLastError();
-        std::size_t free = 0;
-        std::size_t total = 0;
-        cudaMemGetInfo(&free, &total);
-        throw Error("the GPU has no room for " + std::to_string(bytes) + " bytes (" + std::to_string(free) + " of " +
-                    std::to_string(total) +
-                    " are free): close what else uses it, take fewer lines or poses, or choose the CPU");
-      }
-      check(error, "allocating memory");
-      data_ = static_cast<T*>(memory);
+      data_ = static_cast<T*>(allocateOnDevice(count * sizeof(T)));
       capacity_ = count;
     }
     size_ = count;
@@ -102,7 +119,7 @@ public:
     resize(count);
     if (count > 0)
     {
-      check(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream), "uploading");
+      uploadBytes(data_, from, count * sizeof(T), stream);
       traffic.up += count * sizeof(T);
     }
   }
@@ -119,43 +136,6 @@ private:
   std::size_t capacity_ = 0;
 };
 
-/// An array of the host that the device writes at the bus's full speed. Only grows.
-template<class T>
-class PinnedArray
-{
-public:
-  PinnedArray() = default;
-  PinnedArray(const PinnedArray&) = delete;
-  PinnedArray& operator=(const PinnedArray&) = delete;
-  ~PinnedArray() { release(); }
-
-  T* data() const { return data_; }
-
-  void release()
-  {
-    cudaFreeHost(data_);
-    data_ = nullptr;
-    capacity_ = 0;
-  }
-
-  /// Contents are lost when it grows.
-  void resize(std::size_t count)
-  {
-    if (count > capacity_)
-    {
-      release();
-      void* memory = nullptr;
-      check(cudaMallocHost(&memory, count * sizeof(T)), "pinning memory for its results");
-      data_ = static_cast<T*>(memory);
-      capacity_ = count;
-    }
-  }
-
-private:
-  T* data_ = nullptr;
-  std::size_t capacity_ = 0;
-};
-
 /// Brings `count` values back; the caller synchronises.
 template<class T, class U>
 void download(const T* from, std::size_t count, U* to, cudaStream_t stream, Traffic& traffic)
@@ -163,13 +143,6 @@ void download(const T* from, std::size_t count, U* to, cudaStream_t stream, Traf
   static_assert(sizeof(T) == sizeof(U), "one value becomes one value");
   check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream), "downloading");
   traffic.down += count * sizeof(T);
-}
-
-template<class T, class U>
-void download(const T* from, std::size_t count, std::vector<U>& to, std::size_t at, cudaStream_t stream,
-              Traffic& traffic)
-{
-  download(from, count, to.data() + at, stream, traffic);
 }
 
 } // namespace sono

@@ -101,8 +101,6 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
   const int pathBits = int(std::ceil(std::log2(double(paths_))));
   echoScale_ = std::ldexp(1.0f, 41 - pathBits);
   echoPerUnit_ = float(std::ldexp(1.0, pathBits - 41) / paths_);
-  segments_.resize(1);
-  segments_.clear(stream);
 }
 
 void DeviceTracer::run(int first, int count, const Progress& progress, cudaStream_t stream)
@@ -133,6 +131,8 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     echoRest_.resize(echo_.size());
     echoRest_.clear(stream);
   }
+  segments_.resize(1);
+  segments_.clear(stream);
 
   const double partsOfLine = double(batches) * parts * double(bins);
   const double fitting = std::min(

@@ -9,6 +9,15 @@ namespace sono {
 /// Boundary echoes are summed as integers, whose sum does not depend on the order: amplitude * scale.
 using EchoSum = unsigned long long;
 
+/// What tracing leaves on the device.
+struct TracedArrays
+{
+  DeviceArray<float> intensity; ///< lines x bins
+  DeviceArray<float> standardError;
+  DeviceArray<EchoSum> echo; ///< lines x echoCount x (re, im)
+  DeviceArray<std::uint64_t> segments;
+};
+
 /// Traces lines on the device. Kept between jobs: the region's cells and records.
 class DeviceTracer
 {
@@ -18,11 +27,9 @@ public:
   /// Traces the lines [first, first + count) of the job; the results below are theirs until the next call.
   void run(int first, int count, const Progress& progress, cudaStream_t stream);
 
-  const float* intensity() const { return intensity_.data(); } ///< lines x bins
-  const float* standardError() const { return error_.data(); }
-  const EchoSum* echo() const { return echo_.data(); } ///< lines x echoCount x (re, im)
-  float echoPerUnit() const { return echoPerUnit_; }   ///< turns an EchoSum into an amplitude
-  const std::uint64_t* segments() const { return segments_.data(); }
+  /// Hands over what run() has just made.
+  TracedArrays take() { return { std::move(intensity_), std::move(error_), std::move(echo_), std::move(segments_) }; }
+  float echoPerUnit() const { return echoPerUnit_; } ///< turns an EchoSum into an amplitude
   int binCount() const { return binCount_; }
   int echoCount() const { return echoCount_; }
   float binMm() const { return binMm_; }

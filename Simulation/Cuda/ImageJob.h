@@ -4,6 +4,7 @@
 #include "Kernel/BeamSight.h"
 #include "Kernel/EchoSplat.h"
 #include "Kernel/GreyLevel.h"
+#include "Kernel/LabelRow.h"
 #include "Kernel/PlaneScan.h"
 #include "Kernel/Scatterer.h"
 #include "Kernel/TraceView.h"
@@ -30,6 +31,7 @@ struct TraceJob
   TraceView view;                 ///< its `media` are those below
   std::vector<TraceMedium> media; ///< at most 65536
   std::vector<TraceLine> lines;
+  int linesPerImage = 1;
   std::shared_ptr<const TraceRegion> region; ///< kept on the device while it is the same
   TargetBvh targets;
   int paths = 0; ///< of a line
@@ -118,17 +120,13 @@ struct BModeJob
   std::uint64_t noiseSeed = 1;
 };
 
-/// What a device is asked to do, from the stages that are given; `images` of equally many lines.
-struct ImageJob
+/// Rows of pixels through a label map, for all rows of an image, one image after the other.
+struct LabelJob
 {
-  int images = 1;
-  std::optional<TraceJob> trace;
-  std::optional<EchoJob> echo;
-  std::optional<BModeJob> bmode;
-  std::optional<PlaneScan> scan;
-
-  int lineCount() const { return trace ? int(trace->lines.size()) : echo->lineCount; }
-  int linesPerImage() const { return lineCount() / images; }
+  SharedVector<std::uint16_t> voxels; ///< belong to the scene where it made the job, which it must outlive
+  std::uint64_t sceneId = 0;          ///< the voxels are kept on the device while it is the same
+  Vec3i size{ 0 };
+  std::vector<LabelRow> rows;
 };
 
 } // namespace sono

@@ -2,10 +2,10 @@
 
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
+#include "Image/LabelSlice.h"
 #include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace sono {
@@ -63,13 +63,14 @@ PointJob makePoints(const EchoSetup& setup)
 
 } // namespace
 
-TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings)
+TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, int linesPerImage)
 {
   TraceJob job;
   job.view = setup.view;
   job.media = setup.media;
   job.view.media = nullptr;
   job.lines = setup.lines;
+  job.linesPerImage = linesPerImage;
   job.region = setup.region;
   job.targets = buildTargetBvh(setup.targets->triangles());
   job.paths = setup.paths;
@@ -129,6 +130,20 @@ EchoJob makeEchoJob(const EchoSetup& setup)
       }
     }
     job.given = std::move(given);
+  }
+  return job;
+}
+
+LabelJob makeLabelJob(const Scene& scene, const ProbePose* poses, int poseCount, const PlaneImage& layout)
+{
+  LabelJob job;
+  job.voxels = SharedVector<std::uint16_t>(std::shared_ptr<void>(), &scene.volume().voxels);
+  job.sceneId = scene.id();
+  job.size = scene.placement().size;
+  for (int i = 0; i < poseCount; ++i)
+  {
+    const std::vector<LabelRow> rows = labelRows(scene.volume(), poses[i], layout);
+    job.rows.insert(job.rows.end(), rows.begin(), rows.end());
   }
   return job;
 }

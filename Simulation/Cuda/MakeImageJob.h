@@ -3,6 +3,7 @@
 #include "Cuda/ImageJob.h"
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
+#include "Image/ScanConvert.h"
 #include "Trace/Trace.h"
 
 #include <vector>
@@ -16,10 +17,13 @@ struct EchoSetup;
 // jobs.
 
 /// The setup has checked that some line meets the volume.
-TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings);
+TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, int linesPerImage);
 
 /// `traced` is what the setup was given, or nothing when the job traces too.
 EchoJob makeEchoJob(const EchoSetup& setup);
+
+/// The scene's own labels in an image of this layout, for each pose.
+LabelJob makeLabelJob(const Scene& scene, const ProbePose* poses, int poseCount, const PlaneImage& layout);
 
 BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sampleMm);
 

@@ -1,10 +1,14 @@
 #include "Cuda/DeviceImager.h"
 
-// Stands in for the GPU where SonoVDB was built without nvcc.
+// Stands in for the GPU where SonoVDB was built without nvcc: there is no imager, so nobody can ask it for anything.
 
 namespace sono {
 
 struct DeviceImager::Work
+{
+};
+
+class DeviceImager::Download
 {
 };
 
@@ -22,7 +26,75 @@ DeviceImager& DeviceImager::instance()
   throw Error("the GPU cannot be used: " + cudaStatus().what + "; choose the CPU");
 }
 
-DeviceResult DeviceImager::run(const ImageJob&, const DeviceWants&, const Progress&, DeviceTimes*)
+std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<const TraceJob>&, LineRange,
+                                                        const Progress&)
+{
+  return nullptr;
+}
+
+std::shared_ptr<const DeviceRf> DeviceImager::formRf(const std::shared_ptr<const EchoJob>&, LineRange,
+                                                     const DeviceTraced*, bool)
+{
+  return nullptr;
+}
+
+std::shared_ptr<const DeviceGrey> DeviceImager::compress(const std::shared_ptr<const BModeJob>&, const DeviceRf&, int)
+{
+  return nullptr;
+}
+
+std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan&, std::shared_ptr<const DeviceGrey>)
+{
+  return nullptr;
+}
+
+std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob&, const DevicePicture&)
+{
+  return nullptr;
+}
+
+FetchedTrace DeviceImager::fetch(const DeviceTraced&)
+{
+  return {};
+}
+
+std::vector<std::complex<float>> DeviceImager::fetchIq(const DeviceRf&)
+{
+  return {};
+}
+
+std::vector<float> DeviceImager::fetch(const DeviceGrey&, std::vector<double>&)
+{
+  return {};
+}
+
+std::vector<float> DeviceImager::fetchLevels(const DevicePicture&)
+{
+  return {};
+}
+
+SharedSpan<std::uint8_t> DeviceImager::maskOf(const DevicePicture&)
+{
+  return {};
+}
+
+std::shared_ptr<DeviceImager::Download> DeviceImager::beginDownload(std::shared_ptr<const DevicePicture>,
+                                                                    std::shared_ptr<const DeviceLabelSlice>)
+{
+  return nullptr;
+}
+
+PictureCopy DeviceImager::wait(const std::shared_ptr<Download>&)
+{
+  return {};
+}
+
+int DeviceImager::imagesThatFit(double)
+{
+  return 1;
+}
+
+DeviceTimes DeviceImager::lastTimes()
 {
   return {};
 }

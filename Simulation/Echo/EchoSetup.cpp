@@ -126,14 +126,20 @@ Beam EchoSetup::pointBeam(int l) const
   return beam(line, line.originMm - sources.points->originMm(), Mat3d(1.0));
 }
 
-RfLines EchoSetup::emptyRf() const
+RfLines rfLayout(int lineCount, const EchoSettings& settings)
 {
   RfLines out;
-  out.lineCount = int(lines.size());
+  out.lineCount = lineCount;
   out.sampleCount = settings.sampleCount();
   out.sampleMm = settings.sampleMm();
   out.centreFrequencyMHz = settings.centreFrequencyMHz;
   out.samplingMHz = settings.samplingMHz;
+  return out;
+}
+
+RfLines EchoSetup::emptyRf() const
+{
+  RfLines out = rfLayout(int(lines.size()), settings);
   out.iq.resize(std::size_t(out.lineCount) * std::size_t(out.sampleCount));
   return out;
 }

@@ -2,7 +2,6 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/SoundSpeed.h"
-#include "Cuda/RunOnDevice.h"
 #include "Echo/EchoSetup.h"
 
 #include <algorithm>
@@ -76,10 +75,6 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
                const Progress& progress)
 {
   const EchoSetup setup(sources, lines, settings);
-  if (chooseDevice(settings.device).cuda)
-  {
-    return formRfOnDevice(setup, progress);
-  }
   RfLines out = setup.emptyRf();
   const auto formGroup = [&](int group) {
     const int first = group * groupLines;

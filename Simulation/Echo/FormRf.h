@@ -46,6 +46,9 @@ struct RfLines
   std::vector<float> envelope() const;
 };
 
+/// What formRf() will give, without its IQ.
+RfLines rfLayout(int lineCount, const EchoSettings& settings);
+
 /// What echoes, and how much of the pulse reaches it. Nothing is owned; null means none of it.
 struct EchoSources
 {
@@ -58,9 +61,9 @@ struct EchoSources
 /// and the traced intensity, plus the traced boundary echoes, convolved with the pulse. What lies behind the transducer
 /// does not echo. At 50 MHz the result is within 0.1 % (NRMSE) of the sum over all scatterers at their exact places:
 /// each is split linearly between two samples, which costs a band b MHz wide about (b / samplingMHz)^2 of its
-/// amplitude; that loss is undone on average over the places between two samples. The result depends on the arguments
-/// and the device alone, to the bit, not on the threads. Throws Error naming the parameter that is out of range,
-/// Aborted when asked to stop.
+/// amplitude; that loss is undone on average over the places between two samples. On the CPU, whatever device the
+/// settings name; the result depends on the arguments alone, to the bit, not on the threads. Throws Error naming the
+/// parameter that is out of range, Aborted when asked to stop.
 RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
                const Progress& progress = {});
 

@@ -2,6 +2,7 @@
 
 #include "Image/ScanConvert.h"
 #include "Image/ScanConvertVolume.h"
+#include "Kernel/LabelRow.h"
 #include "Labels/LabelVolume.h"
 
 #include <cstdint>
@@ -13,5 +14,8 @@ namespace sono {
 /// scanned area and outside the label map. Same order as the image's pixels. `pose` must be orthonormal.
 std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& image);
 std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ProbePose& pose, const VolumeImage& image);
+
+/// The rows of an image's plane, from its least depth on, through the label map; see labelAt.
+std::vector<LabelRow> labelRows(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout);
 
 } // namespace sono

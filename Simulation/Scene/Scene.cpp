@@ -1,6 +1,7 @@
 #include "Scene/Scene.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Policy.h"
 
 #include <tbb/task_arena.h>
 
@@ -15,8 +16,6 @@
 namespace sono {
 
 namespace {
-
-constexpr int interactiveEdge = 512; // voxels: their words take 270 MB
 
 std::uint64_t nextId()
 {
@@ -321,11 +320,18 @@ void Scene::beginInteractiveRegion(const VoxelBox& box, bool allRecords) const
   makingInteractive(box, allRecords);
 }
 
+bool Scene::hasInteractiveRegion() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return interactive_ != nullptr;
+}
+
 std::shared_ptr<const Scene::Making> Scene::makingInteractive(const VoxelBox& box, bool allRecords) const
 {
   const VoxelBox inside = clipped(box);
-  const VoxelBox wanted = clipped({ inside.first / interactiveEdge * interactiveEdge,
-                                    (inside.last + (interactiveEdge - 1)) / interactiveEdge * interactiveEdge });
+  const VoxelBox wanted =
+    clipped({ inside.first / interactiveEdgeVoxels * interactiveEdgeVoxels,
+              (inside.last + (interactiveEdgeVoxels - 1)) / interactiveEdgeVoxels * interactiveEdgeVoxels });
   std::shared_ptr<const Making> before; // goes after the lock, since its end is waited for
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!interactive_ || !(interactive_->box == wanted))

@@ -71,6 +71,8 @@ public:
   /// Begins to build that in the background, where it is not there yet; with all of its records if wanted. The build of
   /// another one that nobody waits for is cancelled.
   void beginInteractiveRegion(const VoxelBox& box, bool allRecords) const;
+  /// Whether there is such a cache, or one in the making.
+  bool hasInteractiveRegion() const;
 
 private:
   using SharedRegion = std::shared_ptr<const RegionOnDemand>;

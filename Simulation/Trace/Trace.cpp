@@ -3,7 +3,6 @@
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
-#include "Cuda/RunOnDevice.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
 #include "Trace/BatchMeans.h"
@@ -87,15 +86,10 @@ void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yi
 
 } // namespace
 
-TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                  const Progress& progress, const std::vector<TargetSurface>& targets)
+TracedLines tracedLayout(int lineCount, const TraceSettings& settings)
 {
-  const Progress preparing = partOf(progress, 0.0, 0.3);
-  const TraceSetup setup(scene, lines, settings, targets, preparing,
-                         runsOnDevice(settings) ? Records::All : Records::OnDemand);
-  const Progress tracing = partOf(progress, 0.3, 1.0);
   TracedLines out;
-  out.lineCount = int(lines.size());
+  out.lineCount = lineCount;
   out.binMm = settings.radialBinMm;
   out.binCount = settings.binCount();
   out.echoSampleMm = settings.echoSampleMm;
@@ -105,10 +99,16 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     throw Error("the number of scan lines is " + std::to_string(out.lineCount) +
                 ": at this depth and sampling their samples do not fit; use fewer lines or a lower sampling frequency");
   }
-  if (runsOnDevice(settings))
-  {
-    return traceOnDevice(setup, settings, tracing);
-  }
+  return out;
+}
+
+TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                  const Progress& progress, const std::vector<TargetSurface>& targets)
+{
+  const Progress preparing = partOf(progress, 0.0, 0.3);
+  const TraceSetup setup(scene, lines, settings, targets, preparing, Records::OnDemand);
+  const Progress tracing = partOf(progress, 0.3, 1.0);
+  TracedLines out = tracedLayout(int(lines.size()), settings);
   TracedLines::visitArrays(out, [&out](auto& values, const char*, TracedAxis axis) {
     values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::Bins ? out.binCount : out.echoCount), {});
   });
@@ -144,11 +144,6 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     out.segments += tally.segments();
   }
   return out;
-}
-
-void prepareInteractive(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
-{
-  scene.beginInteractiveRegion(fanBox(scene, lines, settings.depthMm), runsOnDevice(settings));
 }
 
 } // namespace sono

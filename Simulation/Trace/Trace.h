@@ -44,13 +44,13 @@ struct TracedLines
   }
 };
 
-/// Traces every line. The result depends on the arguments and the device alone, to the bit, not on the threads; CPU and
-/// GPU differ by rounding.
-/// Throws Error when no line meets the volume or a target is not closed, Aborted when asked to stop.
+/// What trace() will give, without its arrays. Throws Error when it would not fit.
+TracedLines tracedLayout(int lineCount, const TraceSettings& settings);
+
+/// Traces every line on the CPU, whatever device the settings name. The result depends on the arguments alone, to the
+/// bit, not on the threads. Throws Error when no line meets the volume or a target is not closed, Aborted when asked to
+/// stop.
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
-
-/// Begins to prepare, in the background, what trace() wants of the scene for a probe that goes on its way from here.
-void prepareInteractive(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
 
 } // namespace sono

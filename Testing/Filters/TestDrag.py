@@ -59,6 +59,19 @@ class TestDrag(unittest.TestCase):
         self.assertIn("Tracing", texts)
         self.assertNotIn("Building the anatomy", texts)
 
+    def test_nothing_is_prepared_unless_a_widget_asks(self):
+        chain = Chain()
+        prepared = lambda: "moving probe: yes" in str(
+            chain.tracer.GetOutputDataObject(0).GetFieldData().GetAbstractArray("SonoScene"))
+        chain.converter.Update()
+        self.assertFalse(prepared())  # a script's image leaves no work and no memory behind
+        chain.probe.SetPrepareInteraction(True)
+        chain.converter.Update()
+        self.assertFalse(prepared())  # the image is the same: nothing runs again for it
+        chain.probe.SetPositionMm(moved(chain.probe.GetPositionMm(), 1))
+        chain.converter.Update()
+        self.assertTrue(prepared())
+
     def test_picture_does_not_depend_on_the_way(self):
         thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
         thorax.Update()
@@ -76,6 +89,8 @@ class TestDrag(unittest.TestCase):
                 ultrasound.GetProbe().SetPreview(preview)
                 ultrasound.Update()
             for port in range(dragged.GetNumberOfOutputPorts()):
+                dragged.Update(port)
+                fresh.Update(port)
                 made, expected = dragged.GetOutputDataObject(port), fresh.GetOutputDataObject(port)
                 if made.IsA("vtkImageData"):
                     with self.subTest(preview=preview, port=port):

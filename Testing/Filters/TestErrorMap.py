@@ -147,10 +147,11 @@ class TestOfSimulateUltrasound(unittest.TestCase):
             self.assertEqual(picture.GetPointData().GetScalars().GetName(), "BMode")
 
     def test_asking_for_it_traces_nothing_again_and_of_a_moving_probe_nothing_is_known(self):
-        self.filter.Update()
+        self.filter.Update(3)
         before = self.filter.GetOutputDataObject(3).GetPointData().GetArray("Intensity").GetMTime()
         self.filter.ErrorMapOn()
         self.filter.Update()
+        self.filter.Update(3)
         self.assertEqual(self.filter.GetOutputDataObject(3).GetPointData().GetArray("Intensity").GetMTime(), before)
         self.filter.GetProbe().SetPreview(True)
         for output in self.outputs():

@@ -34,7 +34,7 @@ class Ultrasound:
         self.filter.SetInputConnection(self.stages.thorax.GetOutputPort())
 
     def output(self, port=IMAGE):
-        self.filter.Update()
+        self.filter.Update(port)
         return self.filter.GetOutputDataObject(port)
 
 
@@ -47,7 +47,8 @@ class TestOutputs(unittest.TestCase):
             getattr(cls.chain.tracer, "Set" + name)(value)
         cls.chain.bmode.SetTgcDbPerCm(3)
         cls.errors = listen(cls.filter)
-        cls.filter.Update()
+        for port in range(cls.filter.GetNumberOfOutputPorts()):
+            cls.filter.Update(port)
         cls.chain.converter.Update()
 
     def test_it_says_nothing(self):
@@ -144,6 +145,35 @@ class TestOutputs(unittest.TestCase):
         ultrasound.filter.SetInputConnection(scene.GetOutputPort())
         np.testing.assert_array_equal(values(ultrasound.output(), "BMode"),
                                       values(self.filter.GetOutputDataObject(IMAGE), "BMode"))
+
+
+class TestWhatIsMade(unittest.TestCase):
+    """An output is made when somebody asks for it."""
+
+    def test_the_lines_are_made_when_they_are_asked_for(self):
+        ultrasound = Ultrasound()
+        image = values(ultrasound.output(IMAGE), "BMode").copy()
+        for port, name in ((RF_LINES, "RF"), (BMODE_LINES, "BMode"), (TRACED_LINES, "Intensity")):
+            lines = ultrasound.filter.GetOutputDataObject(port)
+            self.assertEqual(lines.GetPointData().GetNumberOfArrays(), 0)
+            self.assertGreater(len(values(ultrasound.output(port), name)), 0)
+        np.testing.assert_array_equal(values(ultrasound.filter.GetOutputDataObject(IMAGE), "BMode"), image)
+
+    def test_what_nobody_asks_for_keeps_its_data(self):
+        ultrasound = Ultrasound()
+        ultrasound.output(IMAGE)
+        rf = values(ultrasound.output(RF_LINES), "RF").copy()
+        ultrasound.filter.GetRayTracer().SetPathsPerLine(30)
+        ultrasound.output(IMAGE)
+        np.testing.assert_array_equal(values(ultrasound.filter.GetOutputDataObject(RF_LINES), "RF"), rf)
+        self.assertFalse(np.array_equal(values(ultrasound.output(RF_LINES), "RF"), rf))
+
+    def test_asking_for_the_probe_simulates_nothing(self):
+        ultrasound = Ultrasound()
+        texts = []
+        ultrasound.filter.AddObserver("ProgressEvent", lambda *_: texts.append(ultrasound.filter.GetProgressText()))
+        self.assertEqual(ultrasound.output(PROBE).GetNumberOfCells(), 2)
+        self.assertNotIn("Tracing", texts)
 
 
 class TestRunningAgain(unittest.TestCase):

@@ -1,8 +1,11 @@
-// GpuBenchmark A4C.sonojob S1.sonojob: what the stages cost on the GPU, one `name value unit` a line. Device times are
-// medians of many runs, from events; what a scene does not change is on the device already.
+// GpuBenchmark: what the stages cost on the GPU, one `name value unit` a line. Device times are medians of many runs,
+// from events; what a scene does not change is on the device already.
 #include "Ceilings.h"
 #include "Cuda/DeviceImager.h"
-#include "JobFile.h"
+#include "EchoScenes.h"
+#include "PhantomScene.h"
+#include "Phantoms/ThoraxPhantom.h"
+#include "Simulator.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +19,7 @@ namespace {
 using namespace sono;
 
 constexpr int repeats = 101;
-constexpr int batchRepeats = 21;
+constexpr int sweepRepeats = 21;
 
 void print(const char* name, double value, const char* unit)
 {
@@ -29,10 +32,25 @@ double median(std::vector<double> values)
   return values[values.size() / 2];
 }
 
+/// Wall time of some work, ms: the median of runs after a few that are not counted.
+double medianWallMs(int count, const std::function<void()>& work)
+{
+  std::vector<double> ms;
+  for (int i = -5; i < count; ++i)
+  {
+    const auto from = std::chrono::steady_clock::now();
+    work();
+    if (i >= 0)
+    {
+      ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - from).count());
+    }
+  }
+  return median(ms);
+}
+
 struct Runs
 {
   std::vector<DeviceTimes> times;
-  std::vector<double> wallMs;
 
   double medianOf(const std::function<double(const DeviceTimes&)>& pick) const
   {
@@ -45,39 +63,43 @@ struct Runs
   }
 };
 
-Runs runOften(const ImageJob& job, const DeviceWants& wants, int count)
-{
-  Runs runs;
-  for (int i = 0; i < 5; ++i)
-  {
-    DeviceImager::instance().run(job, wants);
-  }
-  for (int i = 0; i < count; ++i)
-  {
-    DeviceTimes times;
-    const auto from = std::chrono::steady_clock::now();
-    DeviceImager::instance().run(job, wants, {}, &times);
-    runs.wallMs.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - from).count());
-    runs.times.push_back(times);
-  }
-  return runs;
-}
-
 double computing(const DeviceTimes& t)
 {
   return t.trace + t.echo + t.bmode + t.scan;
 }
 
-/// The first images of a batch alone.
-ImageJob firstImages(const ImageJob& all, int images)
+/// The apical view, and from it a sweep: the probe tilts to and fro by 15 degrees and turns by 20.
+std::vector<ProbePose> sweepOf(int count)
 {
-  const std::size_t lines = std::size_t(images) * std::size_t(all.linesPerImage());
-  ImageJob job = all;
-  job.images = images;
-  job.trace->lines.resize(lines);
-  job.echo->lineCount = int(lines);
-  job.echo->tissues->beams.resize(lines);
-  return job;
+  const ProbePose start = thoraxPhantomA4C().orthonormalized();
+  std::vector<ProbePose> poses;
+  for (int i = 0; i < count; ++i)
+  {
+    const double tilt = 0.26 * std::sin(2.0 * M_PI * i / count);
+    const double turn = 0.35 * i / count;
+    const Vec3d elevation = glm::cross(start.axial, start.lateral);
+    ProbePose pose = start;
+    pose.axial = start.axial * std::cos(tilt) + elevation * std::sin(tilt);
+    pose.lateral = start.lateral * std::cos(turn) + elevation * std::sin(turn);
+    poses.push_back(pose.orthonormalized());
+  }
+  return poses;
+}
+
+ImageInput a4c()
+{
+  ImageInput input;
+  input.pose = thoraxPhantomA4C().orthonormalized();
+  input.settings.matchStages();
+  input.settings.setDevice(Device::Cuda);
+  return input;
+}
+
+/// How often a beam looks at a cell that may hold a scatterer: lines times the volume they see.
+double cellVisits(const EchoSettings& echo, int lines)
+{
+  const double area = M_PI * 16.0 * echo.lateralSigmaMm * echo.elevationalSigmaMm;
+  return double(lines) * area * echo.depthMm / std::pow(echo.scattererCellMm, 3);
 }
 
 /// Largest difference of the real RF between GPU and CPU, of its peak.
@@ -94,14 +116,14 @@ double rfDifference(const std::vector<std::complex<float>>& gpu, const std::vect
 }
 
 /// What the stages have to move and to compute at least, as shares of what the device can do in the time they take.
-void printShares(const ImageJob& job, std::uint64_t segments, double scatterers, double ms, const Ceilings& ceilings)
+void printShares(const TracedLines& traced, const RfLines& rf, double scatterers, double ms, const Ceilings& ceilings)
 {
   // Sums and echoes are written and read, then IQ, envelope, grey level; of the bins the batches' sums, mean and error.
-  const double sampleBytes = double(job.echo->lineCount) * job.echo->sumCount * (16.0 + 8.0 * 4.0 + 4.0 * 6.0);
-  const double binBytes = 4.0 * double(job.trace->lines.size()) * job.trace->binCount * (8.0 * 2.0 + 3.0);
+  const double sampleBytes = double(rf.lineCount) * rf.sampleCount * (16.0 + 8.0 * 4.0 + 4.0 * 6.0);
+  const double binBytes = 4.0 * double(traced.lineCount) * traced.binCount * (8.0 * 2.0 + 3.0);
   const double bytesMs = (sampleBytes + binBytes) / ceilings.gigabytesPerSecond * 1e-6;
   // Counted by hand: some 17 cells of 40 operations and 64 bins of 25 a segment, 200 operations a scatterer.
-  const double operations = double(segments) * (17.0 * 40.0 + 64.0 * 25.0) + scatterers * 200.0;
+  const double operations = double(traced.segments) * (17.0 * 40.0 + 64.0 * 25.0) + scatterers * 200.0;
   const double operationsMs = operations / ceilings.teraflops * 1e-9;
   print("gpu_image_bytes_floor_ms", bytesMs, "ms");
   print("gpu_image_operations_floor_ms", operationsMs, "ms");
@@ -109,72 +131,110 @@ void printShares(const ImageJob& job, std::uint64_t segments, double scatterers,
   print("gpu_image_share_of_arithmetic", 100.0 * operationsMs / ms, "%");
 }
 
-void measureImage(const JobFile& file, const Ceilings& ceilings)
+void measureImage(Simulator& simulator, const Ceilings& ceilings)
 {
-  const ImageJob one = firstImages(file.job, 1);
-  DeviceWants picture;
-  picture.image = true;
-  DeviceTimes first;
-  DeviceWants rf;
-  rf.rf = true;
-  rf.traced = true;
-  const DeviceResult result = DeviceImager::instance().run(one, rf, {}, &first);
-  print("gpu_scene_upload_mb", double(first.uploadedBytes) * 1e-6, "MB");
-  print("gpu_cpu_max_rel", rfDifference(result.iq, file.cpuIq), "of_peak");
+  ImageInput input = a4c();
+  const RfResult rf = simulator.rf(input);
+  print("gpu_scene_upload_mb", double(DeviceImager::instance().lastTimes().uploadedBytes) * 1e-6, "MB");
+  const TracedLines& traced = simulator.traced(input).host();
+  const auto lines = makeScanLines(input.settings.geometry, input.pose);
+  const RfLines onCpu =
+    formRf(*simulator.scene(), lines, trace(*simulator.scene(), lines, input.settings.tracing), input.settings.echo);
+  print("gpu_cpu_max_rel", rfDifference(rf.host().iq, onCpu.iq), "of_peak");
 
-  const Runs runs = runOften(one, picture, repeats);
+  // Each image is another one, as of a probe that moves or of a seed that changes.
+  Runs runs;
+  DeviceTimes before{};
+  const auto image = [&] {
+    ++input.settings.tracing.seed;
+    simulator.picture(simulator.image(input), input.pose, false);
+  };
+  for (int i = 0; i < repeats; ++i)
+  {
+    before = DeviceImager::instance().lastTimes();
+    image();
+    runs.times.push_back(DeviceImager::instance().lastTimes());
+  }
+  const DeviceTimes last = runs.times.back();
   print("gpu_image_ms", runs.medianOf(computing), "ms");
   print("gpu_trace_ms", runs.medianOf([](const DeviceTimes& t) { return t.trace; }), "ms");
   print("gpu_echo_ms", runs.medianOf([](const DeviceTimes& t) { return t.echo; }), "ms");
   print("gpu_bmode_ms", runs.medianOf([](const DeviceTimes& t) { return t.bmode; }), "ms");
   print("gpu_scan_ms", runs.medianOf([](const DeviceTimes& t) { return t.scan; }), "ms");
-  print("gpu_upload_ms", runs.medianOf([](const DeviceTimes& t) { return t.upload; }), "ms");
-  print("gpu_download_ms", runs.medianOf([](const DeviceTimes& t) { return t.download; }), "ms");
-  print("gpu_image_wall_ms", median(runs.wallMs), "ms");
-  print("gpu_image_uploaded_kb", double(runs.times.back().uploadedBytes) * 1e-3, "kB");
-  print("gpu_image_downloaded_kb", double(runs.times.back().downloadedBytes) * 1e-3, "kB");
+  print("gpu_image_wall_ms", medianWallMs(repeats, image), "ms");
+  print("gpu_moved_image_wall_ms",
+        medianWallMs(repeats,
+                     [&] {
+                       input.pose.positionMm.x += 1e-3; // in the same region
+                       image();
+                     }),
+        "ms");
+  print("gpu_gain_wall_ms",
+        medianWallMs(repeats,
+                     [&] {
+                       input.settings.bmode.gainDb += 0.01;
+                       simulator.picture(simulator.image(input), input.pose, false);
+                     }),
+        "ms");
+  print("gpu_image_uploaded_kb", double(last.uploadedBytes - before.uploadedBytes) * 1e-3, "kB");
+  print("gpu_image_downloaded_kb", double(last.downloadedBytes - before.downloadedBytes) * 1e-3, "kB");
   const double traceSeconds = 1e-3 * runs.medianOf([](const DeviceTimes& t) { return t.trace; });
   const double echoSeconds = 1e-3 * runs.medianOf([](const DeviceTimes& t) { return t.echo; });
-  print("gpu_paths_per_s", double(one.trace->lines.size()) * one.trace->paths / traceSeconds, "1/s");
-  print("gpu_segments_per_s", double(result.segments) / traceSeconds, "1/s");
-  print("gpu_scatterers_per_s", file.scatterers / echoSeconds, "1/s");
-  printShares(one, result.segments, file.scatterers, runs.medianOf(computing), ceilings);
-
-  for (const int images : { 1, 2, 4, 8, 16, 32, 64 })
-  {
-    const Runs batch = runOften(firstImages(file.job, images), picture, batchRepeats);
-    const std::string name = "gpu_batch_" + std::to_string(images);
-    print((name + "_images_per_s").c_str(), 1e3 * images / batch.medianOf(computing), "1/s");
-    print((name + "_wall_images_per_s").c_str(), 1e3 * images / median(batch.wallMs), "1/s");
-  }
-  const Runs all = runOften(file.job, picture, batchRepeats);
-  print("gpu_images_per_s", 1e3 * file.job.images / all.medianOf(computing), "1/s");
+  const double scatterers = cellVisits(input.settings.echo, input.settings.geometry.lineCount);
+  print("gpu_paths_per_s", double(traced.lineCount) * input.settings.tracing.pathsPerLine / traceSeconds, "1/s");
+  print("gpu_segments_per_s", double(traced.segments) / traceSeconds, "1/s");
+  print("gpu_scatterers_per_s", scatterers / echoSeconds, "1/s");
+  printShares(traced, rf.layout(), scatterers, runs.medianOf(computing), ceilings);
 }
 
-void measureCole(const JobFile& file)
+void measureSweeps(Simulator& simulator)
 {
-  DeviceWants rf;
-  rf.rf = true;
-  const DeviceResult result = DeviceImager::instance().run(file.job, rf);
-  print("gpu_cole_cpu_max_rel", rfDifference(result.iq, file.cpuIq), "of_peak");
-  const Runs runs = runOften(file.job, {}, repeats);
+  const ImageSettings settings = a4c().settings;
+  std::vector<std::uint8_t> taken;
+  const auto sink = [&](const SweptPictures& pictures) {
+    const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
+    const std::size_t bytes = std::size_t(layout.width) * layout.height * std::size_t(pictures.count);
+    taken.resize(std::max(taken.size(), bytes));
+    std::copy(pictures.grey, pictures.grey + bytes, taken.begin());
+  };
+  for (const int images : { 1, 4, 16, 64 })
+  {
+    const auto poses = sweepOf(images);
+    const double ms = medianWallMs(sweepRepeats, [&] { simulator.sweep(poses, settings, false, sink); });
+    print(("gpu_sweep_" + std::to_string(images) + "_wall_images_per_s").c_str(), 1e3 * images / ms, "1/s");
+  }
+  simulator.sweep(sweepOf(16), settings, false, sink);
+  print("gpu_images_per_s", 16e3 / computing(DeviceImager::instance().lastTimes()), "1/s");
+}
+
+void measureCole()
+{
+  test::SceneS1 s1;
+  s1.settings.device = Device::Cuda;
+  const auto points = std::make_shared<const PointScatterers>(s1.points);
+  Simulator simulator;
+  const RfLines onCpu = formRf({ nullptr, nullptr, points.get() }, s1.lines, s1.settings);
+  const RfResult result = simulator.formRf(s1.lines, {}, s1.settings, points);
+  print("gpu_cole_cpu_max_rel", rfDifference(result.host().iq, onCpu.iq), "of_peak");
+  Runs runs;
+  for (int i = 0; i < repeats; ++i)
+  {
+    s1.settings.scattererLevelDb += 1e-6; // of no weight for points, but asked anew
+    simulator.formRf(s1.lines, {}, s1.settings, points);
+    runs.times.push_back(DeviceImager::instance().lastTimes());
+  }
   const double ms = runs.medianOf([](const DeviceTimes& t) { return t.echo; });
   print("gpu_cole_ms", ms, "ms");
-  print("gpu_cole_scatterers_per_s", file.scatterers / ms * 1e3, "1/s");
+  print("gpu_cole_scatterers_per_s", double(s1.points.size()) / ms * 1e3, "1/s");
 }
 
 } // namespace
 
-int main(int argc, char** argv)
+int main()
 {
-  if (argc != 3)
-  {
-    std::fprintf(stderr, "usage: GpuBenchmark A4C.sonojob S1.sonojob (from WriteGpuJobs)\n");
-    return 2;
-  }
   try
   {
-    const DeviceStatus status = cudaStatus();
+    const DeviceStatus& status = cudaStatus();
     std::fprintf(stderr, "GpuBenchmark: %s\n", status.what.c_str());
     if (!status.usable)
     {
@@ -183,8 +243,10 @@ int main(int argc, char** argv)
     const Ceilings ceilings = measureCeilings();
     print("gpu_copy_gb_per_s", ceilings.gigabytesPerSecond, "GB/s");
     print("gpu_tflops", ceilings.teraflops, "TFLOP/s");
-    measureImage(readJob(argv[1]), ceilings);
-    measureCole(readJob(argv[2]));
+    Simulator simulator(makePhantomScene(makeThoraxPhantom(1.0)));
+    measureImage(simulator, ceilings);
+    measureSweeps(simulator);
+    measureCole();
   }
   catch (const std::exception& error)
   {

@@ -2,7 +2,7 @@
 
 #include "Echo/FormRf.h"
 #include "GpuOrSkip.h"
-#include "Simulate.h"
+#include "Simulator.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
@@ -25,19 +25,41 @@ struct Chain
   RfLines rf;
 };
 
+/// Something that others own, for as long as the tests need it.
+template<class T>
+std::shared_ptr<const T> borrowed(const T* object)
+{
+  return { std::shared_ptr<void>(), object };
+}
+
 inline Chain runChain(const EchoSources& sources, const std::vector<ScanLine>& lines, TraceSettings tracing,
                       EchoSettings echo, Device device, const std::vector<TargetSurface>& targets = {})
 {
   tracing.device = echo.device = device;
+  Simulator simulator(borrowed(sources.scene));
   Chain chain;
-  EchoSources all = sources;
+  TracedResult traced;
   if (sources.scene)
   {
-    chain.traced = trace(*sources.scene, lines, tracing, {}, targets);
-    all.traced = &chain.traced;
+    traced = simulator.trace(lines, tracing, targets);
+    EXPECT_EQ(traced.onDevice() != nullptr, device == Device::Cuda);
+    chain.traced = traced.host();
   }
-  chain.rf = formRf(all, lines, echo);
+  chain.rf = simulator.formRf(lines, traced, echo, borrowed(sources.points)).host();
   return chain;
+}
+
+/// The images of some poses, one by one.
+inline std::vector<PlaneImage> imagesOf(const Scene& scene, const std::vector<ProbePose>& poses,
+                                        const ImageSettings& settings, const Progress& progress = {})
+{
+  Simulator simulator(borrowed(&scene));
+  std::vector<PlaneImage> images;
+  for (const ProbePose& pose : poses)
+  {
+    images.push_back(simulator.image({ pose, settings, {}, nullptr }, progress).plane().host());
+  }
+  return images;
 }
 
 /// Largest difference of the RF, of its peak.

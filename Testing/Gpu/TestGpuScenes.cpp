@@ -131,9 +131,12 @@ TEST(GpuSmall, UnusualSettings)
   settings.tracing.pathsPerLine = 20;
   settings.bmode.automaticReference = false;
   settings.matchStages();
-  settings.device = Device::Cuda;
+  settings.setDevice(Device::Cuda);
   const ProbePose pose{ { 6.0, 6.0, 0.0 } };
-  EXPECT_EQ(simulateImages(*random.scene, { pose, pose, pose }, settings).size(), 3u);
+  Simulator simulator(borrowed(random.scene.get()));
+  int images = 0;
+  simulator.sweep({ pose, pose, pose }, settings, true, [&](const SweptPictures& p) { images += p.count; });
+  EXPECT_EQ(images, 3);
 }
 
 TEST(GpuSmall, EveryUsualKernel)
@@ -151,10 +154,11 @@ TEST(GpuSmall, EveryUsualKernel)
   settings.geometry.depthMm = 12.0;
   settings.tracing.pathsPerLine = 50;
   settings.bmode.addNoise = true;
+  settings.bmode.addNoise = true;
   settings.bmode.noiseDb = -60.0;
   settings.matchStages();
-  settings.device = Device::Cuda;
-  EXPECT_EQ(simulateImages(*random.scene, { ProbePose{ { 6.0, 6.0, 0.0 } } }, settings).size(), 1u);
+  settings.setDevice(Device::Cuda);
+  EXPECT_EQ(imagesOf(*random.scene, { ProbePose{ { 6.0, 6.0, 0.0 } } }, settings).size(), 1u);
 }
 
 TEST(GpuScenes, AHundredRandomScenesAgreeWithTheCpu)

@@ -1,5 +1,7 @@
 #include "FieldScenes.h"
 #include "GpuParity.h"
+#include "Image/GreyBytes.h"
+#include "Image/LabelSlice.h"
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Probe/PulseFile.h"
@@ -143,23 +145,25 @@ TEST(GpuStages, AFieldAndASampledPulse)
   expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu), "field");
 }
 
-TEST(GpuStages, WholeImagesAndBatches)
+TEST(GpuStages, WholeImagesAndSweeps)
 {
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
   s.bmode.addNoise = true;
+  s.bmode.addNoise = true;
   s.bmode.noiseDb = -80.0;
   std::vector<ProbePose> poses;
-  for (int i = 0; i < 5; ++i)
+  for (int i = 0; i < 21; ++i) // a group and a part of one
   {
     ProbePose pose = thoraxPhantomA4C().orthonormalized();
-    pose.axial += 0.05 * i * pose.lateral;
+    pose.axial += 0.01 * i * pose.lateral;
     poses.push_back(pose.orthonormalized());
   }
-  s.device = Device::Cpu;
-  const auto cpu = simulateImages(thorax(), poses, s);
-  s.device = Device::Cuda;
-  const auto gpu = simulateImages(thorax(), poses, s);
+  const std::vector<ProbePose> some{ poses[0], poses[9], poses[20] };
+  s.setDevice(Device::Cpu);
+  const auto cpu = imagesOf(thorax(), some, s);
+  s.setDevice(Device::Cuda);
+  const auto gpu = imagesOf(thorax(), some, s);
   ASSERT_EQ(gpu.size(), cpu.size());
   for (std::size_t i = 0; i < cpu.size(); ++i)
   {
@@ -174,9 +178,103 @@ TEST(GpuStages, WholeImagesAndBatches)
     EXPECT_LE(border, 20) << i; // pixels whose centre lies on the sector's edge, to rounding
     // 1e-3 of the grey levels' range in the mean; at speckle's zeros the logarithm magnifies any rounding.
     EXPECT_LE(std::sqrt(squared / double(cpu[i].value.size())), 1e-3) << i;
-    const auto alone = simulateImages(thorax(), { poses[i] }, s);
-    EXPECT_EQ(alone.front().value, gpu[i].value) << i;
   }
+
+  // A sweep's pictures are those of its poses, and so are its labels.
+  Simulator simulator(borrowed(&thorax()));
+  int seen = 0;
+  simulator.sweep(poses, s, true, [&](const SweptPictures& pictures) {
+    for (int n = 0; n < pictures.count; ++n, ++seen)
+    {
+      EXPECT_EQ(pictures.firstPose + n, seen);
+      Simulator alone(borrowed(&thorax()));
+      const ImageInput input{ poses[std::size_t(seen)], s, {}, nullptr };
+      const ScanPicture picture = alone.picture(alone.image(input), input.pose, true);
+      const std::size_t first = std::size_t(n) * picture.grey.size;
+      int differing = 0;
+      for (std::size_t p = 0; p < picture.grey.size; ++p)
+      {
+        // The regions may differ, and with them the rounding of places.
+        differing += std::abs(int(picture.grey[p]) - int(pictures.grey[first + p])) > 1;
+        ASSERT_EQ(picture.labels[p], pictures.labels[first + p]) << seen << " " << p;
+        ASSERT_EQ(picture.mask[p], pictures.mask[p]) << seen << " " << p;
+      }
+      EXPECT_LE(differing, int(picture.grey.size / 1000)) << seen;
+    }
+  });
+  EXPECT_EQ(seen, int(poses.size()));
+}
+
+TEST(GpuStages, APictureIsItsLevelsInBytesAndHasTheCpusLabels)
+{
+  SONO_GPU_OR_SKIP();
+  ImageInput input{ thoraxPhantomA4C().orthonormalized(), thoraxSettings(), {}, nullptr };
+  input.settings.setDevice(Device::Cuda);
+  Simulator simulator(borrowed(&thorax()));
+  const ImageResult image = simulator.image(input);
+  const ScanPicture picture = simulator.picture(image, input.pose, true);
+  const PlaneImage& levels = image.plane().host(); // which WholeImagesAndSweeps holds against the CPU's
+  const auto same = [](const auto& span, const auto& expected) {
+    return std::vector<std::decay_t<decltype(expected[0])>>(span.begin(), span.end()) == expected;
+  };
+  EXPECT_TRUE(same(picture.mask, levels.mask));
+  EXPECT_TRUE(same(picture.grey, greyBytes(levels.value, levels.mask)));
+  EXPECT_TRUE(same(picture.labels, sliceLabels(thorax().volume(), input.pose, levels)));
+}
+
+TEST(GpuStages, HandlesStayWhatTheyWere)
+{
+  SONO_GPU_OR_SKIP();
+  Simulator simulator(borrowed(&thorax()));
+  ImageInput input{ thoraxPhantomA4C().orthonormalized(), thoraxSettings(), {}, nullptr };
+  input.settings.setDevice(Device::Cuda);
+  std::vector<TracedResult> traced;
+  std::vector<RfResult> rf;
+  std::vector<BModeResult> bmode;
+  std::vector<ImageResult> images;
+  for (int seed = 1; seed <= 4; ++seed) // none is looked at before the last was made
+  {
+    input.settings.tracing.seed = std::uint64_t(seed);
+    traced.push_back(simulator.traced(input));
+    rf.push_back(simulator.rf(input));
+    bmode.push_back(simulator.bmode(input));
+    images.push_back(simulator.image(input));
+  }
+  for (int seed = 1; seed <= 4; ++seed)
+  {
+    Simulator alone(borrowed(&thorax()));
+    input.settings.tracing.seed = std::uint64_t(seed);
+    const std::size_t n = std::size_t(seed - 1);
+    EXPECT_EQ(traced[n].host().intensity, alone.traced(input).host().intensity) << seed;
+    EXPECT_EQ(traced[n].host().boundaryEcho, alone.traced(input).host().boundaryEcho) << seed;
+    EXPECT_EQ(rf[n].host().iq, alone.rf(input).host().iq) << seed;
+    EXPECT_EQ(bmode[n].host().grey, alone.bmode(input).host().grey) << seed;
+    EXPECT_EQ(images[n].plane().host().value, alone.image(input).plane().host().value) << seed;
+  }
+  EXPECT_NE(images[0].plane().host().value, images[1].plane().host().value);
+}
+
+TEST(GpuStages, AStageTakesWhatLiesOnTheHost)
+{
+  SONO_GPU_OR_SKIP();
+  const ImageSettings s = thoraxSettings();
+  const auto lines = makeScanLines(s.geometry, thoraxPhantomA4C().orthonormalized());
+  TraceSettings tracing = s.tracing;
+  tracing.device = Device::Cpu;
+  EchoSettings echo = s.echo;
+  echo.device = Device::Cuda;
+  Simulator simulator(borrowed(&thorax()));
+  const TracedResult traced = simulator.trace(lines, tracing);
+  const RfResult gpu = simulator.formRf(lines, traced, echo);
+  EXPECT_TRUE(gpu.onDevice());
+  const RfLines cpu = formRf(thorax(), lines, traced.host(), echo);
+  EXPECT_LE(rfDifference(gpu.host(), cpu), rfTolerance);
+  // The other way: traced on the GPU, formed on the CPU.
+  tracing.device = Device::Cuda;
+  echo.device = Device::Cpu;
+  const RfResult back = simulator.formRf(lines, simulator.trace(lines, tracing), echo);
+  EXPECT_FALSE(back.onDevice());
+  EXPECT_LE(rfDifference(back.host(), cpu), rfTolerance);
 }
 
 TEST(GpuStages, ScanConversionOfEveryGeometry)
@@ -196,10 +294,10 @@ TEST(GpuStages, ScanConversionOfEveryGeometry)
     s.bmode.greyMap = GreyMap::Sigmoid;
     s.matchStages();
     const std::vector<ProbePose> poses{ thoraxPhantomA4C().orthonormalized() };
-    s.device = Device::Cpu;
-    const PlaneImage cpu = simulateImages(thorax(), poses, s).front();
-    s.device = Device::Cuda;
-    const PlaneImage gpu = simulateImages(thorax(), poses, s).front();
+    s.setDevice(Device::Cpu);
+    const PlaneImage cpu = imagesOf(thorax(), poses, s).front();
+    s.setDevice(Device::Cuda);
+    const PlaneImage gpu = imagesOf(thorax(), poses, s).front();
     ASSERT_EQ(gpu.value.size(), cpu.value.size());
     int differing = 0;
     for (std::size_t p = 0; p < cpu.value.size(); ++p)
@@ -214,17 +312,27 @@ TEST(GpuStages, AnAbortedRunLeavesTheDeviceUsable)
 {
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
-  s.device = Device::Cuda;
-  const std::vector<ProbePose> poses{ thoraxPhantomA4C().orthonormalized() };
+  s.setDevice(Device::Cuda);
+  const std::vector<ProbePose> poses(40, thoraxPhantomA4C().orthonormalized());
   int asked = 0;
-  EXPECT_THROW(simulateImages(thorax(), poses, s,
-                              [&](double f) {
-                                ++asked;
-                                return f < 0.5;
-                              }),
+  EXPECT_THROW(imagesOf(thorax(), { poses[0] }, s,
+                        [&](double f) {
+                          ++asked;
+                          return f < 0.2;
+                        }),
                Aborted);
   EXPECT_GT(asked, 0);
-  EXPECT_FALSE(simulateImages(thorax(), poses, s).empty());
+  EXPECT_FALSE(imagesOf(thorax(), { poses[0] }, s).empty());
+
+  Simulator simulator(borrowed(&thorax()));
+  int delivered = 0;
+  EXPECT_THROW(simulator.sweep(
+                 poses, s, false, [&](const SweptPictures& pictures) { delivered += pictures.count; },
+                 [](double f) { return f < 0.5; }),
+               Aborted);
+  EXPECT_GT(delivered, 0);
+  EXPECT_LT(delivered, 40);
+  EXPECT_FALSE(imagesOf(thorax(), { poses[0] }, s).empty());
 }
 
 } // namespace

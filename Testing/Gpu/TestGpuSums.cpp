@@ -1,6 +1,6 @@
 // Sums over millions of paths: against closed forms, since that is where digits are lost.
 #include "Core/SoundSpeed.h"
-#include "GpuOrSkip.h"
+#include "GpuParity.h"
 #include "TestScenes.h"
 #include "Trace/Trace.h"
 
@@ -61,6 +61,12 @@ struct Plates
   }
 };
 
+TracedLines tracedOn(const Plates& plates)
+{
+  Simulator simulator(borrowed<Scene>(plates.scene.get()));
+  return simulator.trace(plates.lines, plates.settings).host();
+}
+
 TEST(GpuSums, MillionsOfEqualPathsKeepTheirMean)
 {
   SONO_GPU_OR_SKIP();
@@ -68,7 +74,7 @@ TEST(GpuSums, MillionsOfEqualPathsKeepTheirMean)
   for (const int paths : { 1000000, 10000000 })
   {
     plates.settings.pathsPerLine = paths;
-    const TracedLines traced = trace(*plates.scene, plates.lines, plates.settings);
+    const TracedLines traced = tracedOn(plates);
     const double atPlate = plates.passed(0, plateMm);
     double worst = 0.0;
     for (int line = 0; line < traced.lineCount; ++line)
@@ -108,7 +114,7 @@ TEST(GpuSums, AnEchoTooFaintForOnePathIsStillHeard)
   Plates plates;
   plates.lines.resize(4);
   plates.settings.pathsPerLine = 10000000;
-  const TracedLines traced = trace(*plates.scene, plates.lines, plates.settings);
+  const TracedLines traced = tracedOn(plates);
   const double arriving = plates.passed(0, plateMm) * (1.0 - plates.reflected()) * plates.passed(1, 10.0);
   const double step = 1.0 / 65536.0;
   const double expected = step / (3.0 + step) * arriving;
@@ -139,10 +145,10 @@ TEST(GpuSums, DoNotDependOnTheOrder)
   plates.settings.lobeSigmaDeg = 17.0;
   plates.settings.maxCollisions = 7;
   plates.settings.pathsPerLine = 300000;
-  const TracedLines first = trace(*plates.scene, plates.lines, plates.settings);
+  const TracedLines first = tracedOn(plates);
   for (int i = 0; i < 3; ++i)
   {
-    const TracedLines again = trace(*plates.scene, plates.lines, plates.settings);
+    const TracedLines again = tracedOn(plates);
     EXPECT_EQ(first.intensity, again.intensity);
     EXPECT_EQ(first.standardError, again.standardError);
     EXPECT_EQ(first.boundaryEcho, again.boundaryEcho);

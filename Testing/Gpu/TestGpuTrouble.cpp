@@ -1,7 +1,6 @@
-#include "GpuOrSkip.h"
+#include "GpuParity.h"
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
-#include "Simulate.h"
 #include "SpoilDevice.h"
 
 #include <cstdlib>
@@ -16,9 +15,9 @@ std::vector<PlaneImage> simulate(const Scene& scene, int lines)
   ImageSettings s;
   s.geometry.lineCount = lines;
   s.tracing.pathsPerLine = 10;
-  s.device = Device::Cuda;
+  s.setDevice(Device::Cuda);
   s.matchStages();
-  return simulateImages(scene, { thoraxPhantomA4C().orthonormalized() }, s);
+  return imagesOf(scene, { thoraxPhantomA4C().orthonormalized() }, s);
 }
 
 TEST(GpuTrouble, NoMemoryIsAnErrorThatNamesTheBytesAndPasses)

@@ -24,8 +24,9 @@ def described(class_name):
 STAGES = ("SceneBuilder", "Probe", "RayTracer", "ImageFormation", "BMode", "ScanConverter")
 # Labels that say something else than the name: what an input is, ParaView's own property, a word that a unit hides.
 OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneWriter", "Input"), ("SonoSceneBuilder", "SelectInputScalars"),
-                ("SonoUltrasound", "SelectInputScalars"), ("SonoImageFormation", "Field"),
-                ("EchoPictureWriter", "Input"), ("EchoPictureWriter", "SelectInputScalars")}
+                ("SonoUltrasound", "SelectInputScalars"), ("SonoSweep", "SelectInputScalars"),
+                ("SonoImageFormation", "Field"), ("EchoPictureWriter", "Input"),
+                ("EchoPictureWriter", "SelectInputScalars")}
 
 
 def exposed():
@@ -50,7 +51,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 21)
+        self.assertEqual(len(CLASSES), 22)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()

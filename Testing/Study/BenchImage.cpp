@@ -6,6 +6,7 @@
 
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
+#include "Simulator.h"
 #include "Trace/SharedPaths.h"
 #include "Trace/TargetBvh.h"
 #include "Trace/TraceSetup.h"
@@ -226,14 +227,17 @@ BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing,
   }
   BenchImage image = emptyImage(bench, tracing);
   const auto start = std::chrono::steady_clock::now();
-  const TracedLines traced = trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
+  Simulator simulator(bench.scene);
+  const TracedResult result = simulator.trace(bench.lines, tracing, bench.targets);
+  const TracedLines& traced = result.host();
   image.traceSeconds = secondsSince(start);
   image.intensity.assign(traced.intensity.begin(), traced.intensity.end());
   image.standardError.assign(traced.standardError.begin(), traced.standardError.end());
   image.segments = double(traced.segments);
   EchoSettings echo = bench.echo;
   echo.device = tracing.device;
-  const RfLines rf = formRf(*bench.scene, bench.lines, traced, echo);
+  const RfResult formed = simulator.formRf(bench.lines, result, echo);
+  const RfLines& rf = formed.host();
   image.iq.assign(rf.iq.begin(), rf.iq.end());
   return image;
 }

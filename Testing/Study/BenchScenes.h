@@ -17,7 +17,7 @@ namespace sono::study {
 struct BenchScene
 {
   std::string name; ///< stack, cyst, rib, a4c or phantom
-  std::unique_ptr<Scene> scene;
+  std::shared_ptr<Scene> scene;
   std::vector<ScanLine> lines;
   std::vector<TargetSurface> targets; ///< the phantom's wires
   TraceSettings tracing;

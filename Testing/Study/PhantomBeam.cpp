@@ -3,6 +3,7 @@
 #include "Core/SoundSpeed.h"
 
 #include "Probe/ArrayAperture.h"
+#include "Simulator.h"
 #include "Study.h"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ GelImage gelImage(int lines, unsigned seed)
 {
   CalibrationPhantomSettings settings;
   settings.spacingMm = 1.0;
-  const auto scene = sceneOf(makeCalibrationPhantom({}, settings));
+  Simulator simulator(sceneOf(makeCalibrationPhantom({}, settings)));
   ScanGeometry geometry;
   geometry.kind = ScanKind::Linear;
   geometry.lineCount = lines;
@@ -57,8 +58,9 @@ GelImage gelImage(int lines, unsigned seed)
   tracing.pathsPerLine = 1; // there is no boundary to meet
   const auto scanLines = makeScanLines(geometry, ProbePose{});
   GelImage image;
-  image.traced = trace(*scene, scanLines, tracing);
-  image.rf = formRf(*scene, scanLines, image.traced, echo);
+  const TracedResult traced = simulator.trace(scanLines, tracing);
+  image.traced = traced.host();
+  image.rf = simulator.formRf(scanLines, traced, echo).host();
   return image;
 }
 

@@ -4,6 +4,7 @@
 #include "Phantoms/ThoraxPhantom.h"
 #include "Picture.h"
 #include "Probe/ArrayBeam.h"
+#include "Simulator.h"
 #include "Study.h"
 
 #include "Labels/AssignTissues.h"
@@ -85,11 +86,12 @@ struct HeartImage
 
 HeartImage imageHeart(const LabelVolume& volume, const HeartView& view)
 {
-  const auto scene = heartScene(volume, view.tau, view.gamma);
+  Simulator simulator(heartScene(volume, view.tau, view.gamma));
   const auto lines = makeScanLines(view.geometry, thoraxPhantomA4C().orthonormalized());
   HeartImage image;
-  image.traced = trace(*scene, lines, view.tracing);
-  image.rf = formRf(*scene, lines, image.traced, view.echo);
+  const TracedResult traced = simulator.trace(lines, view.tracing);
+  image.traced = traced.host();
+  image.rf = simulator.formRf(lines, traced, view.echo).host();
   return image;
 }
 

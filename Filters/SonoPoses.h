@@ -1,0 +1,19 @@
+#pragma once
+
+#include "Probe/ScanGeometry.h"
+
+#include <vector>
+
+class vtkDataObject;
+class vtkTable;
+
+namespace sono {
+
+/// The poses of points with the point arrays "Axial" and "Lateral", or of a table's rows; orthonormal. Throws Error
+/// naming what is missing, and the pose that is none.
+std::vector<ProbePose> posesOf(vtkDataObject* data);
+
+/// A row a pose, with the columns that posesOf reads.
+void fillPoses(const std::vector<ProbePose>& poses, vtkTable* table);
+
+} // namespace sono

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+// What an image leaves out while its probe is being moved, and how much memory is kept for what comes next.
+
+namespace sono {
+
+/// Paths of a line while the probe moves.
+inline int interactivePaths(int pathsPerLine)
+{
+  return std::min(pathsPerLine, 60);
+}
+
+/// Sampling of the RF: four samples a period carry the usual bandwidths.
+inline double interactiveSamplingMHz(double samplingMHz, double centreFrequencyMHz)
+{
+  return std::min(samplingMHz, 4.0 * centreFrequencyMHz);
+}
+
+/// Edge of a scatterer's cell: twice as wide, as far as that may be (10 mm).
+inline double interactiveCellMm(double cellMm)
+{
+  return std::min(2.0 * cellMm, std::max(cellMm, 10.0));
+}
+
+/// Edge of a pixel: twice as wide, since ParaView looks at each pixel of each image for its ranges.
+inline double interactivePixelMm(double pixelMm)
+{
+  return 2.0 * pixelMm;
+}
+
+/// Edge of the boxes in which the anatomy is kept for a moving probe, in voxels: the words of one take 270 MB.
+constexpr int interactiveEdgeVoxels = 512;
+
+/// Images of a sweep that go through the stages together: enough to fill a GPU, and few enough that the host takes over
+/// those of one group while the next is computed. On a GPU a group takes at most this share of the memory.
+constexpr int imagesTogether = 16;
+constexpr double groupShareOfDeviceMemory = 0.25;
+
+/// Freed memory that is kept for the next results: the device's, and the host's that the device writes to.
+constexpr std::size_t keptDeviceBytes = std::size_t(1) << 30;
+constexpr std::size_t keptPinnedBytes = std::size_t(256) << 20;
+
+} // namespace sono

@@ -1,0 +1,95 @@
+#include "SameSettings.h"
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+namespace sono {
+
+namespace {
+
+/// All parameters that a struct declares, as numbers.
+template<class Settings>
+std::vector<double> parametersOf(const Settings& settings)
+{
+  std::vector<double> numbers;
+  Settings::visit(settings, [&](const auto& value, const Parameter&) { numbers.push_back(numberOf(value)); });
+  return numbers;
+}
+
+// What the structs hold besides their parameters.
+
+auto rest(const TraceSettings& s)
+{
+  return std::tie(s.march, s.frequencyMHz, s.depthMm, s.echoSampleMm, s.interactive, s.seed);
+}
+
+auto rest(const EchoSettings& s)
+{
+  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.samplingMHz, s.depthMm, s.field, s.pulse, s.seed);
+}
+
+auto rest(const BModeSettings& s)
+{
+  return std::tie(s.tgcCurve, s.noiseSeed);
+}
+
+auto all(const ProbePose& p)
+{
+  return std::tie(p.positionMm, p.axial, p.lateral);
+}
+
+auto all(const ScanLine& l)
+{
+  return std::tie(l.originMm, l.axis, l.lateral, l.elevation);
+}
+
+bool sameTissue(const Tissue& a, const Tissue& b)
+{
+  const auto& columns = tissueColumns();
+  return a.name == b.name && std::all_of(columns.begin(), columns.end(), [&](const TissueColumn& column) {
+           return a.*column.member == b.*column.member;
+         });
+}
+
+} // namespace
+
+bool same(const TraceSettings& a, const TraceSettings& b)
+{
+  return rest(a) == rest(b) && parametersOf(a) == parametersOf(b);
+}
+
+bool same(const EchoSettings& a, const EchoSettings& b)
+{
+  return rest(a) == rest(b) && parametersOf(a) == parametersOf(b);
+}
+
+bool same(const BModeSettings& a, const BModeSettings& b)
+{
+  return rest(a) == rest(b) && parametersOf(a) == parametersOf(b);
+}
+
+bool same(const ScanGeometry& a, const ScanGeometry& b)
+{
+  return parametersOf(a) == parametersOf(b);
+}
+
+bool same(const ProbePose& a, const ProbePose& b)
+{
+  return all(a) == all(b);
+}
+
+bool same(const std::vector<ScanLine>& a, const std::vector<ScanLine>& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const ScanLine& x, const ScanLine& y) { return all(x) == all(y); });
+}
+
+bool same(const std::vector<TargetSurface>& a, const std::vector<TargetSurface>& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TargetSurface& x, const TargetSurface& y) {
+    return x.name == y.name && sameTissue(x.tissue, y.tissue) && x.pointsMm == y.pointsMm && x.triangles == y.triangles;
+  });
+}
+
+} // namespace sono

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "ImageSettings.h"
+#include "Trace/Targets.h"
+
+#include <vector>
+
+namespace sono {
+
+// Whether two are the same to the bit, and give the same result therefore; what is shared counts as the same when it is
+// the same object.
+
+bool same(const TraceSettings& a, const TraceSettings& b);
+bool same(const EchoSettings& a, const EchoSettings& b);
+bool same(const BModeSettings& a, const BModeSettings& b);
+bool same(const ScanGeometry& a, const ScanGeometry& b);
+bool same(const ProbePose& a, const ProbePose& b);
+bool same(const std::vector<ScanLine>& a, const std::vector<ScanLine>& b);
+bool same(const std::vector<TargetSurface>& a, const std::vector<TargetSurface>& b);
+
+} // namespace sono

@@ -1,0 +1,543 @@
+#include "Simulator.h"
+
+#include "Core/Policy.h"
+#include "Cuda/DeviceImager.h"
+#include "Cuda/MakeImageJob.h"
+#include "Cuda/RunOnDevice.h"
+#include "Echo/EchoSetup.h"
+#include "Image/ErrorMap.h"
+#include "Image/GreyBytes.h"
+#include "Image/LabelSlice.h"
+#include "Kernel/TracePath.h"
+#include "SameSettings.h"
+#include "Trace/TraceSetup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace sono {
+
+namespace {
+
+void requireMatch(bool same, const char* what)
+{
+  if (!same)
+  {
+    throw Error(std::string("the stages disagree about ") + what + ": set it alike for tracing and image formation");
+  }
+}
+
+bool near(double a, double b)
+{
+  return std::abs(a - b) <= 1e-9 * std::abs(b);
+}
+
+/// What a stage made last, and from what. Another result replaces it when it is there.
+template<class From, class Result>
+struct LastResult
+{
+  std::optional<From> from;
+  Result result;
+
+  template<class Make>
+  const Result& get(From wanted, const Make& make)
+  {
+    if (!from || !from->same(wanted))
+    {
+      result = make();
+      from = std::move(wanted);
+    }
+    return result;
+  }
+};
+
+struct TraceFrom
+{
+  std::vector<ScanLine> lines;
+  TraceSettings settings;
+  std::vector<TargetSurface> targets;
+
+  bool same(const TraceFrom& o) const
+  {
+    return sono::same(settings, o.settings) && sono::same(lines, o.lines) && sono::same(targets, o.targets);
+  }
+};
+
+/// Of the device's numbers for image formation, which do not depend on traced lines that lie on the device.
+struct EchoJobFrom
+{
+  std::vector<ScanLine> lines;
+  EchoSettings settings;
+  std::shared_ptr<const PointScatterers> points;
+
+  bool same(const EchoJobFrom& o) const
+  {
+    return points == o.points && sono::same(settings, o.settings) && sono::same(lines, o.lines);
+  }
+};
+
+struct RfFrom
+{
+  EchoJobFrom echo;
+  TracedResult traced;
+
+  bool same(const RfFrom& o) const { return traced == o.traced && echo.same(o.echo); }
+};
+
+struct BModeJobFrom
+{
+  BModeSettings settings;
+  int sampleCount;
+  double sampleMm;
+
+  bool same(const BModeJobFrom& o) const
+  {
+    return sampleCount == o.sampleCount && sampleMm == o.sampleMm && sono::same(settings, o.settings);
+  }
+};
+
+struct BModeFrom
+{
+  RfResult rf;
+  BModeSettings settings;
+
+  bool same(const BModeFrom& o) const { return rf == o.rf && sono::same(settings, o.settings); }
+};
+
+struct ImageFrom
+{
+  ScanGeometry geometry;
+  BModeResult bmode;
+  double pixelMm;
+
+  bool same(const ImageFrom& o) const
+  {
+    return bmode == o.bmode && pixelMm == o.pixelMm && sono::same(geometry, o.geometry);
+  }
+};
+
+struct PictureFrom
+{
+  ImageResult image;
+  ProbePose pose;
+  bool withLabels;
+
+  bool same(const PictureFrom& o) const
+  {
+    // Without labels a picture lies nowhere.
+    return image == o.image && withLabels == o.withLabels && (!withLabels || sono::same(pose, o.pose));
+  }
+};
+
+struct ErrorFrom
+{
+  ScanGeometry geometry;
+  TracedResult traced;
+  bool interactive;
+  double pixelMm;
+
+  bool same(const ErrorFrom& o) const
+  {
+    return traced == o.traced && interactive == o.interactive && pixelMm == o.pixelMm &&
+           sono::same(geometry, o.geometry);
+  }
+};
+
+void fetchTraced(const DeviceTraced& device, TracedLines& lines)
+{
+  FetchedTrace fetched = DeviceImager::instance().fetch(device);
+  lines.intensity = std::move(fetched.intensity);
+  lines.standardError = std::move(fetched.standardError);
+  lines.boundaryEcho = std::move(fetched.boundaryEcho);
+  lines.segments = fetched.segments;
+}
+
+void fetchRf(const DeviceRf& device, RfLines& lines)
+{
+  lines.iq = DeviceImager::instance().fetchIq(device);
+}
+
+void fetchGrey(const DeviceGrey& device, BModeLines& lines)
+{
+  std::vector<double> reference;
+  lines.grey = DeviceImager::instance().fetch(device, reference);
+  lines.referenceAmplitude = reference.front();
+}
+
+TracedResult traceOnDevice(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                           const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  const TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
+  TracedLines layout = tracedLayout(int(lines.size()), settings);
+  const auto job = std::make_shared<const TraceJob>(makeTraceJob(setup, settings, layout.lineCount));
+  return { std::move(layout), DeviceImager::instance().trace(job, { 0, int(lines.size()) }, partOf(progress, 0.3, 1.0)),
+           fetchTraced };
+}
+
+void fetchPlane(const DevicePicture& device, PlaneImage& image)
+{
+  image.value = DeviceImager::instance().fetchLevels(device);
+  const SharedSpan<std::uint8_t> mask = DeviceImager::instance().maskOf(device);
+  image.mask.assign(mask.begin(), mask.end());
+}
+
+/// The map of nothing, as large as the layout.
+template<class Image>
+Image unknown(Image layout, std::size_t count)
+{
+  layout.value.assign(count, 0.0f);
+  layout.mask.assign(count, 0);
+  return layout;
+}
+
+/// Some line of each image meets the label map, as where each is asked for alone.
+void requireEachMeets(const TraceSetup& setup, std::size_t images)
+{
+  const CellSpace<NoTargets> space{ setup.region->view(), {} };
+  const std::size_t perImage = setup.lines.size() / images;
+  for (std::size_t image = 0; image < images; ++image)
+  {
+    const auto first = setup.lines.begin() + std::ptrdiff_t(image * perImage);
+    PathState path;
+    if (std::none_of(first, first + std::ptrdiff_t(perImage),
+                     [&](const TraceLine& line) { return enterSpace(space, line, setup.view.depthMm, path); }))
+    {
+      throw Error("no scan line of pose " + std::to_string(image) +
+                  " meets the label map: move the probe onto the skin or increase the depth");
+    }
+  }
+}
+
+void requireMatching(const ImageSettings& settings)
+{
+  requireMatch(near(settings.tracing.depthMm, settings.geometry.depthMm) &&
+                 near(settings.echo.depthMm, settings.geometry.depthMm),
+               "the depth");
+  requireMatch(near(settings.tracing.frequencyMHz, settings.echo.centreFrequencyMHz), "the frequency");
+  requireMatch(near(settings.tracing.echoSampleMm, settings.echo.sampleMm()), "the sampling of echoes");
+}
+
+/// Bytes that the stages need for an image, without what a single launch of the tracer needs.
+double bytesPerImage(const TracedLines& traced, int linesPerImage, const PlaneScan& scan)
+{
+  const double bytesPerLine = 48.0 * traced.echoCount + 12.0 * traced.binCount;
+  return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
+}
+
+} // namespace
+
+struct Simulator::Last
+{
+  LastResult<TraceFrom, TracedResult> traced;
+  LastResult<EchoJobFrom, std::shared_ptr<const EchoJob>> echoJob;
+  LastResult<RfFrom, RfResult> rf;
+  LastResult<BModeJobFrom, std::shared_ptr<const BModeJob>> bmodeJob;
+  LastResult<BModeFrom, BModeResult> bmode;
+  LastResult<ImageFrom, ImageResult> image;
+  LastResult<PictureFrom, ScanPicture> picture;
+  LastResult<ErrorFrom, ImageResult> errorMap;
+
+  const std::shared_ptr<const BModeJob>& bmodeJobFor(const BModeSettings& settings, int sampleCount, double sampleMm)
+  {
+    return bmodeJob.get({ settings, sampleCount, sampleMm }, [&] {
+      return std::make_shared<const BModeJob>(makeBModeJob(settings, sampleCount, sampleMm));
+    });
+  }
+};
+
+Simulator::Simulator(std::shared_ptr<const Scene> scene)
+  : scene_(std::move(scene))
+  , last_(std::make_unique<Last>())
+{
+}
+
+Simulator::~Simulator() = default;
+
+void Simulator::setScene(std::shared_ptr<const Scene> scene)
+{
+  if (scene != scene_)
+  {
+    last_ = std::make_unique<Last>();
+    scene_ = std::move(scene);
+  }
+}
+
+const Scene& Simulator::needScene() const
+{
+  if (!scene_)
+  {
+    throw Error("there is no scene to trace: give the simulator one");
+  }
+  return *scene_;
+}
+
+TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                              const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  return last_->traced.get({ lines, settings, targets }, [&] {
+    return runsOnDevice(settings) ? traceOnDevice(needScene(), lines, settings, targets, progress)
+                                  : TracedResult(sono::trace(needScene(), lines, settings, progress, targets));
+  });
+}
+
+RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResult& traced, const EchoSettings& settings,
+                           const std::shared_ptr<const PointScatterers>& points, const Progress& progress)
+{
+  const EchoJobFrom from{ lines, settings, points };
+  return last_->rf.get({ from, traced }, [&] {
+    EchoSources sources{ scene_.get(), nullptr, points.get() };
+    const bool onDevice = chooseDevice(settings.device).cuda;
+    // Echoes on other samples are brought onto the RF's on the host.
+    const bool takesDevices =
+      onDevice && (!traced || (traced.onDevice() && traced.layout().lineCount == int(lines.size()) &&
+                               near(traced.layout().echoSampleMm, settings.sampleMm())));
+    if (traced && !takesDevices)
+    {
+      sources.traced = &traced.host();
+    }
+    if (!onDevice)
+    {
+      return RfResult(sono::formRf(sources, lines, settings, progress));
+    }
+    const auto makeJob = [&] {
+      const EchoSetup setup(sources, lines, settings);
+      return std::make_shared<const EchoJob>(makeEchoJob(setup));
+    };
+    const std::shared_ptr<const EchoJob> job = takesDevices ? last_->echoJob.get(from, makeJob) : makeJob();
+    report(progress, 0.5);
+    RfLines layout = rfLayout(int(lines.size()), settings);
+    return RfResult(std::move(layout),
+                    DeviceImager::instance().formRf(job, { 0, int(lines.size()) },
+                                                    traced && takesDevices ? traced.onDevice().get() : nullptr, true),
+                    fetchRf);
+  });
+}
+
+BModeResult Simulator::makeBMode(const RfResult& rf, const BModeSettings& settings)
+{
+  return last_->bmode.get({ rf, settings }, [&] {
+    const RfLines& layout = rf.layout();
+    if (!rf.onDevice())
+    {
+      return BModeResult(
+        sono::makeBMode(layout.envelope(), layout.lineCount, layout.sampleCount, layout.sampleMm, settings));
+    }
+    return BModeResult({ layout.lineCount, layout.sampleCount, layout.sampleMm, 0.0, {} },
+                       DeviceImager::instance().compress(
+                         last_->bmodeJobFor(settings, layout.sampleCount, layout.sampleMm), *rf.onDevice(), 1),
+                       fetchGrey);
+  });
+}
+
+ImageResult Simulator::scanConvert(const ScanGeometry& geometry, const BModeResult& bmode, double pixelMm,
+                                   const Progress& progress)
+{
+  return last_->image.get({ geometry, bmode, pixelMm }, [&] {
+    const BModeLines& layout = bmode.layout();
+    if (geometry.isVolume())
+    {
+      return ImageResult(
+        scanConvertVolume(geometry, bmode.host().grey, layout.sampleCount, layout.sampleMm, pixelMm, progress));
+    }
+    if (!bmode.onDevice() || layout.lineCount != geometry.lineCount)
+    {
+      return ImageResult(
+        PlaneResult(sono::scanConvert(geometry, bmode.host().grey, layout.sampleCount, layout.sampleMm, pixelMm)));
+    }
+    const PlaneScan scan = planeScan(geometry, layout.sampleCount, layout.sampleMm, pixelMm);
+    return ImageResult(PlaneResult(planeImageLayout(geometry, pixelMm),
+                                   DeviceImager::instance().convert(scan, bmode.onDevice()), fetchPlane));
+  });
+}
+
+ScanPicture Simulator::picture(const ImageResult& image, const ProbePose& pose, bool withLabels)
+{
+  return last_->picture.get({ image, pose, withLabels }, [&] {
+    const auto onHost = [&](const auto& made) {
+      ScanPicture picture{ SharedSpan<std::uint8_t>(greyBytes(made.value, made.mask)),
+                           SharedSpan<std::uint8_t>(made.mask),
+                           {} };
+      if (withLabels)
+      {
+        picture.labels = SharedSpan<std::uint16_t>(sliceLabels(needScene().volume(), pose, made));
+      }
+      return picture;
+    };
+    if (image.isVolume())
+    {
+      return onHost(image.volume());
+    }
+    const auto& picture = image.plane().onDevice();
+    if (!picture)
+    {
+      return onHost(image.plane().host());
+    }
+    DeviceImager& imager = DeviceImager::instance();
+    const auto labels =
+      withLabels ? imager.slice(makeLabelJob(needScene(), &pose, 1, image.plane().layout()), *picture) : nullptr;
+    const PictureCopy copy = imager.wait(imager.beginDownload(picture, labels));
+    return ScanPicture{ copy.bytes, copy.mask, copy.labels };
+  });
+}
+
+ImageResult Simulator::errorMap(const ScanGeometry& geometry, const TracedResult& traced, bool interactive,
+                                double pixelMm, const Progress& progress)
+{
+  return last_->errorMap.get({ geometry, traced, interactive, pixelMm }, [&] {
+    const bool isVolume = geometry.isVolume();
+    if (interactive && isVolume)
+    {
+      const VolumeImage layout = volumeImageLayout(geometry, pixelMm);
+      return ImageResult(unknown(layout, layout.voxelCount()));
+    }
+    if (interactive)
+    {
+      const PlaneImage layout = planeImageLayout(geometry, pixelMm);
+      return ImageResult(PlaneResult(unknown(layout, std::size_t(layout.width) * layout.height)));
+    }
+    const TracedLines& lines = traced.host();
+    if (isVolume)
+    {
+      return ImageResult(
+        errorVolume(geometry, lines.intensity, lines.standardError, lines.binCount, lines.binMm, pixelMm, progress));
+    }
+    return ImageResult(
+      PlaneResult(errorPlane(geometry, lines.intensity, lines.standardError, lines.binCount, lines.binMm, pixelMm)));
+  });
+}
+
+TracedResult Simulator::traced(const ImageInput& input, const Progress& progress)
+{
+  requireMatching(input.settings);
+  return trace(makeScanLines(input.settings.geometry, input.pose), input.settings.tracing, input.targets, progress);
+}
+
+RfResult Simulator::rf(const ImageInput& input, const Progress& progress)
+{
+  const TracedResult before = traced(input, partOf(progress, 0.0, 0.8));
+  return formRf(makeScanLines(input.settings.geometry, input.pose), before, input.settings.echo, input.points,
+                partOf(progress, 0.8, 1.0));
+}
+
+BModeResult Simulator::bmode(const ImageInput& input, const Progress& progress)
+{
+  return makeBMode(rf(input, progress), input.settings.bmode);
+}
+
+ImageResult Simulator::image(const ImageInput& input, const Progress& progress)
+{
+  return scanConvert(input.settings.geometry, bmode(input, partOf(progress, 0.0, 0.95)), input.settings.pixelMm,
+                     partOf(progress, 0.95, 1.0));
+}
+
+void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
+                      const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets)
+{
+  requireMatching(settings);
+  planeImageLayout(settings.geometry, settings.pixelMm); // throws for a matrix
+  if (poses.empty())
+  {
+    return;
+  }
+  const bool onDevice = runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda;
+  (this->*(onDevice ? &Simulator::sweepOnDevice : &Simulator::sweepOnCpu))(poses, settings, withLabels, sink, progress,
+                                                                           targets);
+}
+
+void Simulator::sweepOnCpu(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
+                           const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets)
+{
+  Simulator each(scene_); // whose results go with the sweep
+  ImageInput input{ {}, settings, targets, nullptr };
+  input.settings.setDevice(Device::Cpu);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+  {
+    const double done = double(i) / double(poses.size());
+    input.pose = poses[i];
+    ScanPicture picture;
+    try
+    {
+      picture = each.picture(each.image(input, partOf(progress, done, done + 1.0 / double(poses.size()))), input.pose,
+                             withLabels);
+    }
+    catch (const Error& error)
+    {
+      throw Error("pose " + std::to_string(i) + ": " + error.what());
+    }
+    sink({ int(i), 1, picture.grey.data.get(), picture.labels.data.get(), picture.mask.data.get() });
+  }
+}
+
+void Simulator::sweepOnDevice(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
+                              const SweepSink& sink, const Progress& progress,
+                              const std::vector<TargetSurface>& targets)
+{
+  const Scene& scene = needScene();
+  std::vector<ScanLine> lines;
+  for (const ProbePose& pose : poses)
+  {
+    const auto more = makeScanLines(settings.geometry, pose);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  const int perImage = int(lines.size() / poses.size());
+  const TracedLines tracedOfOne = tracedLayout(perImage, settings.tracing);
+  const RfLines rfOfOne = rfLayout(perImage, settings.echo);
+  const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
+  const PlaneScan scan = planeScan(settings.geometry, rfOfOne.sampleCount, rfOfOne.sampleMm, settings.pixelMm);
+  std::shared_ptr<const TraceJob> traceJob;
+  {
+    const TraceSetup setup(scene, lines, settings.tracing, targets, partOf(progress, 0.0, 0.3));
+    requireEachMeets(setup, poses.size());
+    traceJob = std::make_shared<const TraceJob>(makeTraceJob(setup, settings.tracing, perImage));
+  }
+  const Progress running = partOf(progress, 0.3, 1.0);
+  DeviceImager& imager = DeviceImager::instance();
+  const int together = std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, perImage, scan)));
+  std::shared_ptr<const EchoJob> echoJob; // made while the first lines are traced
+  SweptPictures before;
+  std::shared_ptr<DeviceImager::Download> onTheWay;
+  const auto deliver = [&] {
+    const PictureCopy copy = imager.wait(onTheWay);
+    before.grey = copy.bytes.data.get();
+    before.labels = copy.labels.data.get();
+    before.mask = copy.mask.data.get();
+    sink(before);
+    report(running, double(before.firstPose + before.count) / double(poses.size()));
+  };
+  for (int first = 0; first < int(poses.size()); first += together)
+  {
+    const int count = std::min(together, int(poses.size()) - first);
+    const LineRange range{ first * perImage, count * perImage };
+    const auto traced = imager.trace(traceJob, range);
+    if (!echoJob)
+    {
+      const EchoSources sources{ &scene, nullptr, nullptr };
+      const EchoSetup setup(sources, lines, settings.echo);
+      echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
+    }
+    const auto rf = imager.formRf(echoJob, range, traced.get(), false);
+    const auto& bmodeJob = last_->bmodeJobFor(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm);
+    const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
+    const auto labels =
+      withLabels ? imager.slice(makeLabelJob(scene, poses.data() + first, count, layout), *picture) : nullptr;
+    auto next = imager.beginDownload(picture, labels);
+    if (onTheWay)
+    {
+      deliver();
+    }
+    onTheWay = std::move(next);
+    before = { first, count, nullptr, nullptr, nullptr };
+  }
+  deliver();
+}
+
+void Simulator::prepareInteractive(const std::vector<ScanLine>& lines, const TraceSettings& settings)
+{
+  const Scene& scene = needScene();
+  scene.beginInteractiveRegion(fanBox(scene, lines, settings.depthMm), runsOnDevice(settings));
+}
+
+} // namespace sono
