@@ -2,6 +2,7 @@
 #include "BusyScene.h"
 
 #include "Core/Progress.h"
+#include "Simulator.h"
 #include "Trace/TraceSetup.h"
 
 #include <gtest/gtest.h>
@@ -142,7 +143,7 @@ TEST(InteractiveProbe, ImageIsThatOfAFreshScene)
     TraceSettings atRest = settings;
     atRest.interactive = false;
     trace(*scene, fan(9), atRest);
-    prepareInteractive(*scene, fan(9), atRest);
+    Simulator(scene).prepareInteractive(fan(9), atRest);
     TracedLines last;
     for (int step = 0; step <= 40; ++step)
     {
