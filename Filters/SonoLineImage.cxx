@@ -7,6 +7,7 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -60,6 +61,7 @@ void announceLineImage(const LineImageLayout& layout, int components, vtkInforma
 
 void setLineImageLayout(const LineImageLayout& layout, vtkImageData* image)
 {
+  image->GetPointData()->Initialize(); // VTK keeps the scalars of the run before
   image->SetDimensions(layout.sampleCount, layout.lineCount, 1);
   image->SetOrigin(layout.firstMm, 0.0, 0.0);
   image->SetSpacing(layout.sampleMm, 1.0, 1.0);

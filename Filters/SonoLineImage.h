@@ -23,6 +23,7 @@ struct LineImageLayout
 };
 
 void announceLineImage(const LineImageLayout& layout, int components, vtkInformation* outInfo);
+/// Of an image that has no arrays then.
 void setLineImageLayout(const LineImageLayout& layout, vtkImageData* image);
 
 /// Throws Error when the image does not hold `lineCount` whole lines, as after a cut.

@@ -107,7 +107,7 @@ class TestErrorMap(unittest.TestCase):
         said = listen(self.map)
         self.map.Update()
         self.assertEqual(len(said), 1, said)
-        self.assertIn("StandardError", said[0])
+        self.assertIn("Intensity", said[0])
 
 
 class TestOfSimulateUltrasound(unittest.TestCase):

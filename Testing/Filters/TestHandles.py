@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 from chain import Chain
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersCore import vtkPassThrough
 
 
 def values(data, name):
@@ -18,44 +18,50 @@ class TestHandles(unittest.TestCase):
         self.rf = values(self.chain.formation.GetOutput(), "RF")
         self.picture = values(self.chain.converter.GetOutput(), "BMode")
 
-    def changed_copy(self, data, name, factor, in_field=False):
-        """The same data, of which one array's values were changed in place."""
-        copy = vtkImageData()
-        copy.DeepCopy(data)
-        array = (copy.GetFieldData() if in_field else copy.GetPointData()).GetArray(name)
+    def copy(self, stage):
+        """A filter that hands on a deep copy of the stage's first output."""
+        between = self.between = vtkPassThrough()  # its port alone would not keep it
+        between.SetDeepCopyInput(True)
+        between.SetInputConnection(stage.GetOutputPort())
+        between.Update()
+        return between
+
+    def changed_copy(self, stage, name, factor, in_field=False):
+        """Such a filter, of whose data one array's values were changed in place."""
+        between = self.copy(stage)
+        data = between.GetOutputDataObject(0)
+        array = (data.GetFieldData() if in_field else data.GetPointData()).GetArray(name)
         vtk_to_numpy(array)[:] *= factor
         array.Modified()
-        return copy
+        return between.GetOutputPort()
 
     def test_a_copy_gives_the_same(self):
-        copy = vtkImageData()
-        copy.DeepCopy(self.chain.tracer.GetOutputDataObject(0))
-        self.chain.formation.SetInputData(0, copy)
+        self.chain.formation.SetInputConnection(0, self.copy(self.chain.tracer).GetOutputPort())
         self.chain.converter.Update()
         np.testing.assert_array_equal(values(self.chain.formation.GetOutput(), "RF"), self.rf)
         np.testing.assert_array_equal(values(self.chain.converter.GetOutput(), "BMode"), self.picture)
 
     def test_changed_intensities_count(self):
-        dark = self.changed_copy(self.chain.tracer.GetOutputDataObject(0), "Intensity", 0.0)
-        self.chain.formation.SetInputData(0, dark)
+        dark = self.changed_copy(self.chain.tracer, "Intensity", 0.0)
+        self.chain.formation.SetInputConnection(0, dark)
         self.chain.formation.Update()
         self.assertLess(np.abs(values(self.chain.formation.GetOutput(), "RF")).sum(), np.abs(self.rf).sum())
 
     def test_changed_echoes_count(self):
-        silent = self.changed_copy(self.chain.tracer.GetOutputDataObject(0), "BoundaryEcho", 0.0, in_field=True)
-        self.chain.formation.SetInputData(0, silent)
+        silent = self.changed_copy(self.chain.tracer, "BoundaryEcho", 0.0, in_field=True)
+        self.chain.formation.SetInputConnection(0, silent)
         self.chain.formation.Update()
         self.assertFalse(np.array_equal(values(self.chain.formation.GetOutput(), "RF"), self.rf))
 
     def test_changed_envelopes_count(self):
-        black = self.changed_copy(self.chain.formation.GetOutput(), "Envelope", 0.0)
-        self.chain.bmode.SetInputData(black)
+        black = self.changed_copy(self.chain.formation, "Envelope", 0.0)
+        self.chain.bmode.SetInputConnection(black)
         self.chain.converter.Update()
         self.assertEqual(values(self.chain.converter.GetOutput(), "BMode").max(), 1)
 
     def test_changed_grey_levels_count(self):
-        white = self.changed_copy(self.chain.bmode.GetOutput(), "BMode", 1e6)
-        self.chain.converter.SetInputData(0, white)
+        white = self.changed_copy(self.chain.bmode, "BMode", 1e6)
+        self.chain.converter.SetInputConnection(0, white)
         self.chain.converter.Update()
         picture = values(self.chain.converter.GetOutput(), "BMode")
         self.assertGreater((picture == 255).sum(), (self.picture == 255).sum())

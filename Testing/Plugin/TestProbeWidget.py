@@ -27,8 +27,7 @@ class TestPose(unittest.TestCase):
 
     def test_defaults_are_the_source_s(self):
         probe, source = Probe(), vtkSonoProbeSource()
-        for name in ("PositionMm", "Axial", "Lateral", "ScanKind", "LineCount", "DepthMm", "SectorDeg", "RadiusMm",
-                     "WidthMm", "ElevationLineCount", "ElevationSectorDeg", "PresetFile"):
+        for name in ("PositionMm", "Axial", "Lateral", "DepthMm", "PresetFile"):
             self.assertEqual(getattr(probe, "Get" + name)(), getattr(source, "Get" + name)(), name)
 
     def test_typed_vectors_become_unit_vectors_at_right_angles(self):

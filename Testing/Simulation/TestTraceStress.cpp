@@ -231,7 +231,7 @@ TEST(TraceStress, SettingsAtTheirLimits)
   s = quickSettings();
   for (const double sigma : { 0.0, 1e-7, 1e-3, 1e3, 1e300 })
   {
-    for (const double mean : { 0.0, -50.0, 1.5, 50.0 })
+    for (const double mean : { 0.0, -M_PI, 1.5, M_PI })
     {
       s.lobeSigmaDeg = sigma * 180.0 / M_PI;
       s.lobeMeanDeg = mean * 180.0 / M_PI;
