@@ -139,7 +139,7 @@ TEST(InteractiveProbe, ImageIsThatOfAFreshScene)
   for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::SharedPaths })
   {
     settings.sampling = sampling;
-    const auto scene = makeBusyScene();
+    const std::shared_ptr<const Scene> scene = makeBusyScene();
     TraceSettings atRest = settings;
     atRest.interactive = false;
     trace(*scene, fan(9), atRest);
