@@ -41,6 +41,17 @@ vtkDataArray* findTuple(const char* name, int components, vtkFieldData* field)
   return array;
 }
 
+vtkDataObject* announcedCarrier(vtkInformation* inInfo)
+{
+  vtkDataObject* carrier = inInfo ? inInfo->Get(acquisitionKey()) : nullptr;
+  if (!carrier)
+  {
+    throw Error("The input does not say how it was scanned; connect the output of the stage before, down from an "
+                "Ultrasound Probe.");
+  }
+  return carrier;
+}
+
 Vec3d readVector(const char* name, vtkFieldData* field)
 {
   Vec3d value;
@@ -103,13 +114,12 @@ void announceFields(vtkFieldData* field, vtkInformation* outInfo)
 
 vtkFieldData* announcedFields(vtkInformation* inInfo)
 {
-  vtkDataObject* carrier = inInfo ? inInfo->Get(acquisitionKey()) : nullptr;
-  if (!carrier)
-  {
-    throw Error("The input does not say how it was scanned; connect the output of the stage before, down from an "
-                "Ultrasound Probe.");
-  }
-  return carrier->GetFieldData();
+  return announcedCarrier(inInfo)->GetFieldData();
+}
+
+void announceSameFields(vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  outInfo->Set(acquisitionKey(), announcedCarrier(inInfo));
 }
 
 } // namespace sono

@@ -31,5 +31,7 @@ double readNumber(const char* name, vtkFieldData* field);
 /// size has to be announced before any input has been computed. `announcedFields` throws Error when there are none.
 void announceFields(vtkFieldData* field, vtkInformation* outInfo);
 vtkFieldData* announcedFields(vtkInformation* inInfo);
+/// Announces what another does.
+void announceSameFields(vtkInformation* inInfo, vtkInformation* outInfo);
 
 } // namespace sono

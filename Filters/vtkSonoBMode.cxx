@@ -70,7 +70,7 @@ int vtkSonoBMode::RequestInformation(vtkInformation*, vtkInformationVector** inp
   return sono::announceStage(this, [&] {
     // Extent, origin and spacing are the input's, which the pipeline has copied.
     vtkInformation* outInfo = output->GetInformationObject(0);
-    sono::announceFields(sono::announcedFields(input[0]->GetInformationObject(0)), outInfo);
+    sono::announceSameFields(input[0]->GetInformationObject(0), outInfo);
   });
 }
 

@@ -88,7 +88,7 @@ int vtkSonoScanConverter::RequestInformation(vtkInformation*, vtkInformationVect
     placement.flat(probe.pose).announce(VTK_UNSIGNED_CHAR, output->GetInformationObject(1));
     for (int port : { 0, 1 })
     {
-      sono::announceFields(acquisition, output->GetInformationObject(port));
+      sono::announceSameFields(input[0]->GetInformationObject(0), output->GetInformationObject(port));
     }
   });
 }
@@ -118,17 +118,17 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
     const sono::ImageResult image =
       this->Simulator->scanConvert(probe.geometry, bmode, pixelMm, sono::progressOf(this));
+    vtkImageData* world = vtkImageData::GetData(output, 0);
+    if (connected || scene) // before the picture, which may have to be waited for
+    {
+      sono::writeLabelTable(connected ? connected->labels : scene->volume().labels, world->GetFieldData());
+    }
     sono::ScanPicture picture = this->Simulator->picture(image, probe.pose, scene && !connected);
     if (connected)
     {
       picture.labels = sono::SharedSpan<std::uint16_t>(
         image.isVolume() ? sono::sliceLabels(*connected, probe.pose, image.volume())
                          : sono::sliceLabels(*connected, probe.pose, image.plane().host()));
-    }
-    vtkImageData* world = vtkImageData::GetData(output, 0);
-    if (connected || scene)
-    {
-      sono::writeLabelTable(connected ? connected->labels : scene->volume().labels, world->GetFieldData());
     }
     sono::fillImage(image, picture, probe.pose, world, vtkImageData::GetData(output, 1));
   });

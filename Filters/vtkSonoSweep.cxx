@@ -49,14 +49,18 @@ enum InputPorts
   POSES = 2
 };
 
+/// The array of the run before, where nobody else holds it any more: to give its pages back and take fresh ones costs
+/// as much as several images.
 template<class Array>
-Array* addArray(const char* name, std::size_t count, vtkPointData* arrays)
+void renew(const char* name, std::size_t count, vtkSmartPointer<Array>& array)
 {
-  vtkNew<Array> array;
-  array->SetName(name);
+  if (!array || array->GetReferenceCount() > 1)
+  {
+    array = vtkSmartPointer<Array>::New();
+    array->SetName(name);
+  }
   array->SetNumberOfValues(static_cast<vtkIdType>(count));
-  arrays->AddArray(array);
-  return array;
+  array->Modified();
 }
 
 /// The probe stands wherever a pose says, and never moves.
@@ -292,23 +296,29 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
 
     const sono::PlaneImage layout = sono::planeImageLayout(settings.geometry, settings.pixelMm);
     const std::size_t pixels = std::size_t(layout.width) * layout.height;
-    vtkNew<vtkPointData> arrays;
-    auto* grey = addArray<vtkUnsignedCharArray>("BMode", pixels * poses.size(), arrays);
-    auto* mask = addArray<vtkUnsignedCharArray>("Mask", pixels * poses.size(), arrays);
-    auto* labels =
-      this->WithLabels ? addArray<vtkUnsignedShortArray>("Labels", pixels * poses.size(), arrays) : nullptr;
+    renew("BMode", pixels * poses.size(), this->Grey);
+    renew("Mask", pixels * poses.size(), this->Mask);
+    if (this->WithLabels)
+    {
+      renew("Labels", pixels * poses.size(), this->Labels);
+    }
     const auto take = [&](const sono::SweptPictures& pictures) {
       // In parallel: fresh memory costs more than what is copied into it.
       sono::parallelFor(pictures.count, {}, [&](int n) {
         const std::size_t from = std::size_t(n) * pixels;
         const auto to = static_cast<vtkIdType>((std::size_t(pictures.firstPose) + n) * pixels);
-        std::copy_n(pictures.grey + from, pixels, grey->GetPointer(to));
-        std::copy_n(pictures.mask, pixels, mask->GetPointer(to));
-        if (labels)
+        std::copy_n(pictures.grey + from, pixels, this->Grey->GetPointer(to));
+        if (this->WithLabels)
         {
-          std::copy_n(pictures.labels + from, pixels, labels->GetPointer(to));
+          std::copy_n(pictures.labels + from, pixels, this->Labels->GetPointer(to));
         }
       });
+      if (pictures.firstPose == 0) // all at once, while a GPU is at work on the others
+      {
+        sono::parallelFor(static_cast<int>(poses.size()), {}, [&](int n) {
+          std::copy_n(pictures.mask, pixels, this->Mask->GetPointer(static_cast<vtkIdType>(n * pixels)));
+        });
+      }
     };
     this->Simulator->sweep(poses, settings, this->WithLabels, take, sono::partOf(sono::progressOf(this), begin, 1.0));
 
@@ -316,10 +326,11 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     images->SetDimensions(layout.width, layout.height, static_cast<int>(poses.size()));
     images->SetOrigin(layout.lateralMinMm, layout.axialMinMm, 0.0);
     images->SetSpacing(layout.pixelMm, layout.pixelMm, 1.0);
-    arrays->SetActiveScalars("BMode");
-    images->GetPointData()->ShallowCopy(arrays);
-    if (labels)
+    images->GetPointData()->SetScalars(this->Grey);
+    images->GetPointData()->AddArray(this->Mask);
+    if (this->WithLabels)
     {
+      images->GetPointData()->AddArray(this->Labels);
       sono::writeLabelTable(scene->volume().labels, images->GetFieldData());
     }
     sono::fillPoses(poses, vtkTable::GetData(output, 1));

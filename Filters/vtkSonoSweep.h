@@ -17,6 +17,8 @@ class vtkSonoBMode;
 class vtkSonoImageFormation;
 class vtkSonoRayTracer;
 class vtkSonoSceneBuilder;
+class vtkUnsignedCharArray;
+class vtkUnsignedShortArray;
 
 /**
  * @class vtkSonoSweep
@@ -110,6 +112,10 @@ private:
   double PixelMm = 0.23;
   bool WithLabels = true;
   std::unique_ptr<sono::Simulator> Simulator;
+  // The output's, kept so that the next run can write to the same memory.
+  vtkSmartPointer<vtkUnsignedCharArray> Grey;
+  vtkSmartPointer<vtkUnsignedCharArray> Mask;
+  vtkSmartPointer<vtkUnsignedShortArray> Labels;
 };
 
 #endif

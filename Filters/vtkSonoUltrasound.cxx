@@ -58,7 +58,7 @@ void announceSame(vtkInformation* from, vtkInformation* to)
   {
     to->CopyEntry(from, key);
   }
-  sono::announceFields(sono::announcedFields(from), to);
+  sono::announceSameFields(from, to);
 }
 
 /// The output that somebody asks for; the image where nobody does.

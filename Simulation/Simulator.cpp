@@ -1,5 +1,6 @@
 #include "Simulator.h"
 
+#include "Core/ParallelFor.h"
 #include "Core/Policy.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
@@ -476,13 +477,12 @@ void Simulator::sweepOnDevice(const std::vector<ProbePose>& poses, const ImageSe
                               const std::vector<TargetSurface>& targets)
 {
   const Scene& scene = needScene();
-  std::vector<ScanLine> lines;
-  for (const ProbePose& pose : poses)
-  {
-    const auto more = makeScanLines(settings.geometry, pose);
-    lines.insert(lines.end(), more.begin(), more.end());
-  }
-  const int perImage = int(lines.size() / poses.size());
+  const int perImage = settings.geometry.totalLineCount();
+  std::vector<ScanLine> lines(poses.size() * std::size_t(perImage));
+  parallelFor(int(poses.size()), {}, [&](int pose) {
+    const auto made = makeScanLines(settings.geometry, poses[std::size_t(pose)]);
+    std::copy(made.begin(), made.end(), lines.begin() + std::ptrdiff_t(pose) * perImage);
+  });
   const TracedLines tracedOfOne = tracedLayout(perImage, settings.tracing);
   const RfLines rfOfOne = rfLayout(perImage, settings.echo);
   const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
