@@ -112,8 +112,8 @@ SONO_HD inline EchoSplit splitEcho(const TraceLine& line, const Vec3f& point, fl
   float cosNear;
   float sinFar;
   float cosFar;
-  quickSinCos(near, sinNear, cosNear);
-  quickSinCos(far, sinFar, cosFar);
+  sinCos(near, sinNear, cosNear);
+  sinCos(far, sinFar, cosFar);
   return { sample,
            { a * (1.0f - fraction) * cosNear, -a * (1.0f - fraction) * sinNear, a * fraction * cosFar,
              a * fraction * sinFar } };

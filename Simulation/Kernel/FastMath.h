@@ -49,11 +49,12 @@ SONO_HD inline float quickSqrt(float x)
 #endif
 }
 
-/// sin and cos of an angle in [-pi, pi], absolute error below 4e-7.
-SONO_HD inline void quickSinCos(float x, float& sine, float& cosine)
+/// sin and cos of an angle in [-pi, pi], to the last digit or two. The GPU's own instruction, 4e-7 off, will not do:
+/// each bounce off a curved surface magnifies an error of the direction.
+SONO_HD inline void sinCos(float x, float& sine, float& cosine)
 {
 #if defined(__CUDA_ARCH__)
-  __sincosf(x, &sine, &cosine);
+  sincosf(x, &sine, &cosine);
 #else
   sine = sinf(x);
   cosine = cosf(x);

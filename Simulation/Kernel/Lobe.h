@@ -130,8 +130,8 @@ SONO_HD inline Vec3f directionAround(const Vec3f& axis, float phi, float u)
   float cosPhi;
   float sinAzimuth;
   float cosAzimuth;
-  quickSinCos(phi, sinPhi, cosPhi);
-  quickSinCos(6.28318531f * (u - 0.5f), sinAzimuth, cosAzimuth); // half a turn back: both change their sign
+  sinCos(phi, sinPhi, cosPhi);
+  sinCos(6.28318531f * (u - 0.5f), sinAzimuth, cosAzimuth); // half a turn back: both change their sign
   return glm::normalize(axis * cosPhi - s * (sinPhi * cosAzimuth) - t * (sinPhi * sinAzimuth));
 }
 
