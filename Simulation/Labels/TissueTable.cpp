@@ -18,7 +18,8 @@ struct Property
   double Tissue::*member;
   double minimum;
   double maximum;
-  bool aboveMinimum; ///< the minimum itself is refused
+  bool aboveMinimum;     ///< the minimum itself is refused
+  bool optional = false; ///< a table without its column gives every tissue the default
 };
 
 constexpr double unlimited = std::numeric_limits<double>::max();
@@ -32,6 +33,11 @@ const Property properties[] = {
   { "mu1", &Tissue::scattererProbability, 0.0, 1.0, false },
   { "tau", &Tissue::tau, 0.0, 3.0, false },
   { "gamma", &Tissue::gamma, -2.0, 2.0, false },
+  { "roughness_mm", &Tissue::roughnessMm, 0.0, 10.0, false, true },
+  { "correlation_mm", &Tissue::correlationMm, 0.01, 100.0, false, true },
+  { "backscatter_1MHz_per_cm_sr", &Tissue::backscatterPerCmSr, 0.0, 1.0, false, true },
+  { "backscatter_exponent", &Tissue::backscatterExponent, 0.0, 6.0, false, true },
+  { "fibre_anisotropy_dB", &Tissue::fibreAnisotropyDb, 0.0, 60.0, false, true },
 };
 
 std::string rangeOf(const Property& property)
@@ -109,6 +115,10 @@ TissueTable TissueTable::read(const std::string& path)
     tissue.source = row.fields[source];
     for (const Property& property : properties)
     {
+      if (property.optional && csv.column(property.column) < 0)
+      {
+        continue;
+      }
       tissue.*property.member = readNumber(csv, row, property, tissue.name);
     }
     try

@@ -17,6 +17,11 @@ struct Tissue
   double scattererProbability = 0.0;  ///< mu1 in [0, 1]
   double tau = 1.0;                   ///< exponent of the intensity in a boundary echo, in [0, 3]; 1 is neutral
   double gamma = 0.0;                 ///< exponent of cos(theta) in a boundary echo, in [-2, 2]; 0 is neutral
+  double roughnessMm = 0.1;           ///< rms height of its surface, in [0, 10]; of two tissues the rougher counts
+  double correlationMm = 1.0;         ///< correlation length of that height, in [0.01, 100]
+  double backscatterPerCmSr = 1e-4;   ///< b1 of mu_b = b1 (f / MHz)^n, in [0, 1]; 1/(cm sr)
+  double backscatterExponent = 1.4;   ///< n, in [0, 6]
+  double fibreAnisotropyDb = 0.0;     ///< how much stronger across its fibres than along them, in [0, 60]
   std::string source;                 ///< where the numbers come from
 };
 
@@ -38,7 +43,8 @@ class TissueTable
 {
 public:
   /// Columns, in any order, by header: tissue, impedance_MRayl, sound_speed_m_per_s, attenuation_dB_per_cm_MHz,
-  /// mu0, sigma0, mu1, tau, gamma, source. Lines starting with '#' are comments; fields may be quoted.
+  /// mu0, sigma0, mu1, tau, gamma, source; and, with the defaults above where a table lacks them, roughness_mm,
+  /// correlation_mm, backscatter_1MHz_per_cm_sr, backscatter_exponent, fibre_anisotropy_dB. Lines starting with '#' are comments; fields may be quoted.
   /// Throws Error naming the file, the tissue and the column for a missing, non-finite or out-of-range number.
   static TissueTable read(const std::string& path);
 

@@ -7,8 +7,8 @@
 
 namespace sono {
 
-/// Version of what a scene file holds; a reader refuses a newer one.
-constexpr int sceneFileFormat = 1;
+/// Version of what a scene file holds; a reader refuses others.
+constexpr int sceneFileFormat = 2;
 
 /// Writes a scene, building first what it has not built yet. By the name's ending:
 /// `.nvdb` NanoVDB: the grid "labels" (Int32, the label ids) and, for each label, "voxels_<id>" (mask, its voxels) and
@@ -20,7 +20,7 @@ constexpr int sceneFileFormat = 1;
 void writeScene(const std::string& path, const Scene& scene, const Progress& progress = {});
 
 /// Reads a scene from `.nvdb`, with everything built but the tracer's cache. Throws Error naming the file when it is
-/// missing, foreign, truncated, damaged, or of a newer format.
+/// missing, foreign, truncated, damaged, or of another format.
 std::unique_ptr<Scene> readScene(const std::string& path, const Progress& progress = {});
 
 /// A scene whose label grid and surfaces come from the folder `cacheFolder` if it holds those of the same voxels and

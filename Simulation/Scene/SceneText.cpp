@@ -49,31 +49,23 @@ GridPlacement placementOf(const Json& json)
 
 Json jsonOf(const Tissue& tissue)
 {
-  return { { "name", tissue.name },
-           { "impedanceMRayl", tissue.impedanceMRayl },
-           { "soundSpeedMPerS", tissue.soundSpeedMPerS },
-           { "attenuationDbPerCmMHz", tissue.attenuationDbPerCmMHz },
-           { "scattererMean", tissue.scattererMean },
-           { "scattererSigma", tissue.scattererSigma },
-           { "scattererProbability", tissue.scattererProbability },
-           { "tau", tissue.tau },
-           { "gamma", tissue.gamma },
-           { "source", tissue.source } };
+  Json json = { { "name", tissue.name }, { "source", tissue.source } };
+  for (const TissueColumn& column : tissueColumns())
+  {
+    json[column.name] = tissue.*column.member;
+  }
+  return json;
 }
 
 Tissue tissueOf(const Json& json)
 {
   Tissue tissue;
   tissue.name = json.at("name");
-  tissue.impedanceMRayl = json.at("impedanceMRayl");
-  tissue.soundSpeedMPerS = json.at("soundSpeedMPerS");
-  tissue.attenuationDbPerCmMHz = json.at("attenuationDbPerCmMHz");
-  tissue.scattererMean = json.at("scattererMean");
-  tissue.scattererSigma = json.at("scattererSigma");
-  tissue.scattererProbability = json.at("scattererProbability");
-  tissue.tau = json.at("tau");
-  tissue.gamma = json.at("gamma");
   tissue.source = json.at("source");
+  for (const TissueColumn& column : tissueColumns())
+  {
+    tissue.*column.member = json.at(column.name);
+  }
   return tissue;
 }
 
@@ -151,6 +143,11 @@ SceneText parseSceneText(const std::string& path, const std::string& text)
   {
     const Json json = Json::parse(text);
     const int format = json.at("sonovdb_format");
+    if (format < sceneFileFormat)
+    {
+      throw Error("cannot read '" + path + "': SonoVDB 0.1 wrote it (format " + std::to_string(format) +
+                  "), without the tissues' roughness and backscatter; write it again from its label map.");
+    }
     if (format > sceneFileFormat)
     {
       throw Error("cannot read '" + path + "': a newer SonoVDB wrote it (format " + std::to_string(format) +

@@ -89,6 +89,7 @@ void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yi
 TracedLines tracedLayout(int lineCount, const TraceSettings& settings)
 {
   TracedLines out;
+  out.model = settings.model;
   out.lineCount = lineCount;
   out.binMm = settings.radialBinMm;
   out.binCount = settings.binCount();

@@ -24,6 +24,7 @@ enum class TracedAxis
 /// A at depth r adds A exp(-i 2 k (r - r_s)), split linearly between the two nearest samples s, k = 2 pi f / c0.
 struct TracedLines
 {
+  InterfaceModel model = InterfaceModel::Acoustic; ///< what it was traced with; boundaries echo in Amadou2024 alone
   int lineCount = 0;
   int binCount = 0;
   double binMm = 0.0;               ///< bin b covers [b, b+1) * binMm
