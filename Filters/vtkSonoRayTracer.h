@@ -23,9 +23,10 @@ struct TraceSettings;
  * label map does not count. Their tissue is named, in this order, by a cell array of strings "Tissue", a field array of
  * one string "Tissue", or TargetTissue.
  * Output 0: lines x radial bins, x the depth in mm and y the number of the scan line, with the point arrays
- * "Intensity" (mean one-way intensity, 1 at the transducer) and "StandardError" (of that mean). Its field data carry
- * the scene, the probe and the boundary echoes, so that it alone suffices for vtkSonoImageFormation.
- * Output 1: lines x RF samples with the complex point array "BoundaryEcho".
+ * "Intensity" (mean one-way intensity, 1 at the transducer), "StandardError" (of that mean) and
+ * "AttenuationNpPerMHz" (two-way exponent of the amplitude per MHz). Its field data carry the scene, the probe and the
+ * boundary echoes, so that it alone suffices for vtkSonoImageFormation.
+ * Output 1: lines x RF samples with the complex point array "BoundaryEcho", of Amadou 2024; empty for Acoustic.
  * Output 2: some of the paths as polylines in the world, for display, with the point arrays "Intensity" (on arrival),
  * "IntensityDb" (20 log10 of it) and "Bounce" (boundaries met before), and the cell array "Line".
  * Output 3: the boundaries that these paths met, as vertices on the surfaces, with the same arrays and "Normals" (into
@@ -54,8 +55,7 @@ public:
   enum Samplings
   {
     INDEPENDENT = 0,
-    LOW_DISCREPANCY = 1,
-    SHARED_PATHS = 2
+    LOW_DISCREPANCY = 1
   };
 
   ///@{

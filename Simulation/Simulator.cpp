@@ -152,6 +152,7 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
   FetchedTrace fetched = DeviceImager::instance().fetch(device);
   lines.intensity = std::move(fetched.intensity);
   lines.standardError = std::move(fetched.standardError);
+  lines.attenuationNpPerMHz.assign(lines.intensity.size(), 0.0f); // the device does not keep it yet
   lines.boundaryEcho = std::move(fetched.boundaryEcho);
   lines.segments = fetched.segments;
 }
@@ -224,7 +225,7 @@ void requireMatching(const ImageSettings& settings)
 /// Bytes that the stages need for an image, without what a single launch of the tracer needs.
 double bytesPerImage(const TracedLines& traced, int linesPerImage, const PlaneScan& scan)
 {
-  const double bytesPerLine = 48.0 * traced.echoCount + 12.0 * traced.binCount;
+  const double bytesPerLine = 48.0 * traced.echoCount + 16.0 * traced.binCount;
   return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
 }
 

@@ -184,7 +184,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
       report(progress, double(from + lines) / count);
     }
   }
-  if (manyPaths)
+  if (manyPaths && echo_.size() > 0)
   {
     const std::size_t sums = echo_.size();
     carryRests<<<unsigned((sums + 255) / 256), 256, 0, stream>>>(echo_.data(), echoRest_.data(), sums);

@@ -8,9 +8,10 @@
 
 namespace sono {
 
-/// What happens at a boundary: fluid acoustics, or the equations of Amadou et al. 2024 to the letter.
-/// The latter do not conserve energy: the branch's R or T is applied although the choice carries it already, and
-/// cos(theta)/p(omega) averages to pi over the hemisphere. Data/docs/physics.md section 1.
+/// What happens at a boundary: fluid acoustics at a rough surface (RoughSurface.h), or the equations of Amadou et al.
+/// 2024 to the letter, lobe included. The latter do not conserve energy: the branch's R or T is applied although the
+/// choice carries it already, and cos(theta)/p(omega) averages to pi over the hemisphere. Data/docs/physics.md
+/// section 1.
 enum class InterfaceModel
 {
   Acoustic,
@@ -72,10 +73,11 @@ SONO_HD inline Vec3f branchDirection(const Vec3f& direction, const Vec3f& normal
                                   : refractedDirection(direction, normal, cos1, r));
 }
 
-/// Draws the branch and its direction from the lobe around the mirror or refracted direction. A direction on the
-/// wrong side of the surface is mirrored across the tangent plane (Data/docs/physics.md section 2).
-SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const Vec3f& direction, const Vec3f& normal,
-                                   float cos1, const Reflection& r, const BounceSample& u)
+/// Amadou2024's choice: draws the branch and its direction from the lobe around the mirror or refracted direction, and
+/// weights both. A direction on the wrong side of the surface is mirrored across the tangent plane
+/// (Data/docs/physics.md section 2).
+SONO_HD inline Scattered scatterByLobe(const Lobe& lobe, const Vec3f& direction, const Vec3f& normal, float cos1,
+                                       const Reflection& r, const BounceSample& u)
 {
   Scattered out;
   out.reflected = u.choice < r.reflectance || r.total;
@@ -88,31 +90,12 @@ SONO_HD inline Scattered scatterAt(InterfaceModel model, const Lobe& lobe, const
     w -= normal * (2.0f * side);
   }
   out.direction = w;
-  out.throughput = 1.0f;
-  if (model == InterfaceModel::Amadou2024)
-  {
-    const float branch = out.reflected ? r.reflectance : 1.0f - r.reflectance;
-    const float psi = polarDensity(lobe, phi);
-    // cos / p with p = psi / (2 pi sin phi); a mirror has no density: the weight is the cosine alone.
-    const float cosOut = fabsf(glm::dot(w, normal));
-    out.throughput = branch * cosOut * (psi > 0.0f ? 6.28318531f * sinf(phi) / psi : 1.0f);
-  }
+  const float branch = out.reflected ? r.reflectance : 1.0f - r.reflectance;
+  const float psi = polarDensity(lobe, phi);
+  // cos / p with p = psi / (2 pi sin phi); a mirror has no density: the weight is the cosine alone.
+  const float cosOut = fabsf(glm::dot(w, normal));
+  out.throughput = branch * cosOut * (psi > 0.0f ? 6.28318531f * sinf(phi) / psi : 1.0f);
   return out;
-}
-
-/// Density per solid angle with which scatterAt chooses this branch and the unit vector `out`: the branch's share times
-/// the lobe there and where it is mirrored across the tangent plane. The lobe must have a spread.
-SONO_HD inline float scatterDensity(const Lobe& lobe, const Vec3f& direction, const Vec3f& normal, float cos1,
-                                    const Reflection& r, bool reflected, const Vec3f& out)
-{
-  const float side = glm::dot(out, normal);
-  if ((reflected ? side > 0.0f : side < 0.0f) || (!reflected && r.total))
-  {
-    return 0.0f;
-  }
-  const Vec3f centre = branchDirection(direction, normal, cos1, r, reflected);
-  const float share = reflected ? r.reflectance : 1.0f - r.reflectance;
-  return share * (lobeDensity(lobe, centre, out) + lobeDensity(lobe, centre, out - normal * (2.0f * side)));
 }
 
 /// Amplitude of the echo that a boundary returns along the beam, for unit intensity weight w_R left to the caller.

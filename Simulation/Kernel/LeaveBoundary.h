@@ -3,7 +3,7 @@
 #include "Kernel/PathState.h"
 #include "Kernel/TraceView.h"
 
-// How a path goes on from a boundary: mirrored or refracted, around either direction by the lobe.
+// How a path goes on from a boundary: mirrored or refracted, coherently or by facets; in Amadou2024 by the lobe.
 
 namespace sono {
 
@@ -67,10 +67,23 @@ template<class Space>
 SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
                                   const BounceSample& u, PathState& path)
 {
-  const Scattered out = view.deterministic
-                          ? strongerBranch(path, boundary)
-                          : scatterAt(view.model, view.lobe, path.ray.direction, boundary.surface.normal,
-                                      boundary.cosine, boundary.reflection, u);
+  const Vec3f& d = path.ray.direction;
+  const Vec3f& n = boundary.surface.normal;
+  Scattered out;
+  if (view.deterministic)
+  {
+    out = strongerBranch(path, boundary);
+  }
+  else if (view.model == InterfaceModel::Acoustic)
+  {
+    const RoughBoundary rough =
+      roughBoundary(view, view.media[boundary.before.medium], view.media[boundary.after.medium]);
+    out = scatterRough(rough, d, n, boundary.cosine, boundary.reflection, u);
+  }
+  else
+  {
+    out = scatterByLobe(view.lobe, d, n, boundary.cosine, boundary.reflection, u);
+  }
   takeBranch(space, boundary, out, path);
 }
 

@@ -76,12 +76,12 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
   {
     return start;
   }
-  sink.segment(PathSegment{ line.origin, line.axis, path.length, 1.0f, 0.0f });
+  sink.segment(PathSegment{ line.origin, line.axis, path.length, 1.0f, 0.0f, 0.0f });
   path.tissue = space.tissueAt(path.ray.cell);
   if (path.tissue == view.outsideTissue)
   {
     const CellHit hit = space.toBoundary(path.ray, path.tissue, -1, 0.0f, remainingLength(view, line, path));
-    sink.segment(PathSegment{ path.ray.position, line.axis, hit.t, 1.0f, 0.0f });
+    sink.segment(PathSegment{ path.ray.position, line.axis, hit.t, 1.0f, 0.0f, 0.0f });
     if (hit.tissue < 0)
     {
       return start;

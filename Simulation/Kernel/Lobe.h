@@ -105,19 +105,6 @@ SONO_HD inline float polarDensity(const Lobe& lobe, float phi)
   return lobe.density * expf(-0.5f * x * x);
 }
 
-/// Density per solid angle of the lobe around the unit vector `axis`, psi(phi) / (2 pi sin phi). Its pole at the axis
-/// is cut off 1e-7 rad from it. 0 for a mirror.
-SONO_HD inline float lobeDensity(const Lobe& lobe, const Vec3f& axis, const Vec3f& direction)
-{
-  const float sinPhi = glm::length(glm::cross(axis, direction));
-  const float phi = atan2f(sinPhi, glm::dot(axis, direction));
-  if (phi < lobe.a || phi > lobe.b)
-  {
-    return 0.0f;
-  }
-  return polarDensity(lobe, phi) / (6.28318531f * fmaxf(sinPhi, 1e-7f));
-}
-
 /// Direction at polar angle phi and azimuth 2 pi u around the unit vector `axis` (basis: Duff et al. 2017).
 SONO_HD inline Vec3f directionAround(const Vec3f& axis, float phi, float u)
 {

@@ -132,8 +132,9 @@ SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, cons
   float travelled = 0.0f;
   const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, boundary, travelled);
   const TraceMedium& medium = view.media[path.tissue];
-  piece = { path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm };
+  piece = { path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm, path.absorbed };
   path.intensity *= expf(-medium.decayPerMm * travelled);
+  path.absorbed += medium.decayPerMm * travelled;
   path.length += travelled;
   if (!met)
   {

@@ -12,10 +12,11 @@ struct PathState
 {
   CellRay ray;
   float intensity = 1.0f;
-  float length = 0.0f; ///< travelled since the transducer, mm
-  int tissue = 0;      ///< medium that the path is in
-  int target = -1;     ///< target that the path is in; the cells do not count there
-  int ignored = -1;    ///< see marchToBoundary
+  float absorbed = 0.0f; ///< attenuation met so far, Np of intensity
+  float length = 0.0f;   ///< travelled since the transducer, mm
+  int tissue = 0;        ///< medium that the path is in
+  int target = -1;       ///< target that the path is in; the cells do not count there
+  int ignored = -1;      ///< see marchToBoundary
   float ignoreUntil = 0.0f;
   int collisions = 0;
   int pieces = 0; ///< since the last boundary
@@ -29,6 +30,7 @@ struct PathSegment
   float length;
   float intensity; ///< at its start
   float decayPerMm;
+  float absorbed; ///< of PathState, at its start
 };
 
 /// One side of a boundary.
@@ -59,7 +61,8 @@ struct PathSink
   SONO_HD void segment(const PathSegment&) {}
   /// The path stands in front of a boundary. Its echo follows, unless the path ends there.
   SONO_HD void meets(const PathState&, const PathBoundary&) {}
-  /// The echo of that boundary: its place and amplitude, before the coherence weight.
+  /// The echo of that boundary: its place and amplitude, before the coherence weight. In Amadou2024 it is part of the
+  /// image; in Acoustic surfaces echo by themselves, and this is what a smooth one across the path would.
   SONO_HD void echo(const Vec3f& /*point*/, float /*amplitude*/) {}
   /// The path has left the boundary along a branch; it may still end there, by roulette.
   SONO_HD void left(const PathState&, const PathBoundary&) {}

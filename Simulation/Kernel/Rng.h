@@ -88,22 +88,6 @@ SONO_HD inline std::uint32_t sobolSecondReversed(std::uint32_t index)
   return index;
 }
 
-/// The third dimension of Sobol's sequence: primitive polynomial x^2 + x + 1, first direction numbers 1 and 3.
-SONO_HD inline std::uint32_t sobolThird(std::uint32_t index)
-{
-  std::uint32_t older = 0x80000000u;
-  std::uint32_t newer = 0xc0000000u;
-  std::uint32_t x = 0u;
-  for (; index != 0u; index >>= 1)
-  {
-    x ^= (index & 1u) ? older : 0u;
-    const std::uint32_t next = newer ^ older ^ (older >> 2);
-    older = newer;
-    newer = next;
-  }
-  return x;
-}
-
 /// Stream keys: (seed; line, path, bounce, batch). A path's numbers depend on nothing else.
 SONO_HD inline BounceSample independentSample(std::uint64_t seed, std::uint32_t line, std::uint32_t batch,
                                               std::uint32_t path, std::uint32_t bounce)
@@ -141,14 +125,6 @@ SONO_HD inline BounceSample lowDiscrepancySample(const BounceScramble& s, std::u
   return { uniformFrom(reverseBits(hashUpward(choiceIndex, s.choice))),
            uniformFrom(reverseBits(hashUpward(index, s.polar))),
            uniformFrom(reverseBits(hashUpward(sobolSecondReversed(index), s.azimuth))) };
-}
-
-/// The three numbers of a path's first boundary as one scrambled Sobol point: there all paths stand in one place, and
-/// what they leave depends on the three together.
-SONO_HD inline BounceSample firstBounceSample(const BounceScramble& s, std::uint32_t path)
-{
-  return { uniformFrom(owenScramble(sobolThird(path), s.choice)), uniformFrom(reverseBits(hashUpward(path, s.polar))),
-           uniformFrom(reverseBits(hashUpward(sobolSecondReversed(path), s.azimuth))) };
 }
 
 } // namespace sono

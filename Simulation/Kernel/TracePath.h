@@ -4,7 +4,7 @@
 #include "Kernel/LineStart.h"
 
 // The path: one packet of sound from the transducer's face until nothing of it can be heard any more. This is the
-// centre of the simulator; everything that follows paths (the tracer on either device, shared and recorded paths, the
+// centre of the simulator; everything that follows paths (the tracer on either device, recorded paths, the
 // study, in single and in double precision) steps them by the functions at the end of this file.
 //
 //                                                              end: too deep, too late, out of the volume,
@@ -34,7 +34,7 @@
 //   Space   what the volume is made of: where a march meets another tissue, which way the surface faces there, which
 //           targets are in it. CellSpace (dense cells, either device) or NanoSpace (the scene's own grid).
 //   Beam    who listens. It says how far a path can be heard, by a remainingLength(view, beam, path): a TraceLine hears
-//           what comes back to its own face in time; a group of lines what comes back to any of them.
+//           what comes back to its own face in time.
 //   Sink    what is kept. See PathSink: a tally adds pieces and echoes to its line, a recorder keeps corners and hits.
 //   view    the settings, the same for all paths; key the path's random numbers, which are functions of (seed, line,
 //           batch, path, bounce) and of nothing else, so that it does not matter who follows a path, or when.

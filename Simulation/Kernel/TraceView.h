@@ -2,6 +2,7 @@
 
 #include "Kernel/Interface.h"
 #include "Kernel/Lobe.h"
+#include "Kernel/RoughSurface.h"
 #include "Kernel/Vec.h"
 
 #include <cstdint>
@@ -16,6 +17,8 @@ struct TraceMedium
   float decayPerMm = 0.0f; ///< k: intensity falls by exp(-k l)
   float tau = 1.0f;
   float gamma = 0.0f;
+  float roughnessMm = 0.0f;   ///< h, rms height of its surface
+  float correlationMm = 1.0f; ///< l, of that height
 };
 
 /// One main beam (see ScanLine) in the region's local millimetres; the axis is a unit vector.
@@ -33,7 +36,8 @@ struct TraceView
   int outsideTissue = -1;
   float rouletteIntensity = 1e-5f; ///< fainter paths survive with probability intensity / this
   InterfaceModel model = InterfaceModel::Acoustic;
-  Lobe lobe;
+  Lobe lobe;                    ///< of Amadou2024
+  float waveNumberAtOne = 0.0f; ///< k times c, rad/mm at 1 m/s: 2000 pi f with f in MHz
   bool lowDiscrepancy = true;
   bool deterministic = false;
   int maxCollisions = 7;
@@ -41,6 +45,17 @@ struct TraceView
   float depthMm = 160.0f;
   std::uint64_t seed = 1;
 };
+
+/// The surface between two media: the rougher side's, and of two alike in height the steeper one's, whichever is in
+/// front.
+SONO_HD inline RoughBoundary roughBoundary(const TraceView& view, const TraceMedium& from, const TraceMedium& to)
+{
+  const bool rougher =
+    from.roughnessMm != to.roughnessMm ? from.roughnessMm > to.roughnessMm : from.correlationMm < to.correlationMm;
+  const TraceMedium& side = rougher ? from : to;
+  return { side.roughnessMm, smaller(steepestAlpha, 2.0f * side.roughnessMm / side.correlationMm),
+           view.waveNumberAtOne / from.speed, view.waveNumberAtOne / to.speed };
+}
 
 /// w_R = C0 / (C0 + distance) (Data/docs/physics.md section 3). A micrometre is on the axis: C0 = 0 keeps exactly that.
 SONO_HD inline float coherenceWeight(float c0, float distance)

@@ -10,8 +10,10 @@ namespace sono {
 
 namespace {
 
-/// Adds the segment's mean over the whole bins [first, last) to them.
-SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int first, int last, float* bins)
+/// Adds the segment's mean over the whole bins [first, last) to them, and as much times the attenuation at their
+/// middle, `startAbsorbed` at the segment's start, to the others.
+SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float startAbsorbed, float binMm, int first, int last,
+                                       float* __restrict__ bins, float* __restrict__ absorbed)
 {
   const float inverseMu = 1.0f / g.mu;
   const float step = binMm * std::fabs(inverseMu);
@@ -22,7 +24,10 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int fi
   for (int b = first; b < last; ++b)
   {
     const float near = (float(b) * binMm + nearEdge - local.r0) * inverseMu;
-    bins[b] += scale * expNegative(-local.decay * near) * gaussWeights(local, near, step);
+    const float onAxis = scale * expNegative(-local.decay * near);
+    const float weights = gaussWeights(local, near, step);
+    bins[b] += onAxis * weights;
+    absorbed[b] += onAxis * (startAbsorbed + local.decay * (near + 0.5f * step)) * weights;
   }
 }
 
@@ -30,7 +35,9 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int fi
 
 LineTally::LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm)
   : bins_(std::size_t(binCount), 0.0f)
+  , absorbed_(std::size_t(binCount), 0.0f)
   , binSums_(std::size_t(binCount), 0.0)
+  , absorbedSums_(std::size_t(binCount), 0.0)
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
@@ -51,6 +58,8 @@ void LineTally::fold()
   {
     binSums_[b] += double(bins_[b]);
     bins_[b] = 0.0f;
+    absorbedSums_[b] += double(absorbed_[b]);
+    absorbed_[b] = 0.0f;
   }
 }
 
@@ -62,6 +71,18 @@ std::vector<float> LineTally::takeBins(int paths)
   {
     means[b] = float(binSums_[b] / paths);
     binSums_[b] = 0.0;
+  }
+  return means;
+}
+
+std::vector<double> LineTally::takeAbsorbed(int paths)
+{
+  fold();
+  std::vector<double> means(absorbedSums_.size());
+  for (std::size_t b = 0; b < means.size(); ++b)
+  {
+    means[b] = absorbedSums_[b] / paths;
+    absorbedSums_[b] = 0.0;
   }
   return means;
 }
@@ -91,7 +112,9 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
   const int binHigh = std::min(int(high / binMm_), last);
   const float inverseMu = 1.0f / g.mu;
   const auto part = [&](int bin, float from, float to) {
-    bins_[std::size_t(bin)] += meanOver(g, from, to, inverseMu) * (to - from) / binMm_;
+    const float value = meanOver(g, from, to, inverseMu) * (to - from) / binMm_;
+    bins_[std::size_t(bin)] += value;
+    absorbed_[std::size_t(bin)] += value * (s.absorbed + g.decay * (0.5f * (from + to) - g.r0) * inverseMu);
   };
   if (binLow == binHigh)
   {
@@ -99,12 +122,16 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
     return;
   }
   part(binLow, low, float(binLow + 1) * binMm_);
-  depositWholeBins(g, binMm_, binLow + 1, binHigh, bins_.data());
+  depositWholeBins(g, s.absorbed, binMm_, binLow + 1, binHigh, bins_.data(), absorbed_.data());
   part(binHigh, float(binHigh) * binMm_, high);
 }
 
 void LineTally::echo(const Vec3f& point, float amplitude)
 {
+  if (echoes_.empty())
+  {
+    return;
+  }
   const EchoSplit split =
     splitEcho(line_, point, amplitude * echoWeight_, coherenceMm_, echoSampleMm_, int(echoes_.size()), radPerMm_);
   if (split.sample >= 0)

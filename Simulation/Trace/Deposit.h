@@ -10,7 +10,8 @@
 namespace sono {
 
 /// What the paths of one line leave on its main beam, on the CPU. A path deposits where it crosses the plane at r,
-/// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin.
+/// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin. Beside it stands
+/// the sum of A I w_R, with A the attenuation that the path has met, Np of intensity.
 class LineTally : public PathSink
 {
 public:
@@ -31,12 +32,16 @@ public:
 
   /// What was left in each bin, of each of `paths` paths, and forgets it.
   std::vector<float> takeBins(int paths);
+  /// The same of A I w_R, in double precision.
+  std::vector<double> takeAbsorbed(int paths);
   /// Adds the boundary echoes to a line's samples and forgets them.
   void takeEchoes(std::complex<float>* samples);
 
 private:
   std::vector<float> bins_;     ///< of the paths since the last fold
+  std::vector<float> absorbed_; ///< A times that
   std::vector<double> binSums_; ///< of those before
+  std::vector<double> absorbedSums_;
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;

@@ -13,7 +13,7 @@ struct BoundaryHit
   Vec3d pointMm;         ///< world
   Vec3d normal;          ///< world, unit length, from the medium before into the one behind
   float intensity;       ///< of the path on arrival, 1 at the transducer
-  float echo;            ///< amplitude of the boundary's echo, before the coherence weight
+  float echo;            ///< amplitude of the boundary's echo, were it smooth, before the coherence weight
   float incidenceCosine; ///< of the angle between the path and the normal, above 0
   float depthMm;         ///< along the line's axis, where the echo appears
   float pathMm;          ///< travelled since the transducer
@@ -33,9 +33,9 @@ struct RecordedPath
   std::vector<BoundaryHit> hits;
 };
 
-/// `count` of the paths that trace() would follow with the same arguments (of LowDiscrepancy where it would share
-/// them), chosen evenly over lines and paths, in the order of the lines and of their paths. Throws Error unless `count`
-/// is 1 to 100,000, and as trace(), Aborted when asked to stop.
+/// `count` of the paths that trace() would follow with the same arguments, chosen evenly over lines and paths, in the
+/// order of the lines and of their paths. Throws Error unless `count` is 1 to 100,000, and as trace(), Aborted when
+/// asked to stop.
 std::vector<RecordedPath> recordPaths(const Scene& scene, const std::vector<ScanLine>& lines,
                                       const TraceSettings& settings, int count,
                                       const std::vector<TargetSurface>& targets = {}, const Progress& progress = {});

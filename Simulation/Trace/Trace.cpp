@@ -7,7 +7,6 @@
 #include "Kernel/TracePath.h"
 #include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
-#include "Trace/SharedPaths.h"
 #include "Trace/TraceSetup.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -18,6 +17,18 @@
 namespace sono {
 
 namespace {
+
+/// Writes B of a line from its intensity and the means of A I. A path's intensity falls as the round trip's amplitude
+/// does, so A is B f.
+void writeAttenuation(const std::vector<double>& absorbed, double frequencyMHz, int line, TracedLines& out)
+{
+  const std::size_t row = std::size_t(line) * std::size_t(out.binCount);
+  for (std::size_t b = 0; b < absorbed.size(); ++b)
+  {
+    const double intensity = double(out.intensity[row + b]);
+    out.attenuationNpPerMHz[row + b] = intensity > 0.0 ? float(absorbed[b] / (intensity * frequencyMHz)) : 0.0f;
+  }
+}
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
@@ -33,8 +44,10 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   const LineStart start = startLine(view, space, line, tally);
   const std::vector<float> shared = tally.takeBins(1);
   std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
+  std::vector<double> absorbed = tally.takeAbsorbed(1);
   if (!start.meets)
   {
+    writeAttenuation(absorbed, setup.frequencyMHz, index, out);
     tally.takeEchoes(echoes);
     return;
   }
@@ -66,9 +79,15 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       }
     }
     means.push_back(tally.takeBins(last - first));
+    const std::vector<double> ofBatch = tally.takeAbsorbed(last - first);
+    for (std::size_t b = 0; b < absorbed.size(); ++b)
+    {
+      absorbed[b] += ofBatch[b] / batches;
+    }
   }
   tally.takeEchoes(echoes);
   addBatchMeans(means, index, out);
+  writeAttenuation(absorbed, setup.frequencyMHz, index, out);
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index,
@@ -114,18 +133,6 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::Bins ? out.binCount : out.echoCount), {});
   });
 
-  if (settings.sampling == Sampling::SharedPaths && canSharePaths(setup.view))
-  {
-    if (settings.march == March::NanoVDB)
-    {
-      traceShared(setup.nanoSpace(), setup, out, tracing);
-    }
-    else
-    {
-      traceShared(setup.space(), setup, out, tracing);
-    }
-    return out;
-  }
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
     return LineTally(out.binCount, out.binMm, out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);

@@ -20,8 +20,9 @@ enum class TracedAxis
 };
 
 /// What the tracer gives: for each line and radial bin the mean one-way intensity (1 at the transducer) and its
-/// Monte-Carlo standard error, and the boundary echoes as complex amplitudes on the echo grid: an echo of amplitude
-/// A at depth r adds A exp(-i 2 k (r - r_s)), split linearly between the two nearest samples s, k = 2 pi f / c0.
+/// Monte-Carlo standard error; the attenuation of what arrives there; and, of Amadou2024, the boundary echoes as
+/// complex amplitudes on the echo grid: an echo of amplitude A at depth r adds A exp(-i 2 k (r - r_s)), split linearly
+/// between the two nearest samples s, k = 2 pi f / c0.
 struct TracedLines
 {
   InterfaceModel model = InterfaceModel::Acoustic; ///< what it was traced with; boundaries echo in Amadou2024 alone
@@ -30,7 +31,10 @@ struct TracedLines
   double binMm = 0.0;               ///< bin b covers [b, b+1) * binMm
   std::vector<float> intensity;     ///< lineCount x binCount
   std::vector<float> standardError; ///< lineCount x binCount
-  int echoCount = 0;
+  /// lineCount x binCount: the two-way exponent of the amplitude per MHz, B in exp(-B f), mean over the paths weighted
+  /// as the intensity is; 0 where nothing arrives. Empty: not known.
+  std::vector<float> attenuationNpPerMHz;
+  int echoCount = 0;                             ///< 0 for Acoustic
   double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
   std::uint64_t segments = 0;                    ///< path segments traced
@@ -41,6 +45,7 @@ struct TracedLines
   {
     visitor(self.intensity, "Intensity", TracedAxis::Bins);
     visitor(self.standardError, "StandardError", TracedAxis::Bins);
+    visitor(self.attenuationNpPerMHz, "AttenuationNpPerMHz", TracedAxis::Bins);
     visitor(self.boundaryEcho, "BoundaryEcho", TracedAxis::EchoSamples);
   }
 };

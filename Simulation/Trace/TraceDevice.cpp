@@ -8,12 +8,11 @@ namespace sono {
 
 DeviceChoice chooseDevice(const TraceSettings& settings)
 {
-  const bool marches = settings.march == March::NanoVDB;
-  if (!marches && settings.sampling != Sampling::SharedPaths)
+  if (settings.march != March::NanoVDB)
   {
     return chooseDevice(settings.device);
   }
-  const std::string what = marches ? "the march through the NanoVDB grid" : "sampling by shared paths";
+  const std::string what = "the march through the NanoVDB grid";
   if (settings.device == Device::Cuda)
   {
     throw Error(what + " runs on the CPU only: choose another, or the CPU");

@@ -25,7 +25,7 @@ int TraceSettings::binCount() const
 
 int TraceSettings::echoCount() const
 {
-  return int(std::floor(depthMm / echoSampleMm)) + 1;
+  return model == InterfaceModel::Acoustic ? 0 : int(std::floor(depthMm / echoSampleMm)) + 1;
 }
 
 } // namespace sono

@@ -8,14 +8,11 @@
 
 namespace sono {
 
-/// Where the random numbers of a path come from, and which lines it serves.
+/// Where the random numbers of a path come from.
 enum class Sampling
 {
-  Independent,    ///< Philox counters
-  LowDiscrepancy, ///< Owen-scrambled Sobol pairs, one per bounce
-  SharedPaths     ///< LowDiscrepancy, and eight neighbouring lines share their paths: a path costs two to four times
-                  ///< the time and says more than ten times as much. The lines' errors become alike. A mirror lobe,
-                  ///< Amadou2024 and `deterministic` leave nothing to share.
+  Independent,   ///< Philox counters
+  LowDiscrepancy ///< Owen-scrambled Sobol pairs, one per bounce
 };
 
 /// How boundaries are found. Both give the same image.
@@ -35,12 +32,12 @@ struct TraceSettings
   int maxCollisions = 7;
   double coherenceMm =
     100.0; ///< C0 in w_R = C0 / (C0 + distance); the paper's 0.1, read in metres as its other lengths
-  bool deterministic = false; ///< no Monte-Carlo: transmitted along the refracted direction, no spreading
-  double lobeMeanDeg = 0.0;   ///< mu of the truncated normal
+  bool deterministic = false; ///< no Monte-Carlo: the stronger branch along its coherent direction, no spreading
+  double lobeMeanDeg = 0.0;   ///< mu of Amadou2024's truncated normal
   double lobeSigmaDeg = 45.0; ///< sigma
   double lobeMinDeg = 0.0;    ///< a
   double lobeMaxDeg = 90.0;   ///< b, above a
-  double frequencyMHz = 2.5;  ///< > 0; sets attenuation and the phase of boundary echoes
+  double frequencyMHz = 2.5;  ///< > 0; sets attenuation, how rough surfaces are, and the phase of boundary echoes
   double depthMm = 160.0;     ///< > 0
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
@@ -64,31 +61,32 @@ struct TraceSettings
     visitor(self.model, Parameter{ "interfaceModel",
                                    "Interface Model",
                                    {},
-                                   "What happens at a boundary: fluid acoustics, which conserves energy, or the "
-                                   "equations of Amadou et al. 2024 to the letter, which do not.",
+                                   "What happens at a boundary: fluid acoustics at rough surfaces, which conserves "
+                                   "energy, or the equations of Amadou et al. 2024 to the letter, which do not.",
                                    { "Acoustic", "Amadou 2024" } });
     visitor(self.sampling,
             Parameter{ "sampling",
                        "Sampling",
                        {},
                        "Where a path's random numbers come from: independent ones, or scrambled Sobol points with less "
-                       "noise. With Shared Paths eight neighbouring lines share their paths, too: each takes two to "
-                       "four times as long, but a tenth of them gives the same noise.",
-                       { "Independent", "Low Discrepancy", "Shared Paths" } });
+                       "noise.",
+                       { "Independent", "Low Discrepancy" } });
     visitor(self.deterministic, Parameter{ "deterministic",
                                            "Deterministic",
                                            {},
-                                           "Follow only the refracted direction, without chance and without "
-                                           "spreading." });
+                                           "Follow only the stronger of the mirrored and the refracted direction, "
+                                           "without chance and without spreading." });
     visitor(self.lobeMeanDeg, Parameter{ "lobeMeanDeg", "Lobe Mean (deg)", between(-180, 180),
-                                         "Mean angle between an outgoing direction and the mirrored or refracted one "
-                                         "in degrees, -180 to 180." });
+                                         "Of Amadou 2024 alone: mean angle between an outgoing direction and the "
+                                         "mirrored or refracted one in degrees, -180 to 180." });
     visitor(self.lobeSigmaDeg, Parameter{ "lobeSigmaDeg", "Lobe Sigma (deg)", atLeast(0),
-                                          "Standard deviation of that angle in degrees, at least 0; 0 is a mirror." });
-    visitor(self.lobeMinDeg,
-            Parameter{ "lobeMinDeg", "Lobe Min (deg)", between(0, 90), "Least such angle in degrees, 0 to 90." });
-    visitor(self.lobeMaxDeg, Parameter{ "lobeMaxDeg", "Lobe Max (deg)", between(0, 90),
-                                        "Largest such angle in degrees, above the least, up to 90." });
+                                          "Of Amadou 2024 alone: standard deviation of that angle in degrees, at least "
+                                          "0; 0 is a mirror." });
+    visitor(self.lobeMinDeg, Parameter{ "lobeMinDeg", "Lobe Min (deg)", between(0, 90),
+                                        "Of Amadou 2024 alone: least such angle in degrees, 0 to 90." });
+    visitor(self.lobeMaxDeg,
+            Parameter{ "lobeMaxDeg", "Lobe Max (deg)", between(0, 90),
+                       "Of Amadou 2024 alone: largest such angle in degrees, above the least, up to 90." });
     visitor(self.radialBinMm, Parameter{ "radialBinMm", "Radial Bin (mm)", above(0),
                                          "Width of an intensity sample along a scan line in mm, above 0." });
     visitor(self.rouletteDb,
@@ -104,7 +102,7 @@ struct TraceSettings
   void validate() const;
   /// Samples of the intensity and of the boundary echoes along a line.
   int binCount() const;
-  int echoCount() const;
+  int echoCount() const; ///< 0 for Acoustic, whose surfaces echo by themselves
 };
 
 } // namespace sono

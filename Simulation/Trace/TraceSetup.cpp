@@ -20,6 +20,8 @@ TraceMedium makeMedium(const Tissue& tissue, double frequencyMHz)
   m.decayPerMm = float(tissue.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0);
   m.tau = float(tissue.tau);
   m.gamma = float(tissue.gamma);
+  m.roughnessMm = float(tissue.roughnessMm);
+  m.correlationMm = float(tissue.correlationMm);
   return m;
 }
 
@@ -32,6 +34,7 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   const auto radians = [](double degrees) { return degrees * 0.017453292519943295; };
   view.lobe = makeLobe(radians(settings.lobeMeanDeg), radians(settings.lobeSigmaDeg), radians(settings.lobeMinDeg),
                        radians(settings.lobeMaxDeg));
+  view.waveNumberAtOne = float(2000.0 * 3.14159265358979323846 * settings.frequencyMHz);
   view.lowDiscrepancy = settings.sampling != Sampling::Independent;
   view.deterministic = settings.deterministic;
   view.maxCollisions = settings.maxCollisions;

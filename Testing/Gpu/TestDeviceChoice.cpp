@@ -41,13 +41,13 @@ TEST(DeviceChoice, AMissingGpuIsAnErrorWhenItIsAskedFor)
   }
 }
 
-TEST(DeviceChoice, AutoSaysWhenSharedPathsLeaveAGpuAside)
+TEST(DeviceChoice, AutoSaysWhenTheReferenceMarchLeavesAGpuAside)
 {
   TraceSettings s;
-  s.sampling = Sampling::SharedPaths;
+  s.march = March::NanoVDB;
   const DeviceChoice choice = chooseDevice(s);
   EXPECT_FALSE(choice.cuda);
-  EXPECT_NE(choice.note.find(cudaStatus().usable ? "shared paths" : cudaStatus().what), std::string::npos)
+  EXPECT_NE(choice.note.find(cudaStatus().usable ? "NanoVDB" : cudaStatus().what), std::string::npos)
     << choice.note;
   EXPECT_EQ(choice.note.find('\n'), std::string::npos);
   s.device = Device::Cpu;

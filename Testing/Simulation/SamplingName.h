@@ -15,8 +15,6 @@ inline std::string nameOf(Sampling sampling)
       return "independent";
     case Sampling::LowDiscrepancy:
       return "low_discrepancy";
-    case Sampling::SharedPaths:
-      return "shared_paths";
   }
   return "";
 }

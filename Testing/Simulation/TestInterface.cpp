@@ -1,6 +1,5 @@
-#include "ChiSquared.h"
-
 #include "Kernel/Interface.h"
+#include "Kernel/RoughSurface.h"
 
 #include <gtest/gtest.h>
 
@@ -114,8 +113,9 @@ TEST(Interface, ReflectsTotallyFromTheCriticalAngleOn)
     for (const float choice : { 0.0f, 0.5f, 0.9999999f, 1.0f })
     {
       const Vec3f direction(float(sine), 0.0f, float(std::sqrt(1.0 - sine * sine)));
+      const RoughBoundary rough{ 0.05f, 0.2f, 10.0f, 5.0f };
       const Scattered s =
-        scatterAt(acoustic, Lobe{}, direction, { 0, 0, 1 }, direction.z, r, BounceSample{ choice, 0.5f, 0.5f });
+        scatterRough(rough, direction, { 0, 0, 1 }, direction.z, r, BounceSample{ choice, 0.5f, 0.5f });
       EXPECT_TRUE(s.reflected || !r.total);
       EXPECT_EQ(s.direction.z < 0.0f, s.reflected);
     }
@@ -177,7 +177,7 @@ TEST(Interface, AmadouBranchWeightIsEquationNineOverEquationThirteen)
   for (int i = 0; i < 2000; ++i)
   {
     const BounceSample u = independentSample(5, 0, 0, std::uint32_t(i), 0);
-    const Scattered s = scatterAt(amadou, lobe, direction, normal, 0.8f, r, u);
+    const Scattered s = scatterByLobe(lobe, direction, normal, 0.8f, r, u);
     ASSERT_EQ(s.reflected, u.choice < r.reflectance);
     const double phi = samplePolar(lobe, u.polar);
     const double psi =
@@ -193,8 +193,8 @@ TEST(Interface, AmadouMirrorKeepsTheCosine)
 {
   const Vec3f direction(0.6f, 0.0f, 0.8f);
   const Reflection r = reflectionAt(amadou, 1.5f, 2.5f, 1500.0f, 1500.0f, 0.8f);
-  const Scattered back = scatterAt(amadou, Lobe{}, direction, { 0, 0, 1 }, 0.8f, r, BounceSample{ 0.0f, 0.5f, 0.5f });
-  const Scattered on = scatterAt(amadou, Lobe{}, direction, { 0, 0, 1 }, 0.8f, r, BounceSample{ 0.999f, 0.5f, 0.5f });
+  const Scattered back = scatterByLobe(Lobe{}, direction, { 0, 0, 1 }, 0.8f, r, BounceSample{ 0.0f, 0.5f, 0.5f });
+  const Scattered on = scatterByLobe(Lobe{}, direction, { 0, 0, 1 }, 0.8f, r, BounceSample{ 0.999f, 0.5f, 0.5f });
   EXPECT_NEAR(back.throughput, r.reflectance * 0.8, 1e-6);
   const double cos2 = std::sqrt(1.0 - 0.36 * 0.36); // sin t2 = Z1/Z2 sin t1 = 0.6 x 0.6
   EXPECT_NEAR(on.throughput, (1.0 - r.reflectance) * cos2, 1e-6);
@@ -214,11 +214,10 @@ TEST(Interface, DirectionOnTheWrongSideIsMirroredAcrossTheTangentPlane)
     const float cosine = glm::dot(d, n);
     const Reflection r = reflectionAt(acoustic, 1.5f, 2.0f, 1500.0f, 1600.0f, cosine);
     const BounceSample u = independentSample(8, 0, 0, std::uint32_t(i), 0);
-    const Scattered s = scatterAt(acoustic, wide, d, n, cosine, r, u);
+    const Scattered s = scatterByLobe(wide, d, n, cosine, r, u);
     const float side = glm::dot(s.direction, n);
     ASSERT_TRUE(s.reflected ? side <= 1e-6f : side >= -1e-6f);
     ASSERT_NEAR(glm::length(s.direction), 1.0f, 1e-6f);
-    ASSERT_EQ(s.throughput, 1.0f);
     // Either the sampled direction or its mirror image stands at phi from the centre.
     const Vec3f centre =
       glm::normalize(s.reflected ? mirrorDirection(d, n, cosine) : refractedDirection(d, n, cosine, r));
@@ -229,57 +228,6 @@ TEST(Interface, DirectionOnTheWrongSideIsMirroredAcrossTheTangentPlane)
     turned += mirrored < kept;
   }
   EXPECT_GT(turned, 1000);
-}
-
-TEST(Interface, DirectionsFollowTheirDensity)
-{
-  // Cells of equal solid angle around the normal, on the branch's side; the density is summed over a fine grid.
-  constexpr int cells = 12;
-  constexpr int fine = 60;
-  const Vec3f n(0.0f, 0.0f, 1.0f);
-  const auto at = [](double cosine, double azimuth) {
-    const double sine = std::sqrt(1.0 - cosine * cosine);
-    return Vec3f(Vec3d(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine));
-  };
-  const Vec3f d = at(0.5, 0.3);
-  const Reflection r = reflectionAt(acoustic, 1.5f, 3.0f, 1500.0f, 1600.0f, d.z);
-  for (const double sigma : { 0.2, 0.785, 3.0 })
-  {
-    const Lobe lobe = makeLobe(0.0, sigma, 0.0, 1.570796);
-    std::vector<double> observed(2 * cells * cells, 0.0);
-    std::vector<double> probability(observed.size(), 0.0);
-    for (int i = 0; i < 200000; ++i)
-    {
-      const Scattered s = scatterAt(acoustic, lobe, d, n, d.z, r, independentSample(5, 0, 0, std::uint32_t(i), 0));
-      const double azimuth = std::atan2(s.direction.y, s.direction.x) / (2.0 * M_PI);
-      const int column = int((azimuth < 0.0 ? azimuth + 1.0 : azimuth) * cells);
-      const int row = std::min(cells - 1, int(std::fabs(s.direction.z) * cells));
-      observed[std::size_t((s.reflected ? cells * cells : 0) + row * cells + std::min(cells - 1, column))] += 1.0;
-    }
-    double total = 0.0;
-    for (int i = 0; i < cells * fine; ++i)
-    {
-      for (int j = 0; j < cells * fine; ++j)
-      {
-        const double cosine = (i + 0.5) / (cells * fine);
-        const double azimuth = 2.0 * M_PI * (j + 0.5) / (cells * fine);
-        for (const bool reflected : { false, true })
-        {
-          const double p = scatterDensity(lobe, d, n, d.z, r, reflected, at(reflected ? -cosine : cosine, azimuth)) *
-                           2.0 * M_PI / (cells * fine) / (cells * fine);
-          probability[std::size_t((reflected ? cells * cells : 0) + i / fine * cells + j / fine)] += p;
-          total += p;
-        }
-      }
-    }
-    // The grid blurs the pole at the lobe's axis.
-    EXPECT_NEAR(total, 1.0, 0.01) << sigma;
-    for (double& p : probability)
-    {
-      p /= total;
-    }
-    EXPECT_GT(test::chiSquaredPValue(observed, probability), test::significanceOfEach(3)) << sigma;
-  }
 }
 
 TEST(InterfaceEcho, IsLinearInIntensityAtTheNeutralExponents)

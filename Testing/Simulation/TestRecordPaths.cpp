@@ -153,7 +153,6 @@ TEST(BoundaryHits, LieOnASphere)
   }
   TraceSettings s = plainSettings();
   s.depthMm = 75.0;
-  s.lobeSigmaDeg = 0.0; // mirrored or refracted: no path grazes the surface, where the cells' steps hide it
   int count = 0;
   double offset = 0.0;
   double degrees = 0.0;
@@ -203,6 +202,7 @@ TEST(BoundaryHits, SumUpToTheTracedEchoes)
   {
     TraceSettings s = busySettings();
     s.sampling = sampling;
+    s.model = InterfaceModel::Amadou2024; // whose boundaries echo
     const auto traced = trace(*scene, lines, s);
     std::vector<std::complex<double>> summed(traced.boundaryEcho.size());
     const double wave = 2.0 * 3.14159265358979 * s.frequencyMHz / assumedSoundSpeedMmPerUs;

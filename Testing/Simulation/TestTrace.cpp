@@ -1,6 +1,6 @@
-#include "Core/SoundSpeed.h"
 #include "TestScenes.h"
 
+#include "Trace/RecordPaths.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
@@ -40,29 +40,12 @@ TraceSettings straightSettings(double depthMm, double frequencyMHz)
   TraceSettings s;
   s.deterministic = true;
   s.maxCollisions = 20;
-  s.lobeSigmaDeg = 0.0;
   s.depthMm = depthMm;
   s.frequencyMHz = frequencyMHz;
   return s;
 }
 
-/// Amplitude of the echo around a depth: the two samples of a split carry the phase of their distance to it.
-double echoAt(const TracedLines& traced, double depthMm, double frequencyMHz)
-{
-  const double k2 = 4.0 * M_PI * frequencyMHz / assumedSoundSpeedMmPerUs;
-  std::complex<double> sum = 0.0;
-  for (int s = 0; s < traced.echoCount; ++s)
-  {
-    const double r = s * traced.echoSampleMm;
-    if (std::abs(r - depthMm) < 0.5)
-    {
-      sum += std::complex<double>(traced.boundaryEcho[std::size_t(s)]) * std::polar(1.0, k2 * (depthMm - r));
-    }
-  }
-  return std::abs(sum);
-}
-
-TEST(TracePlanarStack, EveryEchoFollowsTheProductFormula)
+TEST(TracePlanarStack, TheIntensityFollowsTheProductFormula)
 {
   const Stack stack({ makeTissue("a", 1.38, 1450, 0.6), makeTissue("b", 1.70, 1580, 1.1),
                       makeTissue("c", 1.61, 1570, 0.2), makeTissue("d", 7.8, 4080, 5.0),
@@ -72,16 +55,26 @@ TEST(TracePlanarStack, EveryEchoFollowsTheProductFormula)
   const auto traced = trace(*stack.scene, { makeLine({ 20.3, 20.2, 0.0 }, { 0, 0, 1 }) }, straightSettings(100.0, f));
   double intensity = 1.0;
   double depth = 0.0;
-  for (std::size_t i = 0; i + 1 < stack.tissues.size(); ++i)
+  for (std::size_t i = 0; i < stack.tissues.size(); ++i)
   {
     const Tissue& one = stack.tissues[i];
-    const Tissue& two = stack.tissues[i + 1];
-    depth += stack.thicknessMm[i];
-    intensity *= std::pow(10.0, -one.attenuationDbPerCmMHz * f * stack.thicknessMm[i] / 100.0);
-    const double r = (two.impedanceMRayl - one.impedanceMRayl) / (two.impedanceMRayl + one.impedanceMRayl);
-    const double expected = std::abs(r) * intensity;
-    EXPECT_NEAR(echoAt(traced, depth, f) / expected, 1.0, 1e-4) << "interface " << i;
-    intensity *= 1.0 - r * r;
+    const double thickness = i < stack.thicknessMm.size() ? stack.thicknessMm[i] : 20.0;
+    const double decay = one.attenuationDbPerCmMHz * f * std::log(10.0) / 100.0;
+    // Mean over the first and the last bin of the layer.
+    const double half = 0.5 * decay * traced.binMm;
+    for (const double into : { 0.5 * traced.binMm, thickness - 0.5 * traced.binMm })
+    {
+      const double expected = intensity * std::exp(-decay * into) * std::sinh(half) / half;
+      const double found = traced.intensity[std::size_t((depth + into) / traced.binMm)];
+      EXPECT_NEAR(found / expected, 1.0, 1e-4) << "layer " << i << " at " << into;
+    }
+    if (i + 1 < stack.tissues.size())
+    {
+      const Tissue& two = stack.tissues[i + 1];
+      const double r = (two.impedanceMRayl - one.impedanceMRayl) / (two.impedanceMRayl + one.impedanceMRayl);
+      intensity *= std::exp(-decay * thickness) * (1.0 - r * r);
+      depth += thickness;
+    }
   }
 }
 
@@ -114,7 +107,7 @@ TEST(TraceAttenuation, FallsByItsDecibelsOverSixteenCentimetres)
   }
 }
 
-TEST(TraceOblique, RefractsBySnellAndEchoesAtTheHit)
+TEST(TraceOblique, RefractsBySnell)
 {
   const double c1 = 1450.0;
   const double c2 = 1580.0;
@@ -124,23 +117,26 @@ TEST(TraceOblique, RefractsBySnellAndEchoesAtTheHit)
   const double t2 = std::asin(std::sin(t1) * c2 / c1);
   const auto line = makeLine({ 10.0, 20.2, 0.0 }, { std::sin(t1), 0.0, std::cos(t1) });
   TraceSettings s = straightSettings(90.0, 2.0);
-  s.coherenceMm = 1e9; // weigh off-axis points like those on it
-  const auto traced = trace(*stack.scene, { line }, s);
   // Second interface: 40 mm deeper along the refracted ray, projected onto the unrefracted axis.
   const double first = 20.0 / std::cos(t1);
   const double second = first + 40.0 / std::cos(t2) * std::cos(t2 - t1);
   const double cos1 = std::cos(t1);
   const double cos2 = std::cos(t2);
   const double r = (1.70 * cos1 - 1.38 * cos2) / (1.70 * cos1 + 1.38 * cos2);
-  const double r02 = (7.8 - 1.70) / (7.8 + 1.70);
-  // The phase of the echo locates it: 1e-3 mm is 0.016 rad here.
-  EXPECT_NEAR(echoAt(traced, second, 2.0), (1.0 - r * r) * r02, 2e-4);
+  const RecordedPath path = recordPaths(*stack.scene, { line }, s, 1).at(0);
+  ASSERT_GE(path.hits.size(), 2u);
+  EXPECT_NEAR(path.hits[1].depthMm, second, 1e-3);
+  EXPECT_NEAR(path.hits[1].intensity, 1.0 - r * r, 2e-4);
 }
 
 TEST(TraceOblique, ReflectsTotallyBeyondTheCriticalAngle)
 {
-  const Stack stack({ makeTissue("a", 1.5, 1500, 0.0), makeTissue("b", 3.0, 3000, 0.0) }, { 20.0 },
-                    Vec3i(120, 40, 100));
+  std::vector<Tissue> tissues = { makeTissue("a", 1.5, 1500, 0.0), makeTissue("b", 3.0, 3000, 0.0) };
+  for (Tissue& t : tissues)
+  {
+    t.roughnessMm = 0.0;
+  }
+  const Stack stack(tissues, { 20.0 }, Vec3i(120, 40, 100));
   const double critical = std::asin(0.5);
   for (const double t : { critical - 0.01, critical + 0.01 })
   {
@@ -169,16 +165,11 @@ TEST(TraceSkips, EqualAcousticsAreNoBoundary)
     { 30.0, 30.0 });
   TraceSettings s = straightSettings(90.0, 2.0);
   s.deterministic = false;
-  s.lobeSigmaDeg = 0.78 * 180.0 / M_PI;
   s.pathsPerLine = 8;
   const auto traced = trace(*stack.scene, { makeLine({ 20.3, 20.2, 0.0 }, { 0, 0, 1 }) }, s);
   const double r = 75.125;
   const double db = 0.5 * 2.0 * (r - 30.0) / 10.0 + 1.5 * 2.0 * 3.0;
   EXPECT_NEAR(traced.intensity[std::size_t(r / traced.binMm)], std::pow(10.0, -db / 10.0), 1e-5);
-  for (const auto& e : traced.boundaryEcho)
-  {
-    ASSERT_EQ(std::abs(e), 0.0f);
-  }
 }
 
 TEST(TraceDeterminism, SameSeedSameBitsOtherSeedOthers)

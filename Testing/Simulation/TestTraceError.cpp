@@ -19,7 +19,7 @@ TEST(TraceError, StandardErrorIsTheSpreadOverThirtySeeds)
   const auto scene = makeBusyScene();
   const auto lines = fan(16);
   constexpr int seeds = 30;
-  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
   {
     for (const int paths : { 100, 256 })
     {
@@ -86,7 +86,7 @@ void expectSameBits(const TracedLines& one, const TracedLines& two)
 TEST(TraceDeterminism, OneTwoAndEightThreadsGiveTheSameBits)
 {
   const auto lines = fan(24);
-  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
   {
     TraceSettings s = busySettings();
     s.sampling = sampling;
@@ -129,7 +129,7 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
   // Where all paths leave the same, a plain sum of floats drifts: the RF of planar layers by 0.8 % at a million paths.
   constexpr int paths = 300000;
   const TraceLine line{ Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f) };
-  const PathSegment segment{ Vec3f(0.1f, 0.0f, 1.3f), Vec3f(0.0f, 0.0f, 1.0f), 20.0f, 0.3f, 0.01f };
+  const PathSegment segment{ Vec3f(0.1f, 0.0f, 1.3f), Vec3f(0.0f, 0.0f, 1.0f), 20.0f, 0.3f, 0.01f, 0.0f };
   const auto leave = [&](int count, std::vector<std::complex<float>>& echoes) {
     LineTally tally(30, 1.0, 2000, 0.0154, 1.6);
     tally.start(line, 100.0f);
@@ -172,19 +172,14 @@ TEST(TraceError, ATraceOfManyLikePathsIsThatOfAFew)
   s.radialBinMm = 1.0;
   s.coherenceMm = 1e6;
   s.frequencyMHz = 2.0;
-  s.lobeSigmaDeg = 1e-4 * 180.0 / M_PI; // for shared paths it must not be 0
-  for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::SharedPaths })
+  s.pathsPerLine = 8; // one a batch
+  const TracedLines few = trace(*scene, lines, s);
+  s.pathsPerLine = 1000000;
+  const TracedLines many = trace(*scene, lines, s);
+  for (std::size_t b = 12; b < 33; ++b)
   {
-    s.sampling = sampling;
-    s.pathsPerLine = 8; // one a batch
-    const TracedLines few = trace(*scene, lines, s);
-    s.pathsPerLine = 1000000;
-    const TracedLines many = trace(*scene, lines, s);
-    for (std::size_t b = 12; b < 33; ++b)
-    {
-      // Sums of 512 floats, each rounded to 2^-24 of at most the whole.
-      EXPECT_NEAR(double(many.intensity[b]) / few.intensity[b], 1.0, 512.0 / (1 << 24)) << b;
-    }
+    // Sums of 512 floats, each rounded to 2^-24 of at most the whole.
+    EXPECT_NEAR(double(many.intensity[b]) / few.intensity[b], 1.0, 512.0 / (1 << 24)) << b;
   }
 }
 

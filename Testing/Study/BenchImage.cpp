@@ -7,7 +7,6 @@
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
 #include "Simulator.h"
-#include "Trace/SharedPaths.h"
 #include "Trace/TargetBvh.h"
 #include "Trace/TraceSetup.h"
 
@@ -31,8 +30,13 @@ std::array<int, 3> array(const Vec3i& v)
 
 DoubleInput::Medium doubleMedium(const Tissue& t, double frequencyMHz)
 {
-  return { t.impedanceMRayl, t.soundSpeedMPerS, t.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0, t.tau,
-           t.gamma };
+  return { t.impedanceMRayl,
+           t.soundSpeedMPerS,
+           t.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0,
+           t.tau,
+           t.gamma,
+           t.roughnessMm,
+           t.correlationMm };
 }
 
 void addTargets(const TraceSetup& setup, DoubleInput& input)
@@ -84,7 +88,6 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
     input.settings[parameter.name] = numberOf(value);
   });
   input.lowDiscrepancy = tracing.sampling != Sampling::Independent;
-  input.sharedPaths = tracing.sampling == Sampling::SharedPaths && canSharePaths(setup.view);
   input.depthMm = tracing.depthMm;
   input.binCount = tracing.binCount();
   input.echoSampleMm = tracing.echoSampleMm;

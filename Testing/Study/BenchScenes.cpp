@@ -111,10 +111,10 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCou
       Tissue t = layer.tissue;
       t.scattererProbability = 1.0;
       t.scattererSigma = 0.3;
+      t.roughnessMm = 0.0; // the exact sum knows mirrors alone
       tissues.push_back(t);
     }
     bench.tracing.depthMm = 80.0;
-    bench.tracing.lobeSigmaDeg = 0.0;
     bench.scene = test::makeScene(Vec3i(Vec3d(20.0, 20.0, 80.0) / h), Vec3d(h), tissues, [](const Vec3d& p) {
       int layer = 0;
       while (layer + 1 < int(stackLayers().size()) && p.z > stackLayers()[std::size_t(layer) + 1].fromMm)

@@ -33,6 +33,7 @@ kernel::TraceView makeView(const DoubleInput& input, const std::vector<kernel::T
   view.model = kernel::InterfaceModel(int(setting("interfaceModel")));
   view.lobe =
     kernel::makeLobe(radians("lobeMeanDeg"), radians("lobeSigmaDeg"), radians("lobeMinDeg"), radians("lobeMaxDeg"));
+  view.waveNumberAtOne = 2000.0 * M_PI * input.frequencyMHz;
   view.lowDiscrepancy = input.lowDiscrepancy;
   view.deterministic = deterministic;
   view.maxCollisions = int(setting("maxCollisions"));
@@ -105,7 +106,7 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   std::vector<kernel::TraceMedium> media;
   for (const DoubleInput::Medium& m : input.media)
   {
-    media.push_back({ m.impedance, m.speed, m.decayPerMm, m.tau, m.gamma });
+    media.push_back({ m.impedance, m.speed, m.decayPerMm, m.tau, m.gamma, m.roughnessMm, m.correlationMm });
   }
   std::vector<kernel::BvhNode> nodes;
   for (const DoubleInput::Node& n : input.nodes)
@@ -133,14 +134,7 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   out.intensity.assign(lines.size() * std::size_t(input.binCount), 0.0);
   out.standardError.assign(out.intensity.size(), 0.0);
   out.boundaryEcho.assign(lines.size() * std::size_t(input.echoCount), {});
-  if (input.sharedPaths)
-  {
-    kernel::traceSharedLines(space, { view, lines, input.paths, input.frequencyMHz }, out, {});
-  }
-  else
-  {
-    parallelFor(out.lineCount, {}, [&](int i) { traceLine(input, view, space, lines[std::size_t(i)], i, out); });
-  }
+  parallelFor(out.lineCount, {}, [&](int i) { traceLine(input, view, space, lines[std::size_t(i)], i, out); });
   return { std::move(out.intensity), std::move(out.boundaryEcho) };
 }
 

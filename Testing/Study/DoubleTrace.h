@@ -20,6 +20,8 @@ struct DoubleInput
     double decayPerMm;
     double tau;
     double gamma;
+    double roughnessMm;
+    double correlationMm;
   };
   struct Line
   {
@@ -52,7 +54,6 @@ struct DoubleInput
   int outsideTissue;
   std::map<std::string, double> settings; ///< the tracer's parameters by their names
   bool lowDiscrepancy;
-  bool sharedPaths;
   double depthMm;
   int binCount;
   double echoSampleMm;

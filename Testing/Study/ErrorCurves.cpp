@@ -76,7 +76,7 @@ BenchReference makeReference(const BenchScene& bench, int paths)
   parallelFor(count, {}, [&](int i) {
     TraceSettings tracing = bench.tracing;
     tracing.device = Device::Cpu;
-    tracing.sampling = Sampling::SharedPaths;
+    tracing.sampling = Sampling::LowDiscrepancy;
     tracing.pathsPerLine = paths / count;
     tracing.seed = std::uint64_t(4711 + i);
     images[std::size_t(i)] = makeBenchImage(bench, tracing, Precision::Single);

@@ -37,7 +37,7 @@ struct BenchReference
   ImageError floor;
 };
 
-/// The stack's is a finite sum, without error. The others' is the mean of eight images by shared paths, `paths`
+/// The stack's is a finite sum, without error. The others' is the mean of eight images of low discrepancy, `paths`
 /// altogether, whose seeds nobody else takes; how far they lie from it tells its error.
 BenchReference makeReference(const BenchScene& bench, int paths);
 

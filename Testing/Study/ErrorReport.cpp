@@ -151,14 +151,13 @@ std::string errorSection(const std::filesystem::path& folder)
   text << htmlParagraph(
     "Five scenes, four neighbouring scan lines of each, so that a million paths of every line take seconds. Errors are "
     "root mean squares against a reference: a finite sum for the stack of planar layers, for the others the mean of "
-    "eight images of half a million shared paths each, whose spread tells its own error (dashed; its square is taken "
+    "eight images of half a million paths each, whose spread tells its own error (dashed; its square is taken "
     "from that of each error). Slopes are of one seed, with the error that the scatter around the line tells. "
     "Intensity and RF are relative to their rms, the envelope's dB are cut off 60 dB below "
     "the maximum. Double precision is a twin for this study alone, kernels compiled again, down to the RF; its time "
-    "says nothing. A million shared paths run with two threads only, since four lines are one group, which one thread "
-    "traces. The seed has no such table: it names 1000 rays an element and 300 ms an image.");
+    "says nothing. The seed has no such table: it names 1000 rays an element and 300 ms an image.");
   text << htmlParagraph(
-    "Dots are errors that more paths do not lessen, at the place of the 4000 shared paths they were measured with, on "
+    "Dots are errors that more paths do not lessen, at the place of the 4000 paths they were measured with, on "
     "sixteen lines: voxels (with smoothed surfaces, or their bare faces) against voxels of 0.25 mm (a4c: 0.5), as the "
     "root of the mean product of the differences by two seeds, in which nothing of the paths' noise is left, and "
     "radial bins against bins of 0.05 mm with the same paths. A curve that has fallen below a dot is no place to spend "

@@ -129,16 +129,6 @@ void measureCurve(const BenchScene& bench, const BenchReference& reference, cons
   }
 }
 
-std::vector<Sampling> samplersOf(const BenchScene& bench)
-{
-  // Mirrors have no lobe to share, nor do wires that are targets.
-  if (bench.name == "stack" || bench.name == "phantom")
-  {
-    return { Sampling::Independent, Sampling::LowDiscrepancy };
-  }
-  return { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths };
-}
-
 /// The reference, and a row for its own error.
 BenchReference referenceOf(const BenchScene& bench, const Output& output, Rows& rows)
 {
@@ -152,19 +142,16 @@ BenchReference referenceOf(const BenchScene& bench, const Output& output, Rows& 
 void measureCurves(const BenchScene& bench, const BenchReference& reference, Output& output, Rows& rows, Rows& summary)
 {
   const int mostPaths = output.quick() ? 1000 : 1000000;
-  for (const Sampling sampling : samplersOf(bench))
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
   {
-    // The lines are one group of shared paths, which one thread traces whatever there are: a million are waited for
-    // once.
-    const int most = sampling == Sampling::SharedPaths ? mostPaths / 10 : mostPaths;
-    measureCurve(bench, reference, { sampling, Precision::Single, 1 }, most, output, rows, summary);
+    measureCurve(bench, reference, { sampling, Precision::Single, 1 }, mostPaths, output, rows, summary);
     measureCurve(bench, reference, { sampling, Precision::Single, 2 }, mostPaths, output, rows, summary);
     measureCurve(bench, reference, { sampling, Precision::Double, 2 }, mostPaths, output, rows, summary);
   }
 }
 
 /// How what is no matter of paths is measured.
-constexpr Way otherWay{ Sampling::SharedPaths, Precision::Single, 2 };
+constexpr Way otherWay{ Sampling::LowDiscrepancy, Precision::Single, 2 };
 
 TraceSettings otherSettings(const BenchScene& bench, int paths)
 {
@@ -221,17 +208,17 @@ void measureVoxels(const std::string& name, double finestMm, const std::vector<d
   }
 }
 
-/// Squared error times paths of independent sampling over that of shared paths, 1000 paths a line, several seeds, for
-/// half of the image's lines.
+/// Squared error times paths of independent sampling over that of low discrepancy, 1000 paths a line, several seeds,
+/// for half of the image's lines.
 void measureRatio(Output& output)
 {
   const BenchScene bench = makeBenchScene("a4c", 0.0, output.quick() ? 16 : 64);
   const BenchReference reference = makeReference(bench, output.quick() ? 3000 : 20000);
   double squared[2] = { 0.0, 0.0 };
   double seconds[2] = { 0.0, 0.0 };
-  for (const Sampling sampling : { Sampling::Independent, Sampling::SharedPaths })
+  for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
   {
-    const int which = sampling == Sampling::SharedPaths ? 1 : 0;
+    const int which = sampling == Sampling::LowDiscrepancy ? 1 : 0;
     for (int seed = 1; seed <= 6; ++seed)
     {
       TraceSettings tracing = bench.tracing;
@@ -290,7 +277,7 @@ void measureError(Output& output)
   output.table("convergence.csv", summaryHeader, summary);
 }
 
-/// The GPU's curves, where there is one, beside those of all the machine's processors. It knows no shared paths.
+/// The GPU's curves, where there is one, beside those of all the machine's processors.
 void measureErrorOnGpu(Output& output)
 {
   const DeviceChoice choice = chooseDevice(Device::Auto);

@@ -176,14 +176,12 @@ std::vector<HardScene> makeHardScenes()
     { "none", "rib", bundled("rib") },
     { "none", "a4c", bundled("a4c") },
     { "none", "phantom, wires as targets", bundled("phantom") },
-    { "none", "a4c, lobe of 6 degrees, 20 collisions, C0 20 mm",
+    { "none", "a4c, 20 collisions, C0 20 mm",
       bundled("a4c",
               [](TraceSettings& t) {
-                t.lobeSigmaDeg = 6.0;
                 t.maxCollisions = 20;
                 t.coherenceMm = 20.0;
               }) },
-    { "none", "a4c, shared paths", bundled("a4c", [](TraceSettings& t) { t.sampling = Sampling::SharedPaths; }) },
     { "none", "a4c, no chance", bundled("a4c", [](TraceSettings& t) { t.deterministic = true; }) },
     { "none", "a4c, Amadou2024", bundled("a4c", [](TraceSettings& t) { t.model = InterfaceModel::Amadou2024; }) },
     { "none", "box: a ball and a wall, voxels of 1 mm", boxWith(nothing) },

@@ -45,6 +45,7 @@ using ::sono::YieldPoint;
 #define sono sonoInDouble
 #define atan2f atan2
 #define cosf cos
+#define erfcf erfc
 #define expf exp
 #define fabsf fabs
 #define floorf floor
@@ -90,12 +91,14 @@ inline double sinSmall(double x)
 }
 } // namespace sonoInDouble
 
+#include "Core/SoundSpeed.h"
 #include "Kernel/BeamDeposit.h"
 #include "Kernel/EchoSplat.h"
 #include "Kernel/Scatterer.h"
 #include "Kernel/TargetBvh.h"
 #include "Kernel/TracePath.h"
-#include "Trace/SharedLines.h"
+#include "Trace/BatchMeans.h"
+#include "Trace/Deposit.h"
 
 #undef float
 #undef vec2
@@ -103,6 +106,7 @@ inline double sinSmall(double x)
 #undef sono
 #undef atan2f
 #undef cosf
+#undef erfcf
 #undef expf
 #undef fabsf
 #undef floorf

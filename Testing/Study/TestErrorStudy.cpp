@@ -173,7 +173,7 @@ TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
   for (const std::string name : { "stack", "rib", "phantom" })
   {
     const BenchScene bench = makeBenchScene(name, name == "stack" ? 1.0 : 2.0, 4);
-    for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy, Sampling::SharedPaths })
+    for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
     {
       TraceSettings tracing = bench.tracing;
       tracing.sampling = sampling;

@@ -25,6 +25,7 @@ int traceThorax()
   settings.device = sono::Device::Cpu;
   settings.depthMm = geometry.depthMm;
   settings.pathsPerLine = 50;
+  settings.model = sono::InterfaceModel::Amadou2024; // whose paths bring the boundaries' echoes
   const sono::TracedLines lines = sono::trace(scene, sono::makeScanLines(geometry, sono::thoraxPhantomA4C()), settings);
 
   int peak = 0;

@@ -1,0 +1,196 @@
+#pragma once
+
+#include "Kernel/FastMath.h"
+#include "Kernel/Interface.h"
+#include "Kernel/NormalDeviate.h"
+#include "Kernel/Rng.h"
+#include "Kernel/Vec.h"
+
+#include <cmath>
+
+// A rough boundary (Data/docs/physics.md section 10): a share of each branch goes on coherently, exactly along the
+// mirrored or refracted direction; the rest is scattered by facets whose slopes are Beckmann's. The facets' share is
+// followed on the microsurface until it leaves it (Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-scattering
+// microfacet BSDFs with the Smith model"), which keeps its energy and is reciprocal.
+
+namespace sono {
+
+/// What parts two media, seen from the first.
+struct RoughBoundary
+{
+  float heightMm = 0.0f;    ///< rms
+  float alpha = 0.0f;       ///< Beckmann's width, 2 h / l (10.2), up to steepestAlpha
+  float waveNumber1 = 0.0f; ///< k = 2 pi f / c in front, rad/mm
+  float waveNumber2 = 0.0f; ///< behind
+};
+
+/// A height field steeper than that has no meaning, and paths would rattle about in it.
+constexpr float steepestAlpha = 2.0f;
+
+/// Facets that a path may meet in one surface. What is still inside then leaves on the side where it is: less than
+/// 1e-6 at alpha = 0.5, 0.001 at the steepest.
+constexpr int mostFacets = 64;
+
+/// C_R, C_T (10.3): the share of a branch's power that goes on exactly along its direction.
+SONO_HD inline float coherentShare(const RoughBoundary& rough, float cos1, float cos2, bool reflected)
+{
+  const float phase = rough.heightMm * (reflected ? 2.0f * rough.waveNumber1 * cos1
+                                                  : rough.waveNumber1 * cos1 - rough.waveNumber2 * cos2);
+  return expNegative(-phase * phase);
+}
+
+/// Smith's Lambda for Beckmann's slopes and a direction that makes the cosine |z| with the mean normal: a masked ray
+/// meets facets at this rate. Beyond four widths it is below 1e-9.
+SONO_HD inline float smithLambda(float alpha, const Vec3f& direction)
+{
+  const float sine = quickSqrt(direction.x * direction.x + direction.y * direction.y);
+  const float cosine = fabsf(direction.z);
+  if (cosine > 4.0f * alpha * sine)
+  {
+    return 0.0f;
+  }
+  const float a = larger(cosine / (alpha * sine), 1e-4f);
+  return larger(0.0f, 0.5f * (0.564189584f * expf(-a * a) / a - erfcf(a)));
+}
+
+/// A slope along the incident direction, in widths, as it is seen from there: density (a - s) exp(-s^2), s < a, with a
+/// the cotangent of the incidence on the surface stretched to unit width (Heitz and d'Eon 2014). Newton's method on
+/// the distribution function, kept within a bracket.
+SONO_HD inline float visibleSlope(float a, float u)
+{
+  float s = smaller(-0.707106781f * normalFromUpperTail(u), a);
+  if (a > 1e3f)
+  {
+    return s; // seen from straight above: all of them
+  }
+  const auto mass = [a](float x) { return 0.5f * a * erfcf(-x) + 0.282094792f * expf(-x * x); };
+  const float target = u * mass(a);
+  const float close = 1e-6f * mass(a);
+  float low = -6.0f;
+  float high = larger(a, low);
+  s = larger(s, low);
+  for (int i = 0; i < 20; ++i)
+  {
+    const float excess = mass(s) - target;
+    if (fabsf(excess) < close)
+    {
+      break;
+    }
+    (excess > 0.0f ? high : low) = s;
+    const float slope = 0.564189584f * (a - s) * expf(-s * s);
+    const float next = s - excess / larger(slope, 1e-30f);
+    s = next > low && next < high ? next : 0.5f * (low + high);
+  }
+  return s;
+}
+
+/// Normal of a facet as it is seen along `towards`, a unit vector from the surface; the mean normal is z.
+SONO_HD inline Vec3f visibleNormal(float alpha, const Vec3f& towards, float u, float v)
+{
+  const float sine = quickSqrt(towards.x * towards.x + towards.y * towards.y);
+  const float a = towards.z / larger(alpha * sine, 1e-6f);
+  const float along = visibleSlope(a, u);
+  const float across = 0.707106781f * normalDeviate(v);
+  const bool oblique = sine > 1e-6f;
+  const float x = oblique ? towards.x / sine : 1.0f;
+  const float y = oblique ? towards.y / sine : 0.0f;
+  return glm::normalize(Vec3f(-alpha * (x * along - y * across), -alpha * (y * along + x * across), 1.0f));
+}
+
+/// Where a path has got to on a microsurface.
+struct FacetPath
+{
+  Vec3f direction; ///< of travel; z points from the surface into the side on which the path is
+  bool behind;     ///< on the far side
+};
+
+/// Follows a path from above onto the facets and on until it leaves them. Facets mirror, or all refract where they can:
+/// `ratio` is c2 / c1, or 0 for mirrors. The facets' heights are uniform: only their order counts. `u` chooses the
+/// first facet, and what else is drawn is a function of it.
+SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ratio, const BounceSample& u)
+{
+  FacetPath path{ incident, false };
+  Vec3f& w = path.direction;
+  float below = 1.0f; // share of the surface that lies lower than the path
+  std::uint32_t key[3];
+  const float seen[3] = { float(u.polar), float(u.azimuth), float(u.choice) };
+  for (int i = 0; i < 3; ++i)
+  {
+    key[i] = std::uint32_t(seen[i] * 8388608.0f);
+  }
+  for (int facet = 0; facet <= mostFacets; ++facet)
+  {
+    const float lambda = smithLambda(alpha, w);
+    if (w.z > 0.0f && lambda == 0.0f)
+    {
+      break;
+    }
+    const RandomWords words =
+      philox((std::uint64_t(key[0]) << 32) | key[1], key[2], std::uint32_t(facet), 0x51ab7e5u, 0u);
+    const float chance = uniformFrom(words.v[0]);
+    if (w.z > 0.0f)
+    {
+      if (chance < powf(below, lambda))
+      {
+        break;
+      }
+      below = smaller(1.0f, below * powf(chance, -1.0f / lambda));
+    }
+    else
+    {
+      below *= powf(chance, 1.0f / (1.0f + lambda));
+    }
+    if (facet == mostFacets)
+    {
+      w.z = fabsf(w.z);
+      break;
+    }
+    const Vec3f m = facet == 0 ? visibleNormal(alpha, -w, u.polar, u.azimuth)
+                               : visibleNormal(alpha, -w, uniformFrom(words.v[1]), uniformFrom(words.v[2]));
+    const float cosine = larger(0.0f, -glm::dot(w, m));
+    const float bend = path.behind && ratio > 0.0f ? 1.0f / ratio : ratio;
+    const float sineSquared = bend * bend * larger(0.0f, 1.0f - cosine * cosine);
+    if (ratio > 0.0f && sineSquared < 1.0f)
+    {
+      w = (w + m * cosine) * bend - m * sqrtf(1.0f - sineSquared);
+      // Seen from the other side.
+      w.z = -w.z;
+      path.behind = !path.behind;
+      below = larger(1.0f - below, 1e-7f);
+    }
+    else
+    {
+      w += m * (2.0f * cosine);
+    }
+    w = glm::normalize(w);
+  }
+  return path;
+}
+
+/// Draws the branch by the mean surface's R, then whether it goes on coherently, else the facets that it meets. One
+/// number decides on both: its strata are R C_R, R (1 - C_R), T C_T and T (1 - C_T). `normal` points from medium 1
+/// into medium 2, cos1 = direction . normal > 0. The throughput is 1.
+SONO_HD inline Scattered scatterRough(const RoughBoundary& rough, const Vec3f& direction, const Vec3f& normal,
+                                      float cos1, const Reflection& r, const BounceSample& u)
+{
+  const bool reflected = r.total || u.choice < r.reflectance;
+  const float before = reflected ? 0.0f : r.reflectance;
+  const float share = reflected ? r.reflectance : 1.0f - r.reflectance;
+  const float coherent = coherentShare(rough, cos1, r.cosRefracted, reflected);
+  if (rough.alpha <= 0.0f || u.choice <= before + share * coherent)
+  {
+    return { branchDirection(direction, normal, cos1, r, reflected), reflected, 1.0f };
+  }
+  // A frame whose z points back to where the path comes from, x along its slant.
+  const Vec3f slant = direction - normal * cos1;
+  const float sine = glm::length(slant);
+  const Vec3f x = sine > 1e-4f ? slant / sine : directionAround(normal, 1.57079633f, 0.25f);
+  const Vec3f y = glm::cross(x, normal);
+  const Vec3f incident(glm::dot(direction, x), glm::dot(direction, y), -larger(cos1, 1e-6f));
+  const FacetPath out = walkFacets(rough.alpha, incident, reflected ? 0.0f : r.ratio, u);
+  const float along = larger(out.direction.z, 1e-6f);
+  const Vec3f w = x * out.direction.x + y * out.direction.y + normal * (out.behind ? along : -along);
+  return { glm::normalize(w), !out.behind, 1.0f };
+}
+
+} // namespace sono
