@@ -48,6 +48,23 @@ SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const B
   }
 }
 
+/// The same with the Gaussians of an aperture.
+SONO_SIMD_CLONES void weighByAperture(const ScattererView v, int first, int count, const Beam b, LineGrid g,
+                                      Splats& out)
+{
+  const float mmPerSample = 1.0f / g.samplesPerMm;
+  const ApertureProfile profile = b.profile;
+  for (int i = 0; i < count; ++i)
+  {
+    const BeamPlace p = placeOf(v, first + i, b, g);
+    const ProfileAt at = profileAt(profile, p.position * mmPerSample);
+    const float squared = p.lateral * p.lateral * at.perLateral2 + p.elevational * p.elevational * at.perElevational2;
+    const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
+    const float weight = at.amplitude * expNegative(-0.5f * squared);
+    split(seen ? v.amplitude[first + i] * weight : 0.0f, p.position, seen, g, i, out);
+  }
+}
+
 /// beamFieldCell without a branch. The share is between 0 and 1 outside of the table, too.
 inline BeamFieldCell cellOf(const BeamFieldAxis& axis, float fold, float positionMm)
 {
@@ -113,13 +130,17 @@ void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum)
   for (int first = 0; first < scatterers.count; first += chunk)
   {
     const int count = std::min(chunk, scatterers.count - first);
-    if (beam.field)
+    switch (beam.kind)
     {
-      weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
-    }
-    else
-    {
-      weigh(scatterers, first, count, beam, grid, splats);
+      case BeamKind::Gaussian:
+        weigh(scatterers, first, count, beam, grid, splats);
+        break;
+      case BeamKind::Aperture:
+        weighByAperture(scatterers, first, count, beam, grid, splats);
+        break;
+      case BeamKind::Field:
+        weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
+        break;
     }
     for (int i = 0; i < count; ++i)
     {

@@ -35,6 +35,7 @@ void EchoSettings::validate() const
     samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
     "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
+  requireInRange(aperture);
   if (field)
   {
     requireReaches(*field, depthMm);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/ApertureProfile.h"
 #include "Kernel/BeamField.h"
 #include "Kernel/FastMath.h"
 #include "Kernel/Vec.h"
@@ -7,6 +8,14 @@
 #include <cstdint>
 
 namespace sono {
+
+/// What the weight of a beam comes from.
+enum class BeamKind
+{
+  Gaussian, ///< the same two sigmas at each depth
+  Aperture, ///< Gaussians of an aperture
+  Field     ///< a table of weights
+};
 
 /// A main beam in its scatterers' coordinates.
 struct Beam
@@ -17,7 +26,9 @@ struct Beam
   Vec3f elevation;
   float lateralSigmaMm; ///< of a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2)
   float elevationalSigmaMm;
-  const BeamFieldView* field; ///< the profile instead of the Gaussian; null: the Gaussian
+  const BeamFieldView* field; ///< of a Field
+  BeamKind kind;
+  ApertureProfile profile; ///< of an Aperture
 };
 
 /// Beyond this many sigma a Gaussian beam does not see a scatterer: it would add less than exp(-16/2) of its amplitude.
@@ -79,6 +90,24 @@ SONO_HD inline ScattererSplit splitScatterer(float a, float position, const Line
   return { whole,
            { (re * g.halfTurnRe + im * g.halfTurnIm) * near, (im * g.halfTurnRe - re * g.halfTurnIm) * near,
              (re * g.halfTurnRe - im * g.halfTurnIm) * fraction, (im * g.halfTurnRe + re * g.halfTurnIm) * fraction } };
+}
+
+/// Weight of a beam at a place, beyond the cut of its Gaussians too. Depth `depthMm` >= 0.
+SONO_HD inline float beamWeightAt(const Beam& b, float lateralMm, float elevationalMm, float depthMm)
+{
+  if (b.kind == BeamKind::Field)
+  {
+    return beamWeight(*b.field, lateralMm, elevationalMm, depthMm);
+  }
+  const float l2 = lateralMm * lateralMm;
+  const float e2 = elevationalMm * elevationalMm;
+  if (b.kind == BeamKind::Aperture)
+  {
+    const ProfileAt at = profileAt(b.profile, depthMm);
+    return at.amplitude * expNegative(-0.5f * (l2 * at.perLateral2 + e2 * at.perElevational2));
+  }
+  return expNegative(-0.5f *
+                     (l2 / (b.lateralSigmaMm * b.lateralSigmaMm) + e2 / (b.elevationalSigmaMm * b.elevationalSigmaMm)));
 }
 
 /// Squared distance from the axis in sigmas.
