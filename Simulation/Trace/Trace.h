@@ -30,6 +30,9 @@ struct TracedLines
   double binMm = 0.0;               ///< bin b covers [b, b+1) * binMm
   std::vector<float> intensity;     ///< lineCount x binCount
   std::vector<float> standardError; ///< lineCount x binCount
+  /// lineCount x binCount: the two-way exponent B of the attenuation exp(-B f) on the way there and back, Np/MHz, mean
+  /// over the paths weighted as the intensity is. Empty: nothing attenuates.
+  std::vector<float> attenuationNpPerMHz;
   int echoCount = 0;
   double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
