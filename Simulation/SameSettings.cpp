@@ -26,8 +26,8 @@ auto rest(const TraceSettings& s)
 
 auto rest(const EchoSettings& s)
 {
-  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.samplingMHz, s.depthMm, s.aperture, s.field, s.pulse,
-                  s.seed);
+  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.samplingMHz, s.depthMm, s.aperture, s.field,
+                  s.arrayField, s.pulse, s.seed);
 }
 
 auto rest(const BModeSettings& s)

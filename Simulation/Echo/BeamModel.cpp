@@ -22,6 +22,10 @@ BeamKind kindOf(const EchoSettings& settings, const TracedLines* traced)
   {
     return BeamKind::Field;
   }
+  if (settings.arrayField)
+  {
+    return BeamKind::Array;
+  }
   const bool oneWidth = traced && traced->model == InterfaceModel::Amadou2024;
   return settings.aperture.isNamed() && !oneWidth ? BeamKind::Aperture : BeamKind::Gaussian;
 }
@@ -65,6 +69,12 @@ BeamModel::BeamModel(const EchoSettings& settings, const TracedLines* traced)
     focusMm_ = level.focusMm();
     focusPowerAreaMm2_ = level.focusAreaMm2();
   }
+  if (kind_ == BeamKind::Array)
+  {
+    array_ = settings.arrayField->view();
+    focusMm_ = settings.arrayField->focusMm();
+    sight_.emplace(*settings.arrayField);
+  }
   const BeamWidth focus = widthAt(focusMm_);
   const double sigmasMm2 = focus.lateralSigmaMm * focus.elevationalSigmaMm;
   focusAreaMm2_ = 2.0 * pi * sigmasMm2 * focus.amplitude;
@@ -91,6 +101,22 @@ BeamWidth BeamModel::widthAt(double depthMm) const
       const auto across = [&](double mm) { return double(beamWeight(*field_, 0.0f, float(mm), z)); };
       return { sigmaAlong(grid.lateral, along), sigmaAlong(grid.elevational, across),
                beamWeight(*field_, 0.0f, 0.0f, z) };
+    }
+    case BeamKind::Array:
+    {
+      const float range = std::max(float(depthMm), 1.0f);
+      const auto along = [&](const ArrayBeamAxis& axis, auto weight) {
+        const double reachMm = double(float(axis.count - 1) / axis.perUnit * std::max(range, axis.nearMm));
+        const auto modulus = [&](double mm) {
+          const ComplexWeight w = weight(float(mm));
+          return double(std::hypot(w.re, w.im));
+        };
+        return sigmaAlong({ 0.0, reachMm / (axis.count - 1), axis.count }, modulus);
+      };
+      const ComplexWeight onAxis = arrayBeamWeight(*array_, 0.0f, 0.0f, range);
+      return { along(array_->lateral, [&](float mm) { return arrayBeamWeight(*array_, mm, 0.0f, range); }),
+               along(array_->elevational, [&](float mm) { return arrayBeamWeight(*array_, 0.0f, mm, range); }),
+               std::hypot(onAxis.re, onAxis.im) };
     }
     default:
       return { settings_.lateralSigmaMm, settings_.elevationalSigmaMm, 1.0 };
@@ -129,6 +155,14 @@ Beam BeamModel::beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& r
   if (kind_ == BeamKind::Field)
   {
     beam.field = &*field_;
+  }
+  if (kind_ == BeamKind::Array)
+  {
+    const double lateral2 = 1.0 - line.steeringLateral * line.steeringLateral;
+    beam.array = &*array_;
+    beam.lateralCosine = float(std::sqrt(lateral2));
+    beam.elevationalCosine = float(std::sqrt(1.0 - line.steeringElevational * line.steeringElevational / lateral2));
+    beam.gain = float(directivity(settings_.aperture, settings_.centreFrequencyMHz, line));
   }
   if (kind_ == BeamKind::Aperture)
   {

@@ -33,8 +33,9 @@ public:
   /// At the focus, the integral of W^2.
   double focusPowerAreaMm2() const { return focusPowerAreaMm2_; }
   BeamWidth widthAt(double depthMm) const;
-  /// For bricks; nothing but for an Aperture.
-  const BeamReachTable* reachTable() const { return reach_ ? &*reach_ : nullptr; }
+  /// For bricks; null where the kind of beam has none.
+  const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }
+  const ArraySight* arraySight() const { return sight_ ? &*sight_ : nullptr; }
 
   /// In coordinates that are turned by `rotation`, from `origin` there. For lookups while this lives.
   Beam beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
@@ -46,7 +47,9 @@ private:
   BeamKind kind_;
   ApertureProfile straight_{}; // of an Aperture
   std::optional<BeamFieldView> field_;
-  std::optional<BeamReachTable> reach_;
+  std::optional<ArrayBeamView> array_;
+  std::optional<BeamReachTable> reach_; // of an Aperture
+  std::optional<ArraySight> sight_;     // of an Array
   double focusMm_ = 0.0;
   double focusAreaMm2_ = 0.0;
   double focusPowerAreaMm2_ = 0.0;

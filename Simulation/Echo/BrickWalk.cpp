@@ -27,6 +27,10 @@ float halfExtent(const Vec3f& direction, float edge)
 Vec2f wideningOf(const BeamReach& reach)
 {
   const ApertureProfile& p = reach.beam.profile;
+  if (reach.array)
+  {
+    return Vec2f(1.0f / reach.beam.lateralCosine, 1.0f / reach.beam.elevationalCosine);
+  }
   return reach.table ? Vec2f(1.0f / std::sqrt(p.lateral.cosine2), 1.0f / std::sqrt(p.elevational.cosine2))
                      : Vec2f(1.0f);
 }
@@ -76,6 +80,12 @@ bool sees(const BeamCulling& s, const Vec3f& centre)
   if (s.reach.sight)
   {
     return s.reach.sight->sees(lateral, elevational, r);
+  }
+  if (s.reach.array)
+  {
+    return s.reach.array->sees(std::max(0.0f, std::fabs(lateral) - s.lateral) / s.widening.x,
+                               std::max(0.0f, std::fabs(elevational) - s.elevation) / s.widening.y, r - s.axial,
+                               r + s.axial);
   }
   if (s.reach.table)
   {
@@ -131,18 +141,6 @@ Vec2f clipToSlab(const BeamReach& b, int axis, float low, float high)
 }
 
 } // namespace
-
-Vec2f BeamReachTable::widest(float fromMm, float toMm) const
-{
-  const int last = int(lateralMm.size()) - 1;
-  const int to = std::clamp(int(toMm / stepMm), 0, last);
-  Vec2f most(0.0f);
-  for (int n = std::clamp(int(fromMm / stepMm), 0, last); n <= to; ++n)
-  {
-    most = glm::max(most, Vec2f(lateralMm[std::size_t(n)], elevationalMm[std::size_t(n)]));
-  }
-  return most;
-}
 
 void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
                    const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Echo/ArraySight.h"
 #include "Echo/BeamSplat.h"
 #include "Echo/FieldSight.h"
 #include "Kernel/Vec.h"
@@ -10,25 +11,14 @@
 
 namespace sono {
 
-/// How far from its axis a beam that widens in depth is seen: the largest distances along the array and across it, mm,
-/// in steps of depth, of a line straight ahead.
-struct BeamReachTable
-{
-  float stepMm = 1.0f;
-  std::vector<float> lateralMm; ///< of depths [n, n + 1) stepMm
-  std::vector<float> elevationalMm;
-
-  /// The largest ones between two depths; those of the first and the last step hold beyond them.
-  Vec2f widest(float fromMm, float toMm) const;
-};
-
 /// A beam and the depth to which it is needed.
 struct BeamReach
 {
   Beam beam;
   float depthMm;                         ///< <= 0: not needed at all
   const FieldSight* sight = nullptr;     ///< of the beam's field, for bricks of this size; null when it is a Gaussian
-  const BeamReachTable* table = nullptr; ///< of the beam's aperture; null when it has none
+  const BeamReachTable* table = nullptr; ///< of the beam's aperture or array; null when it has none
+  const ArraySight* array = nullptr;     ///< of the beam's array; null when it has none
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

@@ -3,6 +3,7 @@
 #include "Core/Device.h"
 #include "Core/Parameters.h"
 #include "Core/SoundSpeed.h"
+#include "Probe/ArrayField.h"
 #include "Probe/PulseEchoField.h"
 #include "Probe/PulseFile.h"
 #include "Probe/ScanGeometry.h"
@@ -27,6 +28,9 @@ struct EchoSettings
   /// The beam's two-way weights instead of the Gaussian, of every line; aperture and sigmas are then not used. It must
   /// reach the image's depth. What lies in front of its first depth or beside it does not echo. Null: the Gaussian.
   std::shared_ptr<const PulseEchoField> field;
+  /// The computed complex beam of the probe's elements instead, to the image's depth; there is then no `field`, and the
+  /// sigmas are not used. Lines to the side are weaker by the aperture's directivity. Null: no such beam.
+  std::shared_ptr<const ArrayField> arrayField;
   /// The pulse instead of the Gaussian, demodulated with the centre frequency and scaled to an envelope of peak 1; the
   /// fractional bandwidth is then not used. Null: the Gaussian.
   std::shared_ptr<const SampledPulse> pulse;
