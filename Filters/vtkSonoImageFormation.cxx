@@ -83,6 +83,7 @@ sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) co
   auto settings = sono::settingsIn<sono::EchoSettings>(*this->Parameters);
   settings.centreFrequencyMHz = probe.centreFrequencyMHz;
   settings.fractionalBandwidth = probe.fractionalBandwidth;
+  settings.aperture = probe.aperture();
   settings.samplingMHz = sono::readNumber("SamplingMHz", acquisition);
   settings.depthMm = probe.geometry.depthMm;
   settings.scattererCellMm =

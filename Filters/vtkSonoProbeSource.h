@@ -59,6 +59,11 @@ public:
   sonoParameter(ElevationSectorDeg, double);
   sonoParameter(CentreFrequencyMHz, double);
   sonoParameter(FractionalBandwidth, double);
+  sonoParameter(ApertureMm, double);
+  sonoParameter(ElevationApertureMm, double);
+  sonoParameter(TransmitFocusMm, double);
+  sonoParameter(ElevationFocusMm, double);
+  sonoParameter(ElementWidthMm, double);
   ///@}
 
   /**

@@ -26,7 +26,8 @@ auto rest(const TraceSettings& s)
 
 auto rest(const EchoSettings& s)
 {
-  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.samplingMHz, s.depthMm, s.field, s.pulse, s.seed);
+  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.samplingMHz, s.depthMm, s.aperture, s.field,
+                  s.arrayField, s.pulse, s.seed);
 }
 
 auto rest(const BModeSettings& s)
@@ -41,7 +42,7 @@ auto all(const ProbePose& p)
 
 auto all(const ScanLine& l)
 {
-  return std::tie(l.originMm, l.axis, l.lateral, l.elevation);
+  return std::tie(l.originMm, l.axis, l.lateral, l.elevation, l.steeringLateral, l.steeringElevational);
 }
 
 bool sameTissue(const Tissue& a, const Tissue& b)

@@ -92,9 +92,10 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   job.radPerMm = setup.finisher.radPerMm();
   job.pulseRe = setup.finisher.pulse().re();
   job.pulseIm = setup.finisher.pulse().im();
-  if (setup.field)
+  if (setup.settings.field)
   {
-    job.field = FieldJob{ *setup.field, SharedVector<float>(setup.settings.field, &setup.settings.field->values()) };
+    job.field = FieldJob{ setup.settings.field->view(),
+                          SharedVector<float>(setup.settings.field, &setup.settings.field->values()) };
     job.field->view.values = nullptr;
   }
   if (setup.level)

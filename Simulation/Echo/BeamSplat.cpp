@@ -48,6 +48,23 @@ SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const B
   }
 }
 
+/// The same with the Gaussians of an aperture.
+SONO_SIMD_CLONES void weighByAperture(const ScattererView v, int first, int count, const Beam b, LineGrid g,
+                                      Splats& out)
+{
+  const float mmPerSample = 1.0f / g.samplesPerMm;
+  const ApertureProfile profile = b.profile;
+  for (int i = 0; i < count; ++i)
+  {
+    const BeamPlace p = placeOf(v, first + i, b, g);
+    const ProfileAt at = profileAt(profile, p.position * mmPerSample);
+    const float squared = p.lateral * p.lateral * at.perLateral2 + p.elevational * p.elevational * at.perElevational2;
+    const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
+    const float weight = at.amplitude * expNegative(-0.5f * squared);
+    split(seen ? v.amplitude[first + i] * weight : 0.0f, p.position, seen, g, i, out);
+  }
+}
+
 /// beamFieldCell without a branch. The share is between 0 and 1 outside of the table, too.
 inline BeamFieldCell cellOf(const BeamFieldAxis& axis, float fold, float positionMm)
 {
@@ -104,6 +121,66 @@ SONO_SIMD_CLONES void weighByField(const ScattererView v, int first, int count, 
   }
 }
 
+/// Flat index of the value before a place in an array's table, and the share of the next; without a branch.
+inline ArrayBeamCell flatCell(const ArrayBeamAxis& axis, float rangeRow, float mm, float perRange)
+{
+  const float place = std::fabs(mm) * axis.perUnit * perRange;
+  const float last = float(axis.count - 1);
+  const float held = std::min(place, last);
+  const float cell = std::min(std::floor(held), last - 1.0f);
+  return { std::int32_t(2.0f * (rangeRow * float(axis.count) + cell)), held - cell, place <= last };
+}
+
+/// The same with an array's complex beam, whose echoes come from the range.
+SONO_SIMD_CLONES void weighByArray(const ScattererView v, int first, int count, const Beam b, const ArrayBeamView f,
+                                   LineGrid g, Splats& out)
+{
+  std::int32_t lateral[chunk], elevational[chunk];
+  float lateralShare[chunk], elevationalShare[chunk], rangeShare[chunk], position[chunk], amplitude[chunk];
+  ComplexWeight weight[chunk];
+  const float mmPerSample = 1.0f / g.samplesPerMm;
+  const float lastRange = float(f.rangeCount - 1);
+  for (int i = 0; i < count; ++i)
+  {
+    const BeamPlace p = placeOf(v, first + i, b, g);
+    const float z = p.position * mmPerSample;
+    const float range = std::sqrt(z * z + p.lateral * p.lateral + p.elevational * p.elevational);
+    const float row = std::min(range * f.rangesPerMm, lastRange);
+    const float before = std::min(std::floor(row), lastRange - 1.0f);
+    const ArrayBeamCell l =
+      flatCell(f.lateral, before, p.lateral * b.lateralCosine, 1.0f / std::max(range, f.lateral.nearMm));
+    const ArrayBeamCell e = flatCell(f.elevational, before, p.elevational * b.elevationalCosine,
+                                     1.0f / std::max(range, f.elevational.nearMm));
+    const float at = range * g.samplesPerMm;
+    const bool seen = l.inside & e.inside & (p.position >= 0.0f) & (at < g.lastSample);
+    lateral[i] = l.index;
+    elevational[i] = e.index;
+    lateralShare[i] = l.share;
+    elevationalShare[i] = e.share;
+    rangeShare[i] = row - before;
+    position[i] = at;
+    amplitude[i] = seen ? b.gain * v.amplitude[first + i] : 0.0f;
+  }
+  const int lateralRow = 2 * f.lateral.count;
+  const int elevationalRow = 2 * f.elevational.count;
+  for (int i = 0; i < count; ++i)
+  {
+    const ComplexWeight l = arrayBeamValue(f.lateral.values + lateral[i], lateralRow, lateralShare[i], rangeShare[i]);
+    const ComplexWeight e =
+      arrayBeamValue(f.elevational.values + elevational[i], elevationalRow, elevationalShare[i], rangeShare[i]);
+    weight[i] = { amplitude[i] * (l.re * e.re - l.im * e.im), amplitude[i] * (l.re * e.im + l.im * e.re) };
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const ScattererSplit s = splitScatterer(weight[i], position[i], g);
+    for (int c = 0; c < 4; ++c)
+    {
+      out.added[i][c] = s.added[c];
+    }
+    out.sample[i] = amplitude[i] != 0.0f ? std::int32_t(s.sample) : 0;
+  }
+}
+
 } // namespace
 
 void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum)
@@ -113,13 +190,20 @@ void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum)
   for (int first = 0; first < scatterers.count; first += chunk)
   {
     const int count = std::min(chunk, scatterers.count - first);
-    if (beam.field)
+    switch (beam.kind)
     {
-      weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
-    }
-    else
-    {
-      weigh(scatterers, first, count, beam, grid, splats);
+      case BeamKind::Gaussian:
+        weigh(scatterers, first, count, beam, grid, splats);
+        break;
+      case BeamKind::Aperture:
+        weighByAperture(scatterers, first, count, beam, grid, splats);
+        break;
+      case BeamKind::Field:
+        weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
+        break;
+      case BeamKind::Array:
+        weighByArray(scatterers, first, count, beam, *beam.array, grid, splats);
+        break;
     }
     for (int i = 0; i < count; ++i)
     {

@@ -16,6 +16,7 @@ struct BeamCulling
   float axial;  ///< half a brick's extent along the beam's three directions
   float lateral;
   float elevation;
+  Vec2f widening{ 1.0f }; ///< of a beam of an aperture, by its angle
 };
 
 float halfExtent(const Vec3f& direction, float edge)
@@ -23,9 +24,26 @@ float halfExtent(const Vec3f& direction, float edge)
   return 0.5f * edge * (std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z));
 }
 
-Vec3f seenRadius(const BeamReach& reach, float edge)
+Vec2f wideningOf(const BeamReach& reach)
+{
+  const ApertureProfile& p = reach.beam.profile;
+  if (reach.array)
+  {
+    return Vec2f(1.0f / reach.beam.lateralCosine, 1.0f / reach.beam.elevationalCosine);
+  }
+  return reach.table ? Vec2f(1.0f / std::sqrt(p.lateral.cosine2), 1.0f / std::sqrt(p.elevational.cosine2))
+                     : Vec2f(1.0f);
+}
+
+/// Between two depths; those of an aperture's beam depend on them.
+Vec3f seenRadius(const BeamReach& reach, float edge, float fromMm, float toMm)
 {
   const Beam& b = reach.beam;
+  if (reach.table)
+  {
+    const Vec2f seen = reach.table->widest(fromMm, toMm) * wideningOf(reach);
+    return glm::abs(b.lateral) * seen.x + glm::abs(b.elevation) * seen.y + 0.5f * edge * std::sqrt(3.0f);
+  }
   if (reach.sight)
   {
     return glm::abs(b.lateral) * reach.sight->lateralMm() + glm::abs(b.elevation) * reach.sight->elevationalMm();
@@ -41,8 +59,8 @@ std::vector<BeamCulling> makeBeamCulling(const std::vector<BeamReach>& group, fl
     const Beam& b = group[i].beam;
     if (group[i].depthMm > 0.0f)
     {
-      beams.push_back({ group[i], i, seenRadius(group[i], edge), halfExtent(b.axis, edge), halfExtent(b.lateral, edge),
-                        halfExtent(b.elevation, edge) });
+      beams.push_back({ group[i], i, seenRadius(group[i], edge, 0.0f, group[i].depthMm), halfExtent(b.axis, edge),
+                        halfExtent(b.lateral, edge), halfExtent(b.elevation, edge), wideningOf(group[i]) });
     }
   }
   return beams;
@@ -62,6 +80,19 @@ bool sees(const BeamCulling& s, const Vec3f& centre)
   if (s.reach.sight)
   {
     return s.reach.sight->sees(lateral, elevational, r);
+  }
+  if (s.reach.array)
+  {
+    return s.reach.array->sees(std::max(0.0f, std::fabs(lateral) - s.lateral) / s.widening.x,
+                               std::max(0.0f, std::fabs(elevational) - s.elevation) / s.widening.y, r - s.axial,
+                               r + s.axial);
+  }
+  if (s.reach.table)
+  {
+    const Vec2f seen = s.reach.table->widest(r - s.axial, r + s.axial) * s.widening;
+    const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / seen.x;
+    const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / seen.y;
+    return dl * dl + de * de < 1.0f;
   }
   const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / b.lateralSigmaMm;
   const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / b.elevationalSigmaMm;
@@ -132,12 +163,13 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
     {
       const Vec2f part =
         clipToSlab(s.reach, axis, float(layer) * edge - s.radius[axis], float(layer + 1) * edge + s.radius[axis]);
+      const Vec3f radius = s.reach.table && part[0] <= part[1] ? seenRadius(s.reach, edge, part[0], part[1]) : s.radius;
       // Between the two ends of the part the axis is straight: its bounds are theirs.
       for (int end = 0; end < 2 && part[0] <= part[1]; ++end)
       {
         const Vec3f p = s.reach.beam.origin + s.reach.beam.axis * part[end];
-        first = glm::min(first, Vec2f(p[u] - s.radius[u], p[v] - s.radius[v]));
-        last = glm::max(last, Vec2f(p[u] + s.radius[u], p[v] + s.radius[v]));
+        first = glm::min(first, Vec2f(p[u] - radius[u], p[v] - radius[v]));
+        last = glm::max(last, Vec2f(p[u] + radius[u], p[v] + radius[v]));
       }
     }
     first = glm::max(first, Vec2f(low[u], low[v]));

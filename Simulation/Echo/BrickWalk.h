@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Echo/ArraySight.h"
 #include "Echo/BeamSplat.h"
 #include "Echo/FieldSight.h"
 #include "Kernel/Vec.h"
@@ -14,8 +15,10 @@ namespace sono {
 struct BeamReach
 {
   Beam beam;
-  float depthMm;                     ///< <= 0: not needed at all
-  const FieldSight* sight = nullptr; ///< of the beam's field, for bricks of this size; null when it is a Gaussian
+  float depthMm;                         ///< <= 0: not needed at all
+  const FieldSight* sight = nullptr;     ///< of the beam's field, for bricks of this size; null when it is a Gaussian
+  const BeamReachTable* table = nullptr; ///< of the beam's aperture or array; null when it has none
+  const ArraySight* array = nullptr;     ///< of the beam's array; null when it has none
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

@@ -22,6 +22,15 @@ void requireReaches(const PulseEchoField& field, double depthMm)
   }
 }
 
+void requireReaches(const ArrayField& field, double depthMm)
+{
+  if (field.depthMm() < depthMm - 1e-3)
+  {
+    throw Error("the array's field is " + std::to_string(field.depthMm()) + " mm deep but the image is " +
+                std::to_string(depthMm) + " mm deep: compute it to there, or lower the depth");
+  }
+}
+
 } // namespace
 
 void EchoSettings::validate() const
@@ -35,6 +44,15 @@ void EchoSettings::validate() const
     samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
     "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
+  requireInRange(aperture);
+  if (arrayField)
+  {
+    requireReaches(*arrayField, depthMm);
+  }
+  if (field && arrayField)
+  {
+    throw Error("there are a pulse-echo field and an array's field: give one of them");
+  }
   if (field)
   {
     requireReaches(*field, depthMm);

@@ -3,8 +3,10 @@
 #include "Core/Device.h"
 #include "Core/Parameters.h"
 #include "Core/SoundSpeed.h"
+#include "Probe/ArrayField.h"
 #include "Probe/PulseEchoField.h"
 #include "Probe/PulseFile.h"
+#include "Probe/ScanGeometry.h"
 
 #include <cstdint>
 #include <memory>
@@ -18,11 +20,17 @@ struct EchoSettings
   double fractionalBandwidth = 0.6; ///< at -6 dB, (0, 2)
   double samplingMHz = 50.0;        ///< RF sampling frequency, at most 1000
   double depthMm = 160.0;           ///< > 0
-  double lateralSigmaMm = 1.0;      ///< Gaussian beam
+  /// Of the probe: where it is named, the beam is that of its Gaussians, which widen in depth and are weaker to the
+  /// side. Amadou2024's lines are not.
+  BeamAperture aperture;
+  double lateralSigmaMm = 1.0; ///< Gaussian beam of one width, where there is no aperture
   double elevationalSigmaMm = 1.0;
-  /// The beam's two-way weights instead of the Gaussian, of every line; the sigmas are then not used. It must reach
-  /// the image's depth. What lies in front of its first depth or beside it does not echo. Null: the Gaussian.
+  /// The beam's two-way weights instead of the Gaussian, of every line; aperture and sigmas are then not used. It must
+  /// reach the image's depth. What lies in front of its first depth or beside it does not echo. Null: the Gaussian.
   std::shared_ptr<const PulseEchoField> field;
+  /// The computed complex beam of the probe's elements instead, to the image's depth; there is then no `field`, and the
+  /// sigmas are not used. Lines to the side are weaker by the aperture's directivity. Null: no such beam.
+  std::shared_ptr<const ArrayField> arrayField;
   /// The pulse instead of the Gaussian, demodulated with the centre frequency and scaled to an envelope of peak 1; the
   /// fractional bandwidth is then not used. Null: the Gaussian.
   std::shared_ptr<const SampledPulse> pulse;
@@ -39,10 +47,12 @@ struct EchoSettings
   {
     visitor(self.lateralSigmaMm,
             Parameter{ "lateralSigmaMm", "Lateral Sigma (mm)", aboveUpTo(0, 50),
-                       "Standard deviation of the Gaussian beam along the array in mm, above 0 up to 50." });
+                       "Standard deviation of the Gaussian beam along the array in mm, above 0 up to 50; of probes "
+                       "that do not name their aperture, and of Amadou2024." });
     visitor(self.elevationalSigmaMm,
             Parameter{ "elevationalSigmaMm", "Elevational Sigma (mm)", aboveUpTo(0, 50),
-                       "Standard deviation of the Gaussian beam across the image plane in mm, above 0 up to 50." });
+                       "Standard deviation of the Gaussian beam across the image plane in mm, above 0 up to 50; of "
+                       "probes that do not name their aperture, and of Amadou2024." });
     visitor(self.scattererLevelDb,
             Parameter{ "scattererLevelDb", "Scatterer Level (dB)", between(-200, 200),
                        "RMS echo of a tissue full of scatterers against a perfect plane reflector in dB, -200 to "

@@ -10,16 +10,9 @@ namespace sono {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-double gaussianAreaMm2(const EchoSettings& s)
-{
-  return pi * s.lateralSigmaMm * s.elevationalSigmaMm;
-}
-
 /// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
 /// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * A * integral of g^2, with the beam's area
-/// A = pi sL sE for a Gaussian and that at the focus for a field (Data/docs/physics.md eq. 4.7).
+/// A = pi sL sE for a Gaussian, at the focus where it has one (Data/docs/physics.md eq. 4.7).
 double scattererScale(const EchoSettings& s, double areaMm2)
 {
   const double seen = areaMm2 * pulseEnergyMm(s) / (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
@@ -58,6 +51,7 @@ void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& 
   }
   if (traced.binCount < 1 || !(traced.binMm > 0.0) ||
       traced.intensity.size() != lines.size() * std::size_t(traced.binCount) || traced.echoCount < 0 ||
+      !(traced.attenuationNpPerMHz.empty() || traced.attenuationNpPerMHz.size() == traced.intensity.size()) ||
       (traced.echoCount > 0 && !(traced.echoSampleMm > 0.0)) ||
       traced.boundaryEcho.size() != lines.size() * std::size_t(traced.echoCount))
   {
@@ -82,48 +76,34 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   , lines(scanLines)
   , settings(checked(echoSources, scanLines, echoSettings))
   , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
+  , beams(settings, sources.traced)
   , finisher(settings, sources.traced, level ? &*level : nullptr)
 {
-  if (settings.field)
-  {
-    field = settings.field->view();
-  }
   if (sources.scene)
   {
-    const double scale = scattererScale(settings, level ? level->focusAreaMm2() : gaussianAreaMm2(settings));
+    const double scale = scattererScale(settings, beams.focusPowerAreaMm2());
     tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
   }
-  if (field && tissues)
+  if (settings.field && tissues)
   {
     tissueSight.emplace(*settings.field, tissues->grid().edgeMm);
   }
-  if (field && sources.points)
+  if (settings.field && sources.points)
   {
     pointSight.emplace(*settings.field, sources.points->grid().edgeMm);
   }
 }
 
-Beam EchoSetup::beam(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const
-{
-  return { Vec3f(origin),
-           Vec3f(rotation * line.axis),
-           Vec3f(rotation * line.lateral),
-           Vec3f(rotation * line.elevation),
-           float(settings.lateralSigmaMm),
-           float(settings.elevationalSigmaMm),
-           field ? &*field : nullptr };
-}
-
 Beam EchoSetup::sceneBeam(int l) const
 {
   const ScanLine& line = lines[std::size_t(l)];
-  return beam(line, sources.scene->localFromWorld(line.originMm), sources.scene->rotationToLocal());
+  return beams.beamOf(line, sources.scene->localFromWorld(line.originMm), sources.scene->rotationToLocal());
 }
 
 Beam EchoSetup::pointBeam(int l) const
 {
   const ScanLine& line = lines[std::size_t(l)];
-  return beam(line, line.originMm - sources.points->originMm(), Mat3d(1.0));
+  return beams.beamOf(line, line.originMm - sources.points->originMm(), Mat3d(1.0));
 }
 
 RfLines rfLayout(int lineCount, const EchoSettings& settings)

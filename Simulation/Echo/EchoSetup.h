@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Echo/BeamModel.h"
 #include "Echo/FieldLevel.h"
 #include "Echo/FieldSight.h"
 #include "Echo/FormRf.h"
@@ -29,14 +30,11 @@ struct EchoSetup
   const std::vector<ScanLine>& lines;
   const EchoSettings& settings;
   std::optional<FieldLevel> level;
+  BeamModel beams;
   LineFinisher finisher;
-  std::optional<BeamFieldView> field;
   std::optional<TissueScatterers> tissues;
   std::optional<FieldSight> tissueSight; ///< where the field matters to the tissues' bricks; nothing for a Gaussian
   std::optional<FieldSight> pointSight;
-
-private:
-  Beam beam(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
 };
 
 } // namespace sono

@@ -66,6 +66,7 @@ FieldLevel::FieldLevel(const PulseEchoField& field)
     {
       strongest = onAxis;
       focusAreaMm2_ = level_.back();
+      focusMm_ = depth_.at(d);
     }
   }
   if (!(strongest > 0.0f))

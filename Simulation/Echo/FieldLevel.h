@@ -17,6 +17,7 @@ public:
 
   /// A(z) at the focus: the depth where the weight on the axis is largest.
   double focusAreaMm2() const { return focusAreaMm2_; }
+  double focusMm() const { return focusMm_; }
   /// Root of A(z) over that of the focus, linear between the table's depths; 0 in front of the first, behind the last
   /// as there.
   double at(double depthMm) const;
@@ -24,6 +25,7 @@ public:
 private:
   FieldAxis depth_;
   double focusAreaMm2_ = 0.0;
+  double focusMm_ = 0.0;
   std::vector<double> level_; // at each depth of the table
 };
 

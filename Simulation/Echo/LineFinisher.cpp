@@ -34,6 +34,15 @@ LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* trac
       binShare_.push_back(float(position - bin));
     }
   }
+  if (traced && traced->model == InterfaceModel::Acoustic && !settings.pulse && !traced->attenuationNpPerMHz.empty())
+  {
+    const double spectrumMHz =
+      assumedSoundSpeedMmPerUs / (4.0 * pi * pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth));
+    const double spectrumMHz2 = spectrumMHz * spectrumMHz;
+    downshift_ =
+      Downshift{ float(spectrumMHz2), float(std::max(0.0, settings.centreFrequencyMHz - spectrumMHz) / spectrumMHz2),
+                 float(2.0 * sampleMm_ / assumedSoundSpeedMmPerUs) };
+  }
   for (int e = 0; traced && level && e < traced->echoCount; ++e)
   {
     boundaryLevel_.push_back(float(level->at(e * traced->echoSampleMm)));
@@ -73,6 +82,30 @@ void LineFinisher::applyIntensity(int line, LineSum& sum) const
     sum.iq[2 * s] *= intensity;
     sum.iq[2 * s + 1] *= intensity;
   }
+}
+
+bool LineFinisher::sinks(int line) const
+{
+  if (!downshift_)
+  {
+    return false;
+  }
+  const auto first = traced_->attenuationNpPerMHz.begin() + std::ptrdiff_t(line) * traced_->binCount;
+  return std::any_of(first, first + traced_->binCount, [](float b) { return b > 0.0f; });
+}
+
+/// B at each sample, as far as it lowers the frequency.
+std::vector<float> LineFinisher::exponents(int line) const
+{
+  const float* bins = traced_->attenuationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  const int step = traced_->binCount > 1 ? 1 : 0;
+  std::vector<float> result(bin_.size());
+  for (std::size_t s = 0; s < bin_.size(); ++s)
+  {
+    const float* bin = bins + bin_[s];
+    result[s] = shiftingExponent(*downshift_, bin[0] + (bin[step] - bin[0]) * binShare_[s]);
+  }
+  return result;
 }
 
 /// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
@@ -121,7 +154,35 @@ void LineFinisher::finish(int line, LineSum& sum, std::complex<float>* iq) const
     re[half + s] = a * carrierRe_[s] - b * carrierIm_[s];
     im[half + s] = a * carrierIm_[s] + b * carrierRe_[s];
   }
+  if (!sinks(line))
+  {
+    pulse_.convolve(re.data(), im.data(), samples_, iq);
+    return;
+  }
+  const std::vector<float> exponent = exponents(line);
+  std::vector<DownshiftAt> turned(exponent.size());
+  double turns = 0.0;
+  for (std::size_t s = 0; s < exponent.size(); ++s)
+  {
+    turned[s] = downshiftRotation(float(turns - std::floor(turns + 0.5)));
+    const float mean = s + 1 < exponent.size() ? 0.5f * (exponent[s] + exponent[s + 1]) : exponent[s];
+    turns += double(downshiftTurns(*downshift_, mean));
+  }
+  for (std::size_t s = 0; s < exponent.size(); ++s)
+  {
+    const float gain = downshiftGain(*downshift_, exponent[s]);
+    const float a = gain * re[half + s];
+    const float b = gain * im[half + s];
+    re[half + s] = a * turned[s].re - b * turned[s].im;
+    im[half + s] = a * turned[s].im + b * turned[s].re;
+  }
   pulse_.convolve(re.data(), im.data(), samples_, iq);
+  for (std::size_t s = 0; s < std::size_t(samples_); ++s)
+  {
+    const float a = iq[s].real();
+    const float b = iq[s].imag();
+    iq[s] = { a * turned[s].re + b * turned[s].im, b * turned[s].re - a * turned[s].im };
+  }
 }
 
 } // namespace sono

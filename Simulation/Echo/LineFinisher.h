@@ -4,15 +4,18 @@
 #include "Echo/FieldLevel.h"
 #include "Echo/FormRf.h"
 #include "Echo/Pulse.h"
+#include "Kernel/Downshift.h"
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace sono {
 
 /// Turns a line's scatterer sum into IQ: times the traced intensity, plus the traced boundary echoes (times the level
-/// of the field at their depth, where there is one), convolved with the pulse. The sum goes half a pulse deeper than
-/// the line, since what lies there still echoes into it.
+/// of the field at their depth, where there is one), convolved with the pulse, whose frequency sinks where the traced
+/// lines attenuate (not in Amadou2024, and not for a pulse from a file). The sum goes half a pulse deeper than the
+/// line, since what lies there still echoes into it.
 class LineFinisher
 {
 public:
@@ -33,6 +36,8 @@ public:
 
 private:
   void applyIntensity(int line, LineSum& sum) const;
+  bool sinks(int line) const;
+  std::vector<float> exponents(int line) const;
 
   const TracedLines* traced_;
   int samples_;
@@ -44,6 +49,7 @@ private:
   std::vector<float> carrierIm_;
   std::vector<int> bin_; // of the traced intensity before each sample, and the share of the one behind it
   std::vector<float> binShare_;
+  std::optional<Downshift> downshift_; // nothing where the frequency stays
 };
 
 } // namespace sono

@@ -17,6 +17,9 @@
 namespace sono {
 namespace {
 
+/// The automatic reference leaves it out: the skin and what the transducer's own ringing would cover.
+constexpr double nearFieldMm = 6.0;
+
 double curveGainDb(const std::vector<std::pair<double, double>>& curve, double depthMm)
 {
   if (curve.empty())
@@ -43,15 +46,17 @@ double curveGainDb(const std::vector<std::pair<double, double>>& curve, double d
 class RankSearch
 {
 public:
-  RankSearch(const std::vector<float>& envelope, const std::vector<float>& factor, int lineCount)
+  /// Of the samples from `first` on of each line.
+  RankSearch(const std::vector<float>& envelope, const std::vector<float>& factor, std::size_t first, int lineCount)
     : envelope_(envelope)
     , factor_(factor)
+    , first_(first)
     , lineCount_(lineCount)
   {
     tbb::enumerable_thread_specific<Histogram> partial([] { return Histogram(binCount, 0u); });
     forEachLine([&](const float* line) {
       auto& counts = partial.local();
-      for (std::size_t s = 0; s < factor_.size(); ++s)
+      for (std::size_t s = first_; s < factor_.size(); ++s)
       {
         ++counts[gainedBits(line[s], factor_[s]) >> lowBits];
       }
@@ -99,7 +104,7 @@ private:
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> partial;
     forEachLine([&](const float* line) {
       auto& found = partial.local();
-      for (std::size_t s = 0; s < factor_.size(); ++s)
+      for (std::size_t s = first_; s < factor_.size(); ++s)
       {
         const std::uint32_t bits = gainedBits(line[s], factor_[s]);
         if (bits >> lowBits == bin)
@@ -118,16 +123,20 @@ private:
 
   const std::vector<float>& envelope_;
   const std::vector<float>& factor_;
+  std::size_t first_;
   int lineCount_;
   Histogram histogram_ = Histogram(binCount, 0u);
 };
 
-double automaticReference(const std::vector<float>& envelope, int lineCount, const std::vector<double>& gainDb)
+double automaticReference(const std::vector<float>& envelope, int lineCount, const std::vector<double>& gainDb,
+                          double sampleMm)
 {
   std::vector<float> factor(gainDb.size());
   std::transform(gainDb.begin(), gainDb.end(), factor.begin(), gainFactor);
-  const RankSearch search(envelope, factor, lineCount);
-  const std::uint64_t count = envelope.size();
+  const auto near = std::size_t(std::min(std::ceil(nearFieldMm / sampleMm), 1e9));
+  const std::size_t first = near < factor.size() ? near : 0; // a line that ends there has nothing else
+  const RankSearch search(envelope, factor, first, lineCount);
+  const std::uint64_t count = (factor.size() - first) * std::uint64_t(lineCount);
   const float percentile = search.find(count - count / 1000); // ceil(0.999 n) without rounding
   if (percentile >= smallestNormalFloat)
   {
@@ -185,7 +194,7 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   BModeLines result{ lineCount, sampleCount, sampleMm, settings.referenceAmplitude, {} };
   if (settings.automaticReference)
   {
-    result.referenceAmplitude = automaticReference(envelope, lineCount, gainDb);
+    result.referenceAmplitude = automaticReference(envelope, lineCount, gainDb, sampleMm);
   }
 
   const double constantDb = settings.gainDb - 20.0 * std::log10(result.referenceAmplitude) + settings.dynamicRangeDb;

@@ -24,7 +24,8 @@ float gainFactor(double decibels);
 /// Time-gain compensation, log compression, reject:
 /// x = 1 + (20 log10(envelope + noise) + tgc(depth) + gain - 20 log10(reference)) / range, clamped to [0, 1], within
 /// 1e-4 dB, then grey = greyMap(x). `envelope` is lineCount x sampleCount. NaN, negative and subnormal envelopes are
-/// black, +infinity is white. The automatic reference is the envelope of rank ceil(0.999 n); where that is zero, the
+/// black, +infinity is white. The automatic reference is the envelope of rank ceil(0.999 n) among
+/// those from 6 mm on (among all, where the lines end there); where that is zero, the
 /// largest finite one; where all are zero, 1. Throws Error for settings out of range, counts below 1 and sizes that do
 /// not match.
 BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm,

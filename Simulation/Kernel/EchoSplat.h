@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Kernel/ApertureProfile.h"
+#include "Kernel/ArrayBeam.h"
 #include "Kernel/BeamField.h"
 #include "Kernel/FastMath.h"
 #include "Kernel/Vec.h"
@@ -7,6 +9,15 @@
 #include <cstdint>
 
 namespace sono {
+
+/// What the weight of a beam comes from.
+enum class BeamKind
+{
+  Gaussian, ///< the same two sigmas at each depth
+  Aperture, ///< Gaussians of an aperture
+  Field,    ///< a table of weights
+  Array     ///< a computed complex beam
+};
 
 /// A main beam in its scatterers' coordinates.
 struct Beam
@@ -17,7 +28,13 @@ struct Beam
   Vec3f elevation;
   float lateralSigmaMm; ///< of a Gaussian profile: w = exp(-(dL^2 / sL^2 + dE^2 / sE^2) / 2)
   float elevationalSigmaMm;
-  const BeamFieldView* field; ///< the profile instead of the Gaussian; null: the Gaussian
+  const BeamFieldView* field; ///< of a Field
+  BeamKind kind;
+  ApertureProfile profile;    ///< of an Aperture
+  const ArrayBeamView* array; ///< of an Array
+  float lateralCosine;        ///< of an Array: of the line's angle, from where the aperture is narrower
+  float elevationalCosine;
+  float gain; ///< of an Array
 };
 
 /// Beyond this many sigma a Gaussian beam does not see a scatterer: it would add less than exp(-16/2) of its amplitude.
@@ -79,6 +96,58 @@ SONO_HD inline ScattererSplit splitScatterer(float a, float position, const Line
   return { whole,
            { (re * g.halfTurnRe + im * g.halfTurnIm) * near, (im * g.halfTurnRe - re * g.halfTurnIm) * near,
              (re * g.halfTurnRe - im * g.halfTurnIm) * fraction, (im * g.halfTurnRe + re * g.halfTurnIm) * fraction } };
+}
+
+/// The same of a complex amplitude.
+SONO_HD inline ScattererSplit splitScatterer(const ComplexWeight& a, float position, const LineGrid& g)
+{
+  const float whole = floorf(position);
+  const float fraction = position - whole;
+  const float phase = g.radPerSample * (fraction - 0.5f);
+  const float c = cosSmall(phase);
+  const float s = sinSmall(phase);
+  const float re = a.re * c + a.im * s;
+  const float im = a.im * c - a.re * s;
+  const float near = 1.0f - fraction;
+  return { whole,
+           { (re * g.halfTurnRe + im * g.halfTurnIm) * near, (im * g.halfTurnRe - re * g.halfTurnIm) * near,
+             (re * g.halfTurnRe - im * g.halfTurnIm) * fraction, (im * g.halfTurnRe + re * g.halfTurnIm) * fraction } };
+}
+
+/// What a beam makes of a unit scatterer: its complex weight, and the depth from which it echoes.
+struct BeamEcho
+{
+  ComplexWeight weight;
+  float depthMm;
+};
+
+/// At a place of a line, depth `depthMm` >= 0, beyond the cut of its Gaussians too.
+SONO_HD inline BeamEcho beamEchoAt(const Beam& b, float lateralMm, float elevationalMm, float depthMm)
+{
+  const float l2 = lateralMm * lateralMm;
+  const float e2 = elevationalMm * elevationalMm;
+  switch (b.kind)
+  {
+    case BeamKind::Array:
+    {
+      const float rangeMm = quickSqrt(depthMm * depthMm + l2 + e2);
+      const ComplexWeight w =
+        arrayBeamWeight(*b.array, lateralMm * b.lateralCosine, elevationalMm * b.elevationalCosine, rangeMm);
+      return { { b.gain * w.re, b.gain * w.im }, rangeMm };
+    }
+    case BeamKind::Field:
+      return { { beamWeight(*b.field, lateralMm, elevationalMm, smaller(depthMm, b.field->depth.highMm)), 0.0f },
+               depthMm };
+    case BeamKind::Aperture:
+    {
+      const ProfileAt at = profileAt(b.profile, depthMm);
+      return { { at.amplitude * expNegative(-0.5f * (l2 * at.perLateral2 + e2 * at.perElevational2)), 0.0f }, depthMm };
+    }
+    default:
+      break;
+  }
+  const float squared = l2 / (b.lateralSigmaMm * b.lateralSigmaMm) + e2 / (b.elevationalSigmaMm * b.elevationalSigmaMm);
+  return { { expNegative(-0.5f * squared), 0.0f }, depthMm };
 }
 
 /// Squared distance from the axis in sigmas.

@@ -27,7 +27,7 @@ auto tied(const ArrayAperture& a)
 {
   return std::tie(a.elementCount, a.elementWidthMm, a.elementHeightMm, a.kerfMm, a.faceRadiusMm, a.transmitFocusMm,
                   a.elevationFocusMm, a.apodization, a.centreFrequencyMHz, a.fractionalBandwidth,
-                  a.attenuationDbPerCmMHz, a.soundSpeedMmPerUs);
+                  a.attenuationDbPerCmMHz, a.soundSpeedMmPerUs, a.elevationCount);
 }
 
 } // namespace
@@ -41,6 +41,7 @@ void ArrayAperture::validate() const
 {
   const auto positive = [](double v) { return v > 0.0 && v <= 1e4; };
   require("elementCount", elementCount, elementCount >= 1 && elementCount <= 4096, "1 to 4096");
+  require("elevationCount", elevationCount, elevationCount >= 1 && elevationCount <= 4096, "1 to 4096");
   require("elementWidthMm", elementWidthMm, positive(elementWidthMm), "more than 0 and at most 10^4 mm");
   require("elementHeightMm", elementHeightMm, positive(elementHeightMm), "more than 0 and at most 10^4 mm");
   require("kerfMm", kerfMm, kerfMm >= 0.0 && kerfMm <= 1e4, "0 to 10^4 mm");
@@ -60,7 +61,8 @@ void ArrayAperture::validate() const
   const double longest = 1000.0 * wavelengthMm();
   require("the aperture's width (mm)", widthMm(), widthMm() <= longest,
           "fewer or narrower elements, at most 1000 wavelengths together");
-  require("elementHeightMm", elementHeightMm, elementHeightMm <= longest, "at most 1000 wavelengths");
+  require("elementHeightMm", elementHeightMm, elevationWidthMm() <= longest,
+          "at most 1000 wavelengths, all rows together");
 }
 
 ArrayAperture apertureOf(const ProbePreset& preset)
@@ -75,6 +77,11 @@ ArrayAperture apertureOf(const ProbePreset& preset)
   aperture.centreFrequencyMHz = preset.centreFrequencyMHz;
   aperture.fractionalBandwidth = preset.fractionalBandwidth;
   const LineOrigin origin = preset.geometry.lineOrigin();
+  if (preset.geometry.isVolume())
+  {
+    aperture.elementCount = std::max(1, int(std::lround(std::sqrt(double(preset.elementCount)))));
+    aperture.elevationCount = aperture.elementCount;
+  }
   if (origin == LineOrigin::Aperture || origin == LineOrigin::ConvexFace)
   {
     const double halfFocus = 0.5 * preset.transmitFocusMm / aperture.pitchMm();

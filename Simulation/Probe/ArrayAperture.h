@@ -29,6 +29,10 @@ struct ArrayAperture
   double attenuationDbPerCmMHz = 0.0; ///< one way, >= 0; leave at 0 where traced intensities carry it already
   double soundSpeedMmPerUs = 1.54;    ///< > 0
 
+  int elevationCount = 1; ///< rows of elements across the plane, with the same kerf, 1 to 4096: those of a matrix,
+                          ///< which are focused by delays as the others; one row is focused by its lens
+
+  double elevationWidthMm() const { return elevationCount * elementHeightMm + (elevationCount - 1) * kerfMm; }
   double pitchMm() const { return elementWidthMm + kerfMm; }
   double widthMm() const { return elementCount * elementWidthMm + (elementCount - 1) * kerfMm; }
   double wavelengthMm() const { return soundSpeedMmPerUs / centreFrequencyMHz; }
@@ -39,7 +43,7 @@ struct ArrayAperture
 };
 
 /// The aperture of a preset. A phased array sends with all elements; a linear or curvilinear one with those that make
-/// the transmit focus F/2.
+/// the transmit focus F/2. A matrix has as many elements along the array as across it.
 ArrayAperture apertureOf(const ProbePreset& preset);
 
 /// A grid of 64 x 32 half-planes at 128 depths from 0 to depthMm that resolves the beam: four steps to lambda F# at the

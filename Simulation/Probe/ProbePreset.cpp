@@ -1,5 +1,5 @@
 #include "Core/Progress.h"
-#include "Probe/ScanGeometry.h"
+#include "Probe/ArrayAperture.h"
 
 #include <nlohmann/json.hpp>
 
@@ -190,6 +190,9 @@ ProbePreset readProbePreset(const std::string& path)
   preset.elevationFocusMm = reader.positive("elevationFocusMm");
   preset.transmitFocusMm = reader.positive("transmitFocusMm");
   reader.refuseOthers();
+  const ArrayAperture active = apertureOf(preset);
+  preset.apertureMm = active.widthMm();
+  preset.elevationApertureMm = active.elevationWidthMm();
   return preset;
 }
 

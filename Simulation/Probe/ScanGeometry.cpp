@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace sono {
 
@@ -140,6 +141,22 @@ void ScanGeometry::validate() const
   requireInRange(totalLineCount(), Parameter{ "lineCount x elevationLineCount", "", between(1, 65536), "" });
 }
 
+bool operator==(const BeamAperture& a, const BeamAperture& b)
+{
+  const auto tied = [](const BeamAperture& x) {
+    return std::tie(x.apertureMm, x.elevationApertureMm, x.transmitFocusMm, x.elevationFocusMm, x.elementWidthMm,
+                    x.elevationIsArray);
+  };
+  return tied(a) == tied(b);
+}
+
+BeamAperture ProbeSettings::aperture() const
+{
+  BeamAperture aperture = *this;
+  aperture.elevationIsArray = geometry.isVolume();
+  return aperture;
+}
+
 std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePose& pose)
 {
   geometry.validate();
@@ -161,6 +178,11 @@ std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePos
       line.axis = plane.lateralStep * frame.lateral + plane.axialStep * axial;
       line.lateral = plane.axialStep * frame.lateral - plane.lateralStep * axial;
       line.elevation = elevation;
+      if (geometry.lineOrigin() == LineOrigin::Apex)
+      {
+        line.steeringLateral = plane.lateralStep;
+        line.steeringElevational = plane.axialStep * std::sin(phi);
+      }
       lines.push_back(line);
     }
   }

@@ -87,6 +87,10 @@ struct ScanLine
   Vec3d axis;
   Vec3d lateral;
   Vec3d elevation;
+  /// Share of the axis along the array and across it: how far the line is steered away from the face's normal. 0 for
+  /// lines that leave the face straight.
+  double steeringLateral = 0.0;
+  double steeringElevational = 0.0;
 };
 
 /// The lines in order of increasing lateral position (a matrix: for each elevation, in increasing order), in world
@@ -115,8 +119,48 @@ Vec3d beamFromVolume(const ScanGeometry& geometry, const Vec3d& positionMm);
 /// one ends where it started. Arcs have at most 2 degrees a step. Throws as validate().
 std::vector<std::vector<Vec3d>> scanOutline(const ScanGeometry& geometry);
 
+/// The active aperture that makes the beam of a line (Data/docs/physics.md section 12.1). 0: not named.
+struct BeamAperture
+{
+  double apertureMm = 0.0;
+  double elevationApertureMm = 0.0;
+  double transmitFocusMm = 0.0;
+  double elevationFocusMm = 0.0;
+  double elementWidthMm = 0.0;
+  bool elevationIsArray = false; ///< of a matrix: focused across the plane by delays, as along it, and not by a lens
+
+  /// Whether it says how wide the beam is.
+  bool isNamed() const { return apertureMm > 0.0 && elevationApertureMm > 0.0; }
+
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor(self.apertureMm, Parameter{ "apertureMm", "Aperture (mm)", between(0, 1000),
+                                        "Width of the elements that send and receive a line, along the array, in mm, 0 "
+                                        "to 1000. 0: not known; the beam then has the same width at each depth, the "
+                                        "sigmas of the image formation." });
+    visitor(self.elevationApertureMm,
+            Parameter{ "elevationApertureMm", "Elevation Aperture (mm)", between(0, 1000),
+                       "Height of the elements, of a matrix that of all of them together, in mm, 0 to 1000. 0: not "
+                       "known, as for the aperture." });
+    visitor(self.transmitFocusMm, Parameter{ "transmitFocusMm", "Transmit Focus (mm)", between(0, 10000),
+                                             "Depth at which the transmitted beam is focused, in mm, 0 to 10,000. 0: "
+                                             "not focused." });
+    visitor(self.elevationFocusMm,
+            Parameter{ "elevationFocusMm", "Elevation Focus (mm)", between(0, 10000),
+                       "Depth at which the lens focuses across the image plane, in mm, 0 to 10,000; not for a matrix. "
+                       "0: not focused." });
+    visitor(self.elementWidthMm,
+            Parameter{ "elementWidthMm", "Element Width (mm)", between(0, 1000),
+                       "Width of one element in mm, 0 to 1000: the wider it is, the weaker are steered lines. 0: a "
+                       "point." });
+  }
+};
+
+bool operator==(const BeamAperture& a, const BeamAperture& b);
+
 /// What a probe is, wherever it stands.
-struct ProbeSettings
+struct ProbeSettings : BeamAperture
 {
   ScanGeometry geometry;
   double centreFrequencyMHz = 2.5;
@@ -127,6 +171,7 @@ struct ProbeSettings
   {
     ScanGeometry::visit(self.geometry, visitor);
     visitPulse(self, visitor);
+    BeamAperture::visit(self, visitor);
   }
   template<class Self, class Visitor>
   static void visitPulse(Self& self, Visitor&& visitor)
@@ -137,18 +182,19 @@ struct ProbeSettings
                                                  "Bandwidth of the pulse at -6 dB as a part of the centre frequency, "
                                                  "between 0 and 2, no unit." });
   }
+
+  /// The aperture, as image formation wants it.
+  BeamAperture aperture() const;
 };
 
-/// The same with the array's elements, as a preset file gives them.
+/// The same with the array's elements, as a preset file gives them; its aperture is that of the active ones (see
+/// apertureOf). A matrix has as many elements along the array as across it.
 struct ProbePreset : ProbeSettings
 {
   std::string name;
-  double elementWidthMm = 0.0;
-  double elementHeightMm = 0.0;
+  double elementHeightMm = 0.0; ///< of a matrix, too, that of one element
   double kerfMm = 0.0;
   int elementCount = 1;
-  double elevationFocusMm = 0.0;
-  double transmitFocusMm = 0.0;
 };
 
 /// Reads a preset: a JSON object with "name", "scan" ("linear", "phased_sector", "curvilinear", "matrix" or "radial")

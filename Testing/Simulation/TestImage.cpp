@@ -164,18 +164,35 @@ TEST(BMode, AutomaticReferenceIsThePercentile)
   {
     const int lineCount = 16;
     const auto envelope = rayleighEnvelope(std::size_t(lineCount) * sampleCount, 7u + sampleCount);
-    std::vector<double> gained(envelope.size());
-    for (std::size_t k = 0; k < gained.size(); ++k)
+    std::vector<double> gained;
+    for (std::size_t k = 0; k < envelope.size(); ++k)
     {
-      const double depth = (k % sampleCount) * sampleMm;
+      const int sample = int(k % std::size_t(sampleCount));
+      if (sampleCount > 120 && sample < 120) // the first 6 mm do not count, where there is more
+      {
+        continue;
+      }
+      const double depth = sample * sampleMm;
       const double curve = depth < 5.0 ? -3.0 : depth > 40.0 ? 4.0 : -3.0 + 7.0 * (depth - 5.0) / 35.0;
-      gained[k] = envelope[k] * std::pow(10.0, (0.15 * depth + curve) / 20.0);
+      gained.push_back(envelope[k] * std::pow(10.0, (0.15 * depth + curve) / 20.0));
     }
     std::sort(gained.begin(), gained.end());
     const auto rank = static_cast<std::size_t>(std::ceil(0.999 * gained.size() - 1e-9));
     const auto lines = makeBMode(envelope, lineCount, sampleCount, sampleMm, settings);
     EXPECT_NEAR(lines.referenceAmplitude / gained[rank - 1], 1.0, 1e-6) << sampleCount;
   }
+}
+
+TEST(BMode, AutomaticReferenceIsNotTheSkin)
+{
+  BModeSettings settings = plainSettings();
+  settings.automaticReference = true;
+  std::vector<float> envelope(4 * 400, 0.01f);
+  for (std::size_t line = 0; line < 4; ++line)
+  {
+    std::fill_n(envelope.begin() + std::ptrdiff_t(400 * line), 59, 1.0f); // 0.1 mm a sample: up to 5.8 mm
+  }
+  EXPECT_EQ(makeBMode(envelope, 4, 400, 0.1, settings).referenceAmplitude, 0.01f);
 }
 
 TEST(BMode, AutomaticReferenceOfNearlyNothing)

@@ -1,0 +1,94 @@
+#include "Echo/ArraySight.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+constexpr float stepMm = 1.0f;
+constexpr float faintest = 0.005f; // -46 dB
+
+} // namespace
+
+Vec2f BeamReachTable::widest(float fromMm, float toMm) const
+{
+  const int last = int(lateralMm.size()) - 1;
+  const int to = std::clamp(int(toMm / stepMm), 0, last);
+  Vec2f most(0.0f);
+  for (int n = std::clamp(int(fromMm / stepMm), 0, last); n <= to; ++n)
+  {
+    most = glm::max(most, Vec2f(lateralMm[std::size_t(n)], elevationalMm[std::size_t(n)]));
+  }
+  return most;
+}
+
+ArraySight::ArraySight(const ArrayField& field)
+  : steps_(int(std::ceil(field.depthMm() / double(stepMm))) + 1)
+{
+  const ArrayBeamView view = field.view();
+  lateral_ = envelopeOf(view.lateral, view);
+  elevational_ = envelopeOf(view.elevational, view);
+  reach_.stepMm = stepMm;
+  const auto furthest = [&](const Envelope& envelope, int step) {
+    const float* row = envelope.values.data() + std::size_t(step) * std::size_t(envelope.count);
+    const auto places = std::partition_point(row, row + envelope.count, [](float v) { return v > faintest; }) - row;
+    return float(places) / envelope.perUnit * std::max(float(step + 1) * stepMm, envelope.nearMm);
+  };
+  for (int n = 0; n < steps_; ++n)
+  {
+    reach_.lateralMm.push_back(furthest(lateral_, n));
+    reach_.elevationalMm.push_back(furthest(elevational_, n));
+  }
+}
+
+ArraySight::Envelope ArraySight::envelopeOf(const ArrayBeamAxis& axis, const ArrayBeamView& view) const
+{
+  Envelope envelope{ axis.count, axis.perUnit, axis.nearMm, {} };
+  envelope.values.assign(std::size_t(steps_) * std::size_t(axis.count), 0.0f);
+  for (int n = 0; n < view.rangeCount; ++n)
+  {
+    // A row of the table counts for the steps beside it, too: values are interpolated between rows.
+    const float rangeMm = float(n) / view.rangesPerMm;
+    const float* row = axis.values + 2 * std::size_t(n) * std::size_t(axis.count);
+    std::vector<float> further(static_cast<std::size_t>(axis.count));
+    float largest = 0.0f;
+    for (int i = axis.count - 1; i >= 0; --i)
+    {
+      largest = std::max(largest, std::hypot(row[2 * i], row[2 * i + 1]));
+      further[std::size_t(i)] = largest;
+    }
+    const int middle = int(rangeMm / stepMm);
+    for (int step = std::max(0, middle - 1); step <= std::min(steps_ - 1, middle + 1) && largest > 0.0f; ++step)
+    {
+      float* to = envelope.values.data() + std::size_t(step) * std::size_t(axis.count);
+      for (std::size_t i = 0; i < further.size(); ++i)
+      {
+        to[i] = std::max(to[i], further[i] / largest);
+      }
+    }
+  }
+  return envelope;
+}
+
+float ArraySight::Envelope::at(int step, float mm, float rangeMm) const
+{
+  const int place = int(mm * perUnit / std::max(rangeMm, nearMm));
+  return place < count ? values[std::size_t(step) * std::size_t(count) + std::size_t(place)] : 0.0f;
+}
+
+bool ArraySight::sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const
+{
+  const int last = std::clamp(int(toMm / stepMm), 0, steps_ - 1);
+  for (int step = std::clamp(int(fromMm / stepMm), 0, steps_ - 1); step <= last; ++step)
+  {
+    if (lateral_.at(step, lateralMm, toMm) * elevational_.at(step, elevationalMm, toMm) > faintest)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace sono

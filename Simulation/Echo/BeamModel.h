@@ -1,0 +1,58 @@
+#pragma once
+
+#include "Echo/BrickWalk.h"
+#include "Echo/EchoSettings.h"
+#include "Kernel/EchoSplat.h"
+#include "Trace/Trace.h"
+
+#include <optional>
+
+namespace sono {
+
+/// Of a beam at a depth, straight ahead: that of a Gaussian with the same integrals of |W| and |W|^2 along each axis.
+struct BeamWidth
+{
+  double lateralSigmaMm;
+  double elevationalSigmaMm;
+  double amplitude; ///< of the Gaussian on its axis
+};
+
+/// The beam that the settings ask for, as scatterers and surfaces are weighted by it. W is 1 for a point at the focus,
+/// on the axis of a line straight ahead; a beam of one width is in focus at each depth.
+class BeamModel
+{
+public:
+  /// `traced` may be null: Acoustic. Amadou2024 has the beam of one width. The settings must outlive this. Throws Error
+  /// when a field is zero on its whole axis.
+  BeamModel(const EchoSettings& settings, const TracedLines* traced);
+
+  BeamKind kind() const { return kind_; }
+  /// A_b, the integral of |W| across the beam at its focus: a perfect mirror there has the echo 1, a scatterer of
+  /// cross-section q has sqrt(q) lambda / A_b.
+  double focusAreaMm2() const { return focusAreaMm2_; }
+  /// At the focus, the integral of W^2.
+  double focusPowerAreaMm2() const { return focusPowerAreaMm2_; }
+  BeamWidth widthAt(double depthMm) const;
+  /// For bricks; null where the kind of beam has none.
+  const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }
+  const ArraySight* arraySight() const { return sight_ ? &*sight_ : nullptr; }
+
+  /// In coordinates that are turned by `rotation`, from `origin` there. For lookups while this lives.
+  Beam beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
+
+private:
+  void tabulateReach();
+
+  const EchoSettings& settings_;
+  BeamKind kind_;
+  ApertureProfile straight_{}; // of an Aperture
+  std::optional<BeamFieldView> field_;
+  std::optional<ArrayBeamView> array_;
+  std::optional<BeamReachTable> reach_; // of an Aperture
+  std::optional<ArraySight> sight_;     // of an Array
+  double focusMm_ = 0.0;
+  double focusAreaMm2_ = 0.0;
+  double focusPowerAreaMm2_ = 0.0;
+};
+
+} // namespace sono
