@@ -126,7 +126,7 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
 
     vtkTable* table = vtkTable::GetData(output);
     addColumn(
-      "Depth (cm)", rows, [&](int row) { return (layout.firstMm + row * layout.sampleMm) / 10.0; }, table);
+      "Depth (mm)", rows, [&](int row) { return layout.firstMm + row * layout.sampleMm; }, table);
     vtkPointData* arrays = lines->GetPointData();
     for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
     {

@@ -11,7 +11,7 @@ class vtkFieldData;
  * @brief One scan line as a table, to plot it
  *
  * Takes any image of lines (of vtkSonoImageFormation, vtkSonoRayTracer, vtkSonoBMode). The output has the column "Depth
- * (cm)" and one column for each array with one component; where there is an "Envelope", also "Envelope (dB)" relative
+ * (mm)" and one column for each array with one component; where there is an "Envelope", also "Envelope (dB)" relative
  * to the largest one of all lines, at least -200.
  *
  * Where that line lies is on output 1 flat, in the probe's own frame, mm, as the flat image of

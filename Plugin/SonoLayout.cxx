@@ -133,7 +133,7 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
   std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
   std::array<double, 3> envelopeColor{ 0.15, 0.4, 0.7 };
   vtkSMPropertyHelper(view, "ChartTitle", true).Set("");
-  vtkSMPropertyHelper(view, "BottomAxisTitle", true).Set("Depth (cm)");
+  vtkSMPropertyHelper(view, "BottomAxisTitle", true).Set("Depth (mm)");
   vtkSMPropertyHelper(view, "LeftAxisTitle", true).Set("RF");
   vtkSMPropertyHelper(view, "RightAxisTitle", true).Set("Envelope (dB)");
   for (const char* axis : { "Left", "Bottom", "Right" })
@@ -150,10 +150,10 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
   view->UpdateVTKObjects();
   vtkSMProxy* plot = controller->Show(line, 0, view);
   vtkSMPropertyHelper(plot, "UseIndexForXAxis", true).Set(0);
-  vtkSMPropertyHelper(plot, "XArrayName", true).Set("Depth (cm)");
+  vtkSMPropertyHelper(plot, "XArrayName", true).Set("Depth (mm)");
   vtkSMPropertyHelper shown(plot, "SeriesVisibility", true);
   for (const auto& [name, visible] :
-       { std::pair("Depth (cm)", 0), std::pair("RF", 1), std::pair("Envelope", 0), std::pair("Envelope (dB)", 1) })
+       { std::pair("Depth (mm)", 0), std::pair("RF", 1), std::pair("Envelope", 0), std::pair("Envelope (dB)", 1) })
   {
     shown.SetStatus(name, visible);
   }

@@ -64,11 +64,10 @@ private:
 bool sameScan(const PlaneScan& a, const PlaneScan& b)
 {
   const auto all = [](const PlaneScan& s) {
-    return std::make_tuple(s.beams.parallel, s.beams.faceRadiusMm, s.beams.centreAxialMm, s.beams.firstUnit,
-                           s.beams.linesPerUnit, s.area.lastLine, s.area.firstMm, s.area.lastMm, s.width, s.height,
-                           s.pixelMm, s.lateralMinMm, s.axialMinMm);
+    return std::make_tuple(s.area.lastLine, s.area.firstMm, s.area.lastMm, s.width, s.height, s.pixelMm, s.lateralMinMm,
+                           s.axialMinMm);
   };
-  return all(a) == all(b);
+  return a.beams == b.beams && all(a) == all(b);
 }
 
 __global__ void echoesFromSums(const EchoSum* sums, std::size_t count, float perUnit, float2* echo)

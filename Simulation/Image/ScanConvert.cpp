@@ -14,17 +14,6 @@ namespace sono {
 namespace {
 
 constexpr double maxPixels = 268435456.0; // 2^28
-constexpr double radPerDeg = 0.017453292519943295;
-
-PlaneBeams planeBeams(const ScanGeometry& geometry)
-{
-  const bool parallel = geometry.lineOrigin() == LineOrigin::Aperture || geometry.lineCount == 1;
-  const double extent = parallel ? geometry.widthMm : geometry.sectorDeg * radPerDeg;
-  const double faceRadiusMm = geometry.faceRadiusMm();
-  const int steps = geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1;
-  return { parallel, float(faceRadiusMm), float(geometry.fanCentreAxialMm()), float(-extent / 2.0),
-           float(steps / extent) };
-}
 
 /// Lines and depths of a row of pixels.
 void beamsOfRow(const PlaneBeams& beams, float axialMm, const std::vector<float>& lateralMm, float* line,
@@ -42,31 +31,6 @@ void beamsOfRow(const PlaneBeams& beams, float axialMm, const std::vector<float>
     line[i] = beams.lineOfFan(lateralMm[i], forward);
     depthMm[i] = beams.depthInFan(lateralMm[i], x);
   }
-}
-
-struct Extent
-{
-  double halfWidthMm = 0.0;
-  double axialMinMm = 0.0;
-  double axialMaxMm = 0.0;
-};
-
-/// Bounding box of the scanned area. A single line has no area: it is drawn one pixel wide.
-Extent boundingBox(const ScanGeometry& geometry)
-{
-  const PlaneBeams map = planeBeams(geometry);
-  const double inner = geometry.faceRadiusMm();
-  const double centreAxialMm = geometry.fanCentreAxialMm();
-  const double outer = inner + geometry.depthMm;
-  if (map.parallel)
-  {
-    const double halfWidth = geometry.lineCount == 1 ? 0.0 : geometry.widthMm / 2.0;
-    return { halfWidth, centreAxialMm + inner, centreAxialMm + outer };
-  }
-  const double half = geometry.sectorDeg * radPerDeg / 2.0;
-  const double widest = std::min(half, 1.5707963267948966);
-  const double backMm = half < widest + 1e-9 ? inner * std::cos(half) : outer * std::cos(half);
-  return { outer * std::sin(widest), centreAxialMm + backMm, centreAxialMm + outer };
 }
 
 void validateSizes(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm)
@@ -109,7 +73,7 @@ PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm)
     message << "pixelMm is " << pixelMm << " but must be positive and finite.";
     throw Error(message.str());
   }
-  const Extent box = boundingBox(geometry);
+  const PlaneExtent box = planeExtent(geometry);
   const auto pixelsOver = [&](double lengthMm) { return std::ceil(lengthMm / pixelMm - 1e-6) + 1.0; };
   const double width = pixelsOver(2.0 * box.halfWidthMm);
   const double height = pixelsOver(box.axialMaxMm - box.axialMinMm);

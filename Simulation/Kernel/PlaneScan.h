@@ -31,6 +31,11 @@ struct PlaneBeams
     return sqrtf(lateralMm * lateralMm + x * x) - faceRadiusMm;
   }
   SONO_HD static float notZero(float x) { return x != 0.0f ? x : 1e-20f; }
+  bool operator==(const PlaneBeams& other) const
+  {
+    return parallel == other.parallel && faceRadiusMm == other.faceRadiusMm && centreAxialMm == other.centreAxialMm &&
+           firstUnit == other.firstUnit && linesPerUnit == other.linesPerUnit;
+  }
 };
 
 /// Lines x samples with bilinear lookup; on a closed circle, the first line follows the last.

@@ -114,6 +114,11 @@ double ScanGeometry::faceRadiusMm() const
   return lineOrigin() == LineOrigin::ConvexFace || lineOrigin() == LineOrigin::Catheter ? radiusMm : 0.0;
 }
 
+double ScanGeometry::fanCentreAxialMm() const
+{
+  return lineOrigin() == LineOrigin::ConvexFace ? -radiusMm : 0.0;
+}
+
 bool ScanGeometry::uses(const Parameter& number) const
 {
   const std::string name = number.name;
@@ -214,6 +219,33 @@ Vec2f beamFromPlane(const ScanGeometry& geometry, double lateralMm, double axial
   }
   const double last = geometry.closesCircle() ? count : count - 1;
   return { float(std::clamp(line, 0.0, last)), float(std::clamp(r, 0.0, geometry.depthMm)) };
+}
+
+PlaneBeams planeBeams(const ScanGeometry& geometry)
+{
+  const bool parallel = geometry.lineOrigin() == LineOrigin::Aperture || geometry.lineCount == 1;
+  const double extent = parallel ? geometry.widthMm : geometry.sectorDeg * radiansPerDegree;
+  const double faceRadiusMm = geometry.faceRadiusMm();
+  const int steps = geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1;
+  return { parallel, float(faceRadiusMm), float(geometry.fanCentreAxialMm()), float(-extent / 2.0),
+           float(steps / extent) };
+}
+
+PlaneExtent planeExtent(const ScanGeometry& geometry)
+{
+  const PlaneBeams map = planeBeams(geometry);
+  const double inner = geometry.faceRadiusMm();
+  const double centreAxialMm = geometry.fanCentreAxialMm();
+  const double outer = inner + geometry.depthMm;
+  if (map.parallel)
+  {
+    const double halfWidth = geometry.lineCount == 1 ? 0.0 : geometry.widthMm / 2.0;
+    return { halfWidth, centreAxialMm + inner, centreAxialMm + outer };
+  }
+  const double half = geometry.sectorDeg * radiansPerDegree / 2.0;
+  const double widest = std::min(half, 1.5707963267948966);
+  const double backMm = half < widest + 1e-9 ? inner * std::cos(half) : outer * std::cos(half);
+  return { outer * std::sin(widest), centreAxialMm + backMm, centreAxialMm + outer };
 }
 
 Vec3d volumeFromBeam(const ScanGeometry& geometry, double line, double elevation, double r)

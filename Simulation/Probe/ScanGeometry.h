@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/Parameters.h"
+#include "Kernel/PlaneScan.h"
 #include "Kernel/Vec.h"
 #include "Probe/ScanKinds.h"
 
@@ -75,7 +76,7 @@ struct ScanGeometry
   /// Distance of the face from the centre that the lines of a fan come from; 0 for lines from an apex.
   double faceRadiusMm() const;
   /// Where that centre lies before the pose's position: behind a convex face.
-  double fanCentreAxialMm() const { return lineOrigin() == LineOrigin::ConvexFace ? -radiusMm : 0.0; }
+  double fanCentreAxialMm() const;
   /// Throws Error naming the parameter.
   void validate() const;
 };
@@ -108,6 +109,18 @@ std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePos
 /// The geometry must be valid.
 Vec2f planeFromBeam(const ScanGeometry& geometry, double line, double r);
 Vec2f beamFromPlane(const ScanGeometry& geometry, double lateralMm, double axialMm);
+
+/// The plane's map for the kernels: beamFromPlane in single precision.
+PlaneBeams planeBeams(const ScanGeometry& geometry);
+
+/// Bounding box of the scanned plane, symmetric about the axis. A single line has no width.
+struct PlaneExtent
+{
+  double halfWidthMm;
+  double axialMinMm;
+  double axialMaxMm;
+};
+PlaneExtent planeExtent(const ScanGeometry& geometry);
 
 /// The same in the volume that a matrix scans: (lateral, elevational, axial) mm of depth `r` on a line of an elevation,
 /// both fractional; and back, as (line, elevation, r), NaN for points outside. The geometry must be a valid matrix.

@@ -87,7 +87,7 @@ class TestStages(unittest.TestCase):
             return vtk_to_numpy(table.GetColumnByName(name))
 
         envelope = values(lines, "Envelope").reshape(12, -1)
-        np.testing.assert_allclose(column("Depth (cm)"), np.arange(envelope.shape[1]) * lines.GetSpacing()[0] / 10)
+        np.testing.assert_allclose(column("Depth (mm)"), np.arange(envelope.shape[1]) * lines.GetSpacing()[0])
         np.testing.assert_array_equal(column("Envelope"), envelope[5])
         np.testing.assert_array_equal(column("RF"), values(lines, "RF").reshape(12, -1)[5])
         expected = 20 * np.log10(np.maximum(envelope[5].astype(float) / envelope.max(), 1e-10))
