@@ -32,6 +32,7 @@ public:
   double focusAreaMm2() const { return focusAreaMm2_; }
   /// At the focus, the integral of W^2.
   double focusPowerAreaMm2() const { return focusPowerAreaMm2_; }
+  /// Of a Field or an Array it takes some thousand look-ups: ask once a depth, not once a scatterer.
   BeamWidth widthAt(double depthMm) const;
   /// For bricks; null where the kind of beam has none.
   const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }
