@@ -10,12 +10,13 @@
 
 namespace sono {
 
-/// A beam and the depth to which it is needed.
+/// A beam and the depths between which it is needed.
 struct BeamReach
 {
   Beam beam;
-  float depthMm;                     ///< <= 0: not needed at all
+  float depthMm;                     ///< <= fromMm: not needed at all
   const FieldSight* sight = nullptr; ///< of the beam's field, for bricks of this size; null when it is a Gaussian
+  float fromMm = 0.0f;
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

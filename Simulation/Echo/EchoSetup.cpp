@@ -1,6 +1,7 @@
 #include "Echo/EchoSetup.h"
 
 #include "Core/Require.h"
+#include "Core/SoundSpeed.h"
 #include "Echo/Pulse.h"
 
 #include <cmath>
@@ -88,7 +89,21 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   {
     field = settings.field->view();
   }
-  if (sources.scene)
+  const bool isAcoustic = (sources.traced ? sources.traced->model : sources.model) == InterfaceModel::Acoustic;
+  if (sources.scene && isAcoustic)
+  {
+    const BeamArea area(settings);
+    const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
+    nested.emplace(*sources.scene, settings.centreFrequencyMHz, wavelengthMm / area.focusMm2(), settings.seed);
+    const double energyMm = pulseEnergyMm(settings);
+    density.emplace(finisher.sumCount() * settings.sampleMm(),
+                    [&](double depthMm) { return area.cellMm2(depthMm) * energyMm; });
+    for (int level = density->finest(); field && level <= density->coarsest(); ++level)
+    {
+      nestedSight.emplace_back(*settings.field, nested->grid(level).edgeMm);
+    }
+  }
+  else if (sources.scene)
   {
     const double scale = scattererScale(settings, level ? level->focusAreaMm2() : gaussianAreaMm2(settings));
     tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
