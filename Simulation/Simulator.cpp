@@ -73,10 +73,11 @@ struct EchoJobFrom
   std::vector<ScanLine> lines;
   EchoSettings settings;
   std::shared_ptr<const PointScatterers> points;
+  InterfaceModel model;
 
   bool same(const EchoJobFrom& o) const
   {
-    return points == o.points && sono::same(settings, o.settings) && sono::same(lines, o.lines);
+    return points == o.points && model == o.model && sono::same(settings, o.settings) && sono::same(lines, o.lines);
   }
 };
 
@@ -288,9 +289,10 @@ TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSet
 RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResult& traced, const EchoSettings& settings,
                            const std::shared_ptr<const PointScatterers>& points, const Progress& progress)
 {
-  const EchoJobFrom from{ lines, settings, points };
+  const InterfaceModel model = traced ? traced.layout().model : InterfaceModel::Acoustic;
+  const EchoJobFrom from{ lines, settings, points, model };
   return last_->rf.get({ from, traced }, [&] {
-    EchoSources sources{ scene_.get(), nullptr, points.get() };
+    EchoSources sources{ scene_.get(), nullptr, points.get(), model };
     const bool onDevice = chooseDevice(settings.device).cuda;
     // Echoes on other samples are brought onto the RF's on the host.
     const bool takesDevices =
@@ -515,7 +517,7 @@ void Simulator::sweepOnDevice(const std::vector<ProbePose>& poses, const ImageSe
     const auto traced = imager.trace(traceJob, range);
     if (!echoJob)
     {
-      const EchoSources sources{ &scene, nullptr, nullptr };
+      const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model };
       const EchoSetup setup(sources, lines, settings.echo);
       echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Echo/PointTable.h"
+#include "Echo/ScattererDensity.h"
 #include "Kernel/BeamSight.h"
 #include "Kernel/EchoSplat.h"
 #include "Kernel/GreyLevel.h"
@@ -8,6 +9,7 @@
 #include "Kernel/PlaneScan.h"
 #include "Kernel/Scatterer.h"
 #include "Kernel/TraceView.h"
+#include "Scene/FibreField.h"
 #include "Scene/TraceRegion.h"
 #include "Trace/TargetBvh.h"
 
@@ -72,6 +74,25 @@ struct TissueJob
   std::optional<SightJob> sight;
 };
 
+/// Nested scatterers of a volume of tissues (see NestedScatterers).
+struct NestedJob
+{
+  std::vector<Beam> beams;           ///< local mm of the volume
+  SharedVector<std::uint8_t> voxels; ///< belong to the scene where it made the job, which it must outlive
+  std::uint64_t sceneId = 0;         ///< the voxels and fibres are kept on the device while it is the same
+  Vec3i size{ 0 };
+  Vec3f spacing{ 1.0f };
+  std::array<ScatteringMedium, 256> media{};
+  std::array<float, 256> fibreScale{}; ///< amplitude times exp(-(fibreScale fibre . axis)^2); 0: no fibres
+  const FibreField* fibres = nullptr;  ///< of the scene; null: none
+  std::uint64_t seed = 1;
+  DensityView density; ///< its tables are those below
+  std::vector<float> perMm3;
+  std::vector<std::uint8_t> coarseEnough;
+  std::vector<ScattererDensity::Range> ranges; ///< depths of each level, from the finest on
+  std::vector<SightJob> sights;                ///< of each level, where there is a field
+};
+
 /// Explicit scatterers, sorted by brick (see PointScatterers).
 struct PointJob
 {
@@ -101,7 +122,8 @@ struct EchoJob
   std::vector<float> pulseIm;       ///< empty where it would be zero
   std::vector<float> boundaryLevel; ///< of each sample; empty: 1
   std::optional<FieldJob> field;
-  std::optional<TissueJob> tissues;
+  std::optional<TissueJob> tissues; ///< of Amadou2024
+  std::optional<NestedJob> nested;  ///< of Acoustic
   std::optional<PointJob> points;
   std::optional<GivenTrace> given; ///< when the job does not trace; without either, intensity 1 and no boundaries
 };

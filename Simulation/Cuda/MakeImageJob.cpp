@@ -45,6 +45,39 @@ TissueJob makeTissues(const EchoSetup& setup)
   return job;
 }
 
+NestedJob makeNested(const EchoSetup& setup)
+{
+  const Scene& scene = *setup.sources.scene;
+  NestedJob job;
+  for (std::size_t l = 0; l < setup.lines.size(); ++l)
+  {
+    job.beams.push_back(setup.sceneBeam(int(l)));
+    job.beams.back().field = nullptr;
+  }
+  job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
+  job.sceneId = scene.id();
+  job.size = scene.placement().size;
+  job.spacing = Vec3f(scene.placement().spacingMm);
+  job.media = setup.nested->media();
+  job.fibreScale = setup.nested->fibreScale();
+  job.fibres = setup.nested->fibres();
+  job.seed = setup.settings.seed;
+  job.density = setup.density->view();
+  job.perMm3.assign(job.density.perMm3, job.density.perMm3 + job.density.count);
+  job.coarseEnough.assign(job.density.coarseEnough, job.density.coarseEnough + job.density.count);
+  job.density.perMm3 = nullptr;
+  job.density.coarseEnough = nullptr;
+  for (int level = job.density.finest; level <= job.density.coarsest; ++level)
+  {
+    job.ranges.push_back(setup.density->range(level));
+  }
+  for (const FieldSight& sight : setup.nestedSight)
+  {
+    job.sights.push_back(makeSight(sight));
+  }
+  return job;
+}
+
 PointJob makePoints(const EchoSetup& setup)
 {
   PointJob job;
@@ -109,6 +142,10 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   if (setup.tissues && setup.tissues->grid().highMm.x > 0.0f)
   {
     job.tissues = makeTissues(setup);
+  }
+  if (setup.nested && setup.nested->grid(0).highMm.x > 0.0f)
+  {
+    job.nested = makeNested(setup);
   }
   if (setup.sources.points && setup.sources.points->count() > 0)
   {

@@ -44,7 +44,7 @@ SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const B
     const BeamPlace p = placeOf(v, first + i, b, g);
     const float squared = squaredSigmas(p, il, ie);
     const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
-    split(seen ? v.amplitude[first + i] * expNegative(-0.5f * squared) : 0.0f, p.position, seen, g, i, out);
+    split(seen ? v.scale * v.amplitude[first + i] * expNegative(-0.5f * squared) : 0.0f, p.position, seen, g, i, out);
   }
 }
 
@@ -102,7 +102,7 @@ SONO_SIMD_CLONES void weighByField(const ScattererView v, int first, int count, 
     elevational[i] = e.share;
     depth[i] = d.share;
     position[i] = p.position;
-    weight[i] = seen ? v.amplitude[first + i] : 0.0f;
+    weight[i] = seen ? v.scale * v.amplitude[first + i] : 0.0f;
   }
   for (int i = 0; i < count; ++i)
   {
@@ -183,9 +183,8 @@ SONO_SIMD_CLONES void weighByArray(const ScattererView v, int first, int count, 
 
 } // namespace
 
-void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum)
+void splat(const ScattererView& scatterers, const Beam& beam, const LineGrid& grid, LineSum& sum)
 {
-  const LineGrid grid = makeLineGrid(sum.sampleMm, sum.radPerMm, sum.sampleCount());
   Splats splats;
   for (int first = 0; first < scatterers.count; first += chunk)
   {

@@ -18,7 +18,14 @@ struct LineSum
   int sampleCount() const { return int(iq.size() / 2); }
 };
 
-/// Adds the scatterers at depths in [0, last sample). Beyond its last depth a field stays as it is there.
-void splat(const ScattererView& scatterers, const Beam& beam, LineSum& sum);
+/// The grid of a sum's samples.
+inline LineGrid lineGrid(const LineSum& sum)
+{
+  return makeLineGrid(sum.sampleMm, sum.radPerMm, sum.sampleCount());
+}
+
+/// Adds the scatterers at depths in [0, last sample). Beyond its last depth a field stays as it is there. `grid` is
+/// that of the sum.
+void splat(const ScattererView& scatterers, const Beam& beam, const LineGrid& grid, LineSum& sum);
 
 } // namespace sono

@@ -57,7 +57,7 @@ std::vector<BeamCulling> makeBeamCulling(const std::vector<BeamReach>& group, fl
   for (std::size_t i = 0; i < group.size(); ++i)
   {
     const Beam& b = group[i].beam;
-    if (group[i].depthMm > 0.0f)
+    if (group[i].depthMm > group[i].fromMm)
     {
       beams.push_back({ group[i], i, seenRadius(group[i], edge, 0.0f, group[i].depthMm), halfExtent(b.axis, edge),
                         halfExtent(b.lateral, edge), halfExtent(b.elevation, edge), wideningOf(group[i]) });
@@ -71,7 +71,7 @@ bool sees(const BeamCulling& s, const Vec3f& centre)
   const Beam& b = s.reach.beam;
   const Vec3f q = centre - b.origin;
   const float r = glm::dot(q, b.axis);
-  if (r <= -s.axial || r >= s.reach.depthMm + s.axial)
+  if (r <= s.reach.fromMm - s.axial || r >= s.reach.depthMm + s.axial)
   {
     return false;
   }
@@ -117,8 +117,8 @@ void clipBox(const std::vector<BeamCulling>& beams, Vec3f& low, Vec3f& high)
   Vec3f seenHigh(-1e30f);
   for (const BeamCulling& s : beams)
   {
-    const Vec3f from = s.reach.beam.origin;
-    const Vec3f to = from + s.reach.beam.axis * s.reach.depthMm;
+    const Vec3f from = s.reach.beam.origin + s.reach.beam.axis * s.reach.fromMm;
+    const Vec3f to = s.reach.beam.origin + s.reach.beam.axis * s.reach.depthMm;
     seenLow = glm::min(seenLow, glm::min(from, to) - s.radius);
     seenHigh = glm::max(seenHigh, glm::max(from, to) + s.radius);
   }
@@ -133,11 +133,11 @@ Vec2f clipToSlab(const BeamReach& b, int axis, float low, float high)
   const float d = b.beam.axis[axis];
   if (std::fabs(d) < 1e-6f)
   {
-    return o < low || o > high ? Vec2f(1.0f, -1.0f) : Vec2f(0.0f, b.depthMm);
+    return o < low || o > high ? Vec2f(1.0f, -1.0f) : Vec2f(b.fromMm, b.depthMm);
   }
   const float t0 = (low - o) / d;
   const float t1 = (high - o) / d;
-  return { std::max(0.0f, std::min(t0, t1)), std::min(b.depthMm, std::max(t0, t1)) };
+  return { std::max(b.fromMm, std::min(t0, t1)), std::min(b.depthMm, std::max(t0, t1)) };
 }
 
 } // namespace

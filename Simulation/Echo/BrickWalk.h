@@ -15,10 +15,11 @@ namespace sono {
 struct BeamReach
 {
   Beam beam;
-  float depthMm;                         ///< <= 0: not needed at all
+  float depthMm;                         ///< <= fromMm: not needed at all
   const FieldSight* sight = nullptr;     ///< of the beam's field, for bricks of this size; null when it is a Gaussian
   const BeamReachTable* table = nullptr; ///< of the beam's aperture or array; null when it has none
   const ArraySight* array = nullptr;     ///< of the beam's array; null when it has none
+  float fromMm = 0.0f;
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

@@ -34,6 +34,8 @@ struct EchoSettings
   /// The pulse instead of the Gaussian, demodulated with the centre frequency and scaled to an envelope of peak 1; the
   /// fractional bandwidth is then not used. Null: the Gaussian.
   std::shared_ptr<const SampledPulse> pulse;
+  /// The next two belong to Amadou2024; Acoustic takes levels and densities from the tissues' backscatter coefficients
+  /// and the resolution cell (see NestedScatterers, ScattererDensity).
   double scattererCellMm = 0.5; ///< edge h of the scatterer cells; density is mu1 / h^3. Below half a wavelength cells
                                 ///< are too regular for equal scatterers: their level falls
   double scattererLevelDb = -30.0; ///< rms echo of a tissue with mu1 = 1, mu0 = 1 against a perfect reflector across
@@ -56,10 +58,11 @@ struct EchoSettings
     visitor(self.scattererLevelDb,
             Parameter{ "scattererLevelDb", "Scatterer Level (dB)", between(-200, 200),
                        "RMS echo of a tissue full of scatterers against a perfect plane reflector in dB, -200 to "
-                       "200." });
+                       "200. For the model Amadou 2024 alone: Acoustic takes the tissues' backscatter coefficients." });
     visitor(self.scattererCellMm, Parameter{ "scattererCellMm", "Scatterer Cell (mm)", between(0.05, 10),
                                              "Edge h of the cells that hold one scatterer each in mm, 0.05 to 10; "
-                                             "their density is mu1 / h^3." });
+                                             "their density is mu1 / h^3. For the model Amadou 2024 alone: in "
+                                             "Acoustic the density follows the beam." });
     visitor(self.device, deviceParameter());
     visitor(self.seed,
             Parameter{ "scattererSeed", "Scatterer Seed", atLeast(0),

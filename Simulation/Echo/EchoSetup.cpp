@@ -79,7 +79,22 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   , beams(settings, sources.traced)
   , finisher(settings, sources.traced, level ? &*level : nullptr)
 {
-  if (sources.scene)
+  const bool isAcoustic = (sources.traced ? sources.traced->model : sources.model) == InterfaceModel::Acoustic;
+  if (sources.scene && isAcoustic)
+  {
+    const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
+    nested.emplace(*sources.scene, settings.centreFrequencyMHz, wavelengthMm / beams.focusAreaMm2(), settings.seed);
+    const double energyMm = pulseEnergyMm(settings);
+    density.emplace(finisher.sumCount() * settings.sampleMm(), [&](double depthMm) {
+      const BeamWidth width = beams.widthAt(depthMm);
+      return pi * width.lateralSigmaMm * width.elevationalSigmaMm * energyMm;
+    });
+    for (int level = density->finest(); settings.field && level <= density->coarsest(); ++level)
+    {
+      nestedSight.emplace_back(*settings.field, nested->grid(level).edgeMm);
+    }
+  }
+  else if (sources.scene)
   {
     const double scale = scattererScale(settings, beams.focusPowerAreaMm2());
     tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);

@@ -5,6 +5,8 @@
 #include "Echo/FieldSight.h"
 #include "Echo/FormRf.h"
 #include "Echo/LineFinisher.h"
+#include "Echo/NestedScatterers.h"
+#include "Echo/ScattererDensity.h"
 #include "Echo/TissueScatterers.h"
 
 #include <optional>
@@ -32,8 +34,12 @@ struct EchoSetup
   std::optional<FieldLevel> level;
   BeamModel beams;
   LineFinisher finisher;
-  std::optional<TissueScatterers> tissues;
-  std::optional<FieldSight> tissueSight; ///< where the field matters to the tissues' bricks; nothing for a Gaussian
+  std::optional<TissueScatterers> tissues; ///< of Amadou2024
+  std::optional<FieldSight> tissueSight;   ///< where the field matters to the tissues' bricks; nothing for a Gaussian
+  /// Of Acoustic: scatterers, how dense they are over depth, and where the field matters to bricks of each level.
+  std::optional<NestedScatterers> nested;
+  std::optional<ScattererDensity> density;
+  std::vector<FieldSight> nestedSight; ///< from the density's finest level on; empty for a Gaussian
   std::optional<FieldSight> pointSight;
 };
 

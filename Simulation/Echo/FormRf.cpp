@@ -16,23 +16,90 @@ constexpr int groupLines = 8; // neighbouring lines that share the generated bri
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
 {
+  const LineGrid grid = lineGrid(sums.front());
   TissueScatterers::Buffer buffer;
   forSeenBricks(tissues.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
     const ScattererView scatterers = tissues.generate(brick, buffer);
     for (const std::size_t i : seeing)
     {
-      splat(scatterers, beams[i].beam, sums[i]);
+      splat(scatterers, beams[i].beam, grid, sums[i]);
     }
   });
 }
 
+/// The modulus of a beam's weight at a place, relative to that on its axis.
+float relativeWeight(const Beam& b, const Vec3f& fromOrigin, float depthMm)
+{
+  const auto modulus = [&](float lateralMm, float elevationalMm) {
+    const ComplexWeight w = beamEchoAt(b, lateralMm, elevationalMm, std::max(depthMm, 0.0f)).weight;
+    return std::sqrt(w.re * w.re + w.im * w.im);
+  };
+  const float onAxis = modulus(0.0f, 0.0f);
+  const float here = modulus(glm::dot(fromOrigin, b.lateral), glm::dot(fromOrigin, b.elevation));
+  return here < onAxis ? here / onAxis : 1.0f;
+}
+
+/// Bricks of each level, each line those that it takes.
+void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+{
+  struct Taken
+  {
+    std::size_t beam;
+    int ranks;
+  };
+  const NestedScatterers& nested = *setup.nested;
+  const DensityView density = setup.density->view();
+  const LineGrid grid = lineGrid(sums.front());
+  NestedScatterers::Buffer buffer;
+  std::vector<Taken> taken;
+  std::vector<BeamReach> reaching;
+  for (int level = density.finest; level <= density.coarsest; ++level)
+  {
+    const ScattererDensity::Range range = setup.density->range(level);
+    reaching = beams;
+    for (BeamReach& beam : reaching)
+    {
+      beam.fromMm = range.fromMm;
+      beam.depthMm = std::min(beam.depthMm, range.toMm);
+      beam.sight = setup.nestedSight.empty() ? nullptr : &setup.nestedSight[std::size_t(level - density.finest)];
+    }
+    forSeenBricks(nested.grid(level), reaching, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+      const Vec3f centre = nestedBrickCentre(brick, level);
+      const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, level + 1);
+      int most = 0;
+      taken.clear();
+      for (const std::size_t i : seeing)
+      {
+        const Beam& b = beams[i].beam;
+        const float depthMm = glm::dot(centre - b.origin, b.axis);
+        if (density.takes(level, depthMm, glm::dot(parent - b.origin, b.axis)))
+        {
+          taken.push_back({ i, density.ranks(level, depthMm, relativeWeight(b, centre - b.origin, depthMm)) });
+          most = std::max(most, taken.back().ranks);
+        }
+      }
+      if (taken.empty())
+      {
+        return;
+      }
+      nested.generate(level, brick, most, buffer);
+      for (const Taken& t : taken)
+      {
+        const Beam& b = beams[t.beam].beam;
+        splat(NestedScatterers::seen(buffer, level, t.ranks, b.axis), b, grid, sums[t.beam]);
+      }
+    });
+  }
+}
+
 void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
 {
+  const LineGrid grid = lineGrid(sums.front());
   forSeenBricks(points.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
     const ScattererView scatterers = points.brick(brick);
     for (const std::size_t i : seeing)
     {
-      splat(scatterers, beams[i].beam, sums[i]);
+      splat(scatterers, beams[i].beam, grid, sums[i]);
     }
   });
 }
@@ -92,6 +159,10 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     if (setup.tissues)
     {
       addTissues(*setup.tissues, beams([&](int l) { return setup.sceneBeam(l); }, setup.tissueSight), sums);
+    }
+    if (setup.nested)
+    {
+      addNested(setup, beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), sums);
     }
     if (sources.points)
     {

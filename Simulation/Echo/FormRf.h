@@ -14,7 +14,9 @@
 // them, and bricks that neighbouring lines see are generated once for a group of them.
 //
 //   scatterers of the tissues            explicit scatterers
-//   TissueScatterers (4^3 cells)         PointScatterers (sorted once)
+//   NestedScatterers (4^3 cells,         PointScatterers (sorted once)
+//   density follows the beam's cell;
+//   Amadou2024: TissueScatterers)
 //           \                                  /
 //            bricks that a beam sees: forSeenBricks; with a field, FieldSight culls those that do not matter
 //                              |
@@ -54,7 +56,8 @@ struct EchoSources
 {
   const Scene* scene = nullptr;        ///< procedural, world-locked scatterers of its tissues
   const TracedLines* traced = nullptr; ///< intensity and boundary echoes; null: intensity 1 everywhere, no boundaries
-  const PointScatterers* points = nullptr; ///< explicit scatterers; their amplitudes are not scaled by scattererLevelDb
+  const PointScatterers* points = nullptr;         ///< explicit scatterers; their amplitudes are what they echo
+  InterfaceModel model = InterfaceModel::Acoustic; ///< of lines that are traced elsewhere; `traced` has its own
 };
 
 /// COLE on the analytic signal (Data/docs/physics.md section 4; Gao 2009, Storve 2017): scatterers weighted by the beam

@@ -10,6 +10,7 @@ struct ScattererView
   const float* z = nullptr;
   const float* amplitude = nullptr;
   int count = 0;
+  float scale = 1.0f; ///< of all amplitudes
 };
 
 } // namespace sono

@@ -19,7 +19,7 @@ struct Tissue
   double gamma = 0.0;                 ///< exponent of cos(theta) in a boundary echo, in [-2, 2]; 0 is neutral
   double roughnessMm = 0.1;           ///< rms height of its surface, in [0, 10]; of two tissues the rougher counts
   double correlationMm = 1.0;         ///< correlation length of that height, in [0.01, 100]
-  double backscatterPerCmSr = 1e-4;   ///< b1 of mu_b = b1 (f / MHz)^n, in [0, 1]; 1/(cm sr)
+  double backscatterPerCmSr = 1e-4;   ///< b1 of mu_b = b1 (f / MHz)^n, across its fibres, in [0, 1]; 1/(cm sr)
   double backscatterExponent = 1.4;   ///< n, in [0, 6]
   double fibreAnisotropyDb = 0.0;     ///< how much stronger across its fibres than along them, in [0, 60]
   std::string source;                 ///< where the numbers come from

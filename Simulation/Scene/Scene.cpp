@@ -266,6 +266,25 @@ void Scene::adopt(LabelGrid labels, std::vector<SurfaceField> surfaces)
   }
 }
 
+const FibreField* Scene::fibres() const
+{
+  std::vector<bool> isMuscle(256, false);
+  std::vector<bool> isBlood(256, false);
+  for (std::size_t t = 0; t < tissues_.size(); ++t)
+  {
+    isMuscle[t] = tissues_[t].fibreAnisotropyDb > 0.0;
+    isBlood[t] = tissues_[t].name == "blood";
+  }
+  if (std::find(isMuscle.begin(), isMuscle.end(), true) == isMuscle.end())
+  {
+    return nullptr;
+  }
+  return findOrMake(
+    &fibres_, [&] { return fibres_.get(); },
+    [&] { return std::make_unique<FibreField>(buildFibreField(volume_, tissueVoxels_, isMuscle, isBlood)); },
+    [&](std::unique_ptr<FibreField> made) { fibres_ = std::move(made); });
+}
+
 VoxelBox Scene::clipped(const VoxelBox& box) const
 {
   const VoxelBox inside{ glm::max(box.first, Vec3i(0)), glm::min(box.last, placement().size) };

@@ -3,6 +3,7 @@
 #include "Core/Progress.h"
 #include "Labels/LabelVolume.h"
 #include "Labels/TissueTable.h"
+#include "Scene/FibreField.h"
 #include "Scene/RegionOnDemand.h"
 #include "Scene/SurfaceField.h"
 #include "Scene/VoxelBox.h"
@@ -61,6 +62,10 @@ public:
   /// occur is dropped.
   void adopt(LabelGrid labels, std::vector<SurfaceField> surfaces);
 
+  /// The fibres of the tissues that have a fibreAnisotropyDb, built on first need; null where none has. Blood is the
+  /// tissue of that name.
+  const FibreField* fibres() const;
+
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
 
@@ -99,6 +104,7 @@ private:
   mutable std::unique_ptr<LabelGrid> labelGrid_;
   mutable std::unique_ptr<std::vector<VoxelBox>> boxes_;        // parallel to volume_.labels
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
+  mutable std::unique_ptr<FibreField> fibres_;
   mutable SharedRegion region_;
   mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest
 };

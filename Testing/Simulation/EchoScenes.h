@@ -50,6 +50,19 @@ inline std::vector<std::complex<double>> directIq(
   return iq;
 }
 
+/// Lines that the whole intensity reaches, as if this model had traced them.
+inline TracedLines fullyLit(std::size_t lineCount, const EchoSettings& s, InterfaceModel model)
+{
+  TracedLines traced;
+  traced.model = model;
+  traced.lineCount = int(lineCount);
+  traced.binCount = 1;
+  traced.binMm = s.depthMm;
+  traced.intensity.assign(lineCount, 1.0f);
+  traced.standardError.assign(lineCount, 0.0f);
+  return traced;
+}
+
 /// Root of the summed squared errors over the root of the summed squared reference.
 inline double nrmse(const std::complex<float>* got, const std::vector<std::complex<double>>& reference)
 {

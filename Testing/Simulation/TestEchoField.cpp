@@ -132,7 +132,8 @@ TEST(EchoField, HoldsTheStatedLevelAtItsFocus)
   s.depthMm = 90.0;
   s.field = phasedField(s.depthMm);
   const auto lines = parallelLines(24, { 45.0, 30.0, 0.5 }, 3.0);
-  const RfLines rf = formRf({ scene.get(), nullptr, nullptr }, lines, s);
+  const TracedLines traced = fullyLit(lines.size(), s, InterfaceModel::Amadou2024);
+  const RfLines rf = formRf({ scene.get(), &traced, nullptr }, lines, s);
   // The focus: where the table's weight on the axis is largest.
   const FieldGrid& grid = s.field->grid();
   const std::size_t plane = std::size_t(grid.lateral.count) * std::size_t(grid.elevational.count);

@@ -1,4 +1,5 @@
 #include "Core/SoundSpeed.h"
+#include "EchoScenes.h"
 #include "ErrorText.h"
 #include "FieldScenes.h"
 
@@ -139,7 +140,8 @@ TEST(EchoPulse, LeavesTheLevelOfTissueWhereItWas)
   s.depthMm = 75.0;
   const auto lines = parallelLines(8, { 6.0, 10.0, 0.5 }, 2.5);
   s.pulse = ChirpedPulse{}.sampled(17.0);
-  const RfLines rf = formRf({ scene.get(), nullptr, nullptr }, lines, s);
+  const TracedLines traced = fullyLit(lines.size(), s, InterfaceModel::Amadou2024);
+  const RfLines rf = formRf({ scene.get(), &traced, nullptr }, lines, s);
   double squares = 0.0;
   for (const std::complex<float> v : rf.iq)
   {

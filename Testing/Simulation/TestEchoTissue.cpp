@@ -103,9 +103,11 @@ double largest(const RfLines& rf)
   return out;
 }
 
+/// Amadou2024's scatterers: one density, and the level of the settings.
 RfLines formTissue(const Scene& scene, const std::vector<ScanLine>& lines, const EchoSettings& s)
 {
-  return formRf({ &scene, nullptr, nullptr }, lines, s);
+  const TracedLines traced = fullyLit(lines.size(), s, InterfaceModel::Amadou2024);
+  return formRf({ &scene, &traced, nullptr }, lines, s);
 }
 
 TEST(EchoTissue, AgreesWithTheDirectSumOverItsCells)
@@ -135,7 +137,8 @@ TEST(EchoTissue, ExplicitScatterersAddToIt)
   const std::vector<ScanLine> lines{ makeLine({ 20.0, 20.0, 0.0 }, { 0, 0, 1 }) };
   const EchoSettings s = tissueSettings();
   const PointScatterers points({ { { 20.3, 19.9, 25.0 }, 0.7f }, { { 19.0, 20.0, 5.0 }, -0.2f } });
-  const RfLines both = formRf({ scene.get(), nullptr, &points }, lines, s);
+  const TracedLines traced = fullyLit(lines.size(), s, InterfaceModel::Amadou2024);
+  const RfLines both = formRf({ scene.get(), &traced, &points }, lines, s);
   const RfLines tissue = formTissue(*scene, lines, s);
   const RfLines alone = formRf({ nullptr, nullptr, &points }, lines, s);
   for (std::size_t i = 0; i < both.iq.size(); ++i)

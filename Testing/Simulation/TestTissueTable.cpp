@@ -130,7 +130,7 @@ TEST(TissueTable, BundledValuesAreSane)
   }
   const auto ofPhantom = [](const Tissue& tissue) { return tissue.name.rfind("phantom_", 0) == 0; };
   EXPECT_EQ(std::count_if(table.tissues().begin(), table.tissues().end(), ofPhantom), 10);
-  EXPECT_EQ(table.tissues().size(), 32u);
+  EXPECT_EQ(table.tissues().size(), 36u);
   // Textbook reflections at normal incidence.
   EXPECT_NEAR(reflection(table.find("liver"), table.find("cortical_bone")), 0.651, 0.0005);
   EXPECT_NEAR(reflection(table.find("fat"), table.find("liver")), 0.089, 0.0005);

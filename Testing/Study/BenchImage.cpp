@@ -101,7 +101,8 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
 std::vector<std::complex<double>> rfInDouble(const BenchScene& bench, const BenchImage& image,
                                              const std::vector<std::complex<double>>& echo)
 {
-  const EchoSources sources{ bench.scene.get(), nullptr, nullptr };
+  // The reference in double precision knows the cells of Amadou2024.
+  const EchoSources sources{ bench.scene.get(), nullptr, nullptr, InterfaceModel::Amadou2024 };
   const EchoSetup setup(sources, bench.lines, bench.echo);
   const Scene& scene = *bench.scene;
   DoubleEchoInput input{};

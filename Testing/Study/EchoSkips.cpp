@@ -96,7 +96,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
       }
       for (const std::size_t i : seeing)
       {
-        splat(scatterers, beams[i].beam, sums[i]);
+        splat(scatterers, beams[i].beam, lineGrid(sums[i]), sums[i]);
       }
     };
     if (skips.unseenBricks)
@@ -118,7 +118,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
 
 double scattererCount(const BenchScene& bench)
 {
-  const EchoSources sources{ bench.scene.get(), nullptr, nullptr };
+  const EchoSources sources{ bench.scene.get(), nullptr, nullptr, InterfaceModel::Amadou2024 };
   const EchoSetup setup(sources, bench.lines, bench.echo);
   TissueScatterers::Buffer buffer;
   double count = 0.0;

@@ -1,0 +1,198 @@
+#include "Echo/NestedScatterers.h"
+
+#include "Core/Simd.h"
+#include "Kernel/FastMath.h"
+
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+constexpr int cells = NestedScatterers::cellCount;
+constexpr std::uint8_t nowhere = 255;           // never a tissue: a scene has at most 255, from 0
+constexpr double npPerDb = 0.11512925464970229; // ln(10) / 20
+
+/// The candidates of a brick's cells by rank, with the voxel in which each lies.
+struct Candidates
+{
+  float x[cells], y[cells], z[cells];
+  std::int32_t i[cells], j[cells], k[cells]; // cell, then voxel
+  float presence[cells], deviate[cells], sign[cells];
+  float mean[cells], sigma[cells], probability[cells];
+  float amplitude[cells];
+};
+
+/// Slot n holds rank n / 8 of parent n % 8: the bricks' cells are the children of 2^3 cells of the next level.
+SONO_SIMD_CLONES void draw(std::uint64_t seed, int level, const Vec3i brick, int count, const Vec3f perMm,
+                           Candidates& c)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    const Vec3i parent = nestedChild(brick, std::uint32_t(n & 7));
+    const Vec3i cell = nestedChild(parent, childOfRank(nestedHash(seed, parent, level + 1), std::uint32_t(n >> 3)));
+    c.i[n] = cell.x;
+    c.j[n] = cell.y;
+    c.k[n] = cell.z;
+  }
+  for (int l = level; l > 0; --l)
+  {
+    for (int n = 0; n < count; ++n)
+    {
+      const Vec3i cell(c.i[n], c.j[n], c.k[n]);
+      const Vec3i child = nestedChild(cell, chosenChild(nestedHash(seed, cell, l)));
+      c.i[n] = child.x;
+      c.j[n] = child.y;
+      c.k[n] = child.z;
+    }
+  }
+  for (int n = 0; n < count; ++n)
+  {
+    const NestedCandidate candidate = nestedCandidate(seed, { c.i[n], c.j[n], c.k[n] });
+    c.x[n] = candidate.positionMm.x;
+    c.y[n] = candidate.positionMm.y;
+    c.z[n] = candidate.positionMm.z;
+    c.i[n] = std::int32_t(std::floor(c.x[n] * perMm.x));
+    c.j[n] = std::int32_t(std::floor(c.y[n] * perMm.y));
+    c.k[n] = std::int32_t(std::floor(c.z[n] * perMm.z));
+    c.presence[n] = candidate.presence;
+    c.deviate[n] = candidate.deviate;
+    c.sign[n] = candidate.sign;
+  }
+}
+
+SONO_SIMD_CLONES void decide(int count, Candidates& c)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    c.amplitude[n] =
+      c.sign[n] * scattererAmplitude({ c.mean[n], c.sigma[n], c.probability[n] }, c.presence[n], c.deviate[n]);
+  }
+}
+
+/// B(t) = B_par + anisotropy sin^2 t (Data/docs/physics.md eq. 11.4); the amplitudes are those across the fibres.
+SONO_SIMD_CLONES void seeAlong(const Vec3f axis, const float* fx, const float* fy, const float* fz,
+                               const float* amplitude, int count, float* along)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    const float cosine = fx[n] * axis.x + fy[n] * axis.y + fz[n] * axis.z; // times the root of the anisotropy
+    along[n] = amplitude[n] * expNegative(-cosine * cosine);
+  }
+}
+
+ScatteringMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitudePerRoot)
+{
+  const double rms = std::hypot(tissue.scattererMean, tissue.scattererSigma);
+  if (!(rms > 0.0) || !(tissue.scattererProbability > 0.0))
+  {
+    return {};
+  }
+  const double scale =
+    amplitudePerRoot * std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / tissue.scattererProbability) / rms;
+  return { float(scale * tissue.scattererMean), float(scale * tissue.scattererSigma),
+           float(tissue.scattererProbability) };
+}
+
+} // namespace
+
+double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz)
+{
+  return 0.1 * tissue.backscatterPerCmSr * std::pow(frequencyMHz, tissue.backscatterExponent);
+}
+
+NestedScatterers::NestedScatterers(const Scene& scene, double frequencyMHz, double amplitudePerRoot, std::uint64_t seed)
+  : scene_(scene)
+  , seed_(seed)
+{
+  bool anisotropic = false;
+  for (std::size_t t = 0; t < scene.tissues().size(); ++t)
+  {
+    const Tissue& tissue = scene.tissues()[t];
+    media_[t] = mediumOf(tissue, frequencyMHz, amplitudePerRoot);
+    const bool echoes = media_[t].mean != 0.0f || media_[t].sigma != 0.0f;
+    fibreScale_[t] = echoes ? float(std::sqrt(npPerDb * tissue.fibreAnisotropyDb)) : 0.0f;
+    any_ |= echoes;
+    anisotropic |= fibreScale_[t] > 0.0f;
+  }
+  fibres_ = anisotropic ? scene.fibres() : nullptr;
+}
+
+BrickGrid NestedScatterers::grid(int level) const
+{
+  BrickGrid grid;
+  grid.edgeMm = nestedCellMm(level) * float(nestedBrickCells);
+  if (any_)
+  {
+    grid.highMm = Vec3f(scene_.placement().size) * Vec3f(scene_.placement().spacingMm);
+  }
+  return grid;
+}
+
+void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer& buffer) const
+{
+  const Vec3i size = scene_.placement().size;
+  const std::uint8_t* tissues = scene_.tissueVoxels().data();
+  const int candidates = 8 * ranks;
+  std::uint8_t tissue[cells];
+  Candidates c;
+  draw(seed_, level, brick, candidates, 1.0f / Vec3f(scene_.placement().spacingMm), c);
+  bool hasFibres = false;
+  for (int n = 0; n < candidates; ++n)
+  {
+    const Vec3i voxel(c.i[n], c.j[n], c.k[n]);
+    const bool inside = glm::all(glm::greaterThanEqual(voxel, Vec3i(0))) && glm::all(glm::lessThan(voxel, size));
+    const std::size_t at =
+      std::size_t(voxel.x) + std::size_t(size.x) * (std::size_t(voxel.y) + std::size_t(size.y) * std::size_t(voxel.z));
+    tissue[n] = inside ? tissues[at] : nowhere;
+    const ScatteringMedium& medium = media_[tissue[n]];
+    c.mean[n] = medium.mean;
+    c.sigma[n] = medium.sigma;
+    c.probability[n] = medium.probability;
+    hasFibres |= fibreScale_[tissue[n]] > 0.0f;
+  }
+  decide(candidates, c);
+  buffer.hasFibres = hasFibres && fibres_;
+  int count = 0;
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    buffer.end[std::size_t(rank)] = count;
+    for (int n = 8 * rank; n < 8 * rank + 8; ++n)
+    {
+      // Written first and counted afterwards: without a branch, which would often be mispredicted.
+      const std::size_t to = std::size_t(count);
+      buffer.x[to] = c.x[n];
+      buffer.y[to] = c.y[n];
+      buffer.z[to] = c.z[n];
+      buffer.amplitude[to] = c.amplitude[n];
+      if (buffer.hasFibres)
+      {
+        const Vec3f fibre = fibres_->at({ c.i[n], c.j[n], c.k[n] }) * fibreScale_[tissue[n]];
+        buffer.fibreX[to] = fibre.x;
+        buffer.fibreY[to] = fibre.y;
+        buffer.fibreZ[to] = fibre.z;
+      }
+      count += c.amplitude[n] != 0.0f;
+    }
+  }
+  for (int rank = ranks; rank <= 8; ++rank)
+  {
+    buffer.end[std::size_t(rank)] = count;
+  }
+}
+
+ScattererView NestedScatterers::seen(Buffer& buffer, int level, int ranks, const Vec3f& axis)
+{
+  const int count = buffer.end[std::size_t(ranks)];
+  const float* amplitude = buffer.amplitude.data();
+  if (buffer.hasFibres)
+  {
+    seeAlong(axis, buffer.fibreX.data(), buffer.fibreY.data(), buffer.fibreZ.data(), amplitude, count,
+             buffer.along.data());
+    amplitude = buffer.along.data();
+  }
+  return { buffer.x.data(), buffer.y.data(), buffer.z.data(),
+           amplitude,       count,           DensityView::amplitudeScale(level, ranks) };
+}
+
+} // namespace sono

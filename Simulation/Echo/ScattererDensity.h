@@ -1,0 +1,45 @@
+#pragma once
+
+#include "Kernel/NestedCells.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace sono {
+
+/// Candidates in a resolution cell: 12 scatterers where a tissue's cells hold one with probability 1/2, 17 in soft
+/// tissue (7/10), which keeps the envelope's SNR within 0.02 of Rayleigh's for normal amplitudes (Data/docs/physics.md
+/// eq. 11.3).
+constexpr double candidatesPerCell = 24.0;
+
+/// How many candidates a line needs at each depth, and which bricks give them. What a line costs then does not depend
+/// on beam, pulse or frequency: it is proportional to the number of resolution cells along it.
+class ScattererDensity
+{
+public:
+  /// `cellMm3` is the volume of the resolution cell at a depth, asked for from 0 to `depthMm`.
+  ScattererDensity(double depthMm, const std::function<double(double)>& cellMm3);
+
+  /// For lookups while this lives.
+  DensityView view() const;
+  int finest() const { return finest_; }
+  int coarsest() const { return coarsest_; }
+  /// Depths between which a line may take bricks of a level (their scatterers lie there); empty when from >= to.
+  struct Range
+  {
+    float fromMm;
+    float toMm;
+  };
+  Range range(int level) const;
+
+private:
+  double stepMm_;
+  std::vector<float> perMm3_;
+  std::vector<std::uint8_t> level_; // the coarsest that is dense enough at each depth
+  std::vector<std::uint8_t> coarseEnough_;
+  int finest_ = 0;
+  int coarsest_ = 0;
+};
+
+} // namespace sono

@@ -1,0 +1,149 @@
+#pragma once
+
+#include "Kernel/NormalDeviate.h"
+#include "Kernel/Rng.h"
+#include "Kernel/Vec.h"
+
+#include <cmath>
+#include <cstdint>
+
+// Scatterers whose density follows the resolution cell (Data/docs/physics.md section 4.7). A cell of level a has the
+// edge 2^a / 32 mm and holds one candidate: that of one of its eight children, chosen by a hash. So the candidates of a
+// coarser level are an eighth of the finer one's, the same wherever the probe stands and whatever it is; and since the
+// eight children have an order, any number of eighths can be had.
+
+namespace sono {
+
+constexpr float nestedFinestMm = 1.0f / 32.0f; ///< edge of a cell of level 0
+constexpr int nestedLevels = 8;                ///< up to cells of 4 mm
+constexpr float nestedFullWeight = 9.0f;       ///< 1 / the weight from which on all candidates count (2.1 sigma)
+constexpr int nestedBrickCells = 4;            ///< cells along an edge of a brick, on every level
+
+SONO_HD inline float nestedCellMm(int level)
+{
+  return nestedFinestMm * float(1u << level);
+}
+
+/// A hash of a cell and its level: PCG3D (Jarzynski and Olano 2020, "Hash functions for GPU rendering").
+SONO_HD inline std::uint32_t nestedHash(std::uint64_t seed, const Vec3i& cell, int level)
+{
+  std::uint32_t x = (std::uint32_t(cell.x) + std::uint32_t(seed)) * 1664525u + 1013904223u;
+  std::uint32_t y = (std::uint32_t(cell.y) + std::uint32_t(seed >> 32)) * 1664525u + 1013904223u;
+  std::uint32_t z = (std::uint32_t(cell.z) + 0x9e3779b9u * std::uint32_t(level)) * 1664525u + 1013904223u;
+  x += y * z;
+  y += z * x;
+  z += x * y;
+  x ^= x >> 16;
+  y ^= y >> 16;
+  z ^= z >> 16;
+  x += y * z;
+  y += z * x;
+  z += x * y;
+  return z;
+}
+
+/// Child 0 to 7 of a cell, bit 0 along x.
+SONO_HD inline Vec3i nestedChild(const Vec3i& cell, std::uint32_t child)
+{
+  return { 2 * cell.x + int(child & 1u), 2 * cell.y + int((child >> 1) & 1u), 2 * cell.z + int((child >> 2) & 1u) };
+}
+
+/// The child whose candidate is the cell's own.
+SONO_HD inline std::uint32_t chosenChild(std::uint32_t hash)
+{
+  return hash >> 29;
+}
+
+/// The child of a given rank, 0 to 7; rank 0 is the chosen one. An odd factor permutes the numbers modulo 8 and is its
+/// own inverse.
+SONO_HD inline std::uint32_t childOfRank(std::uint32_t hash, std::uint32_t rank)
+{
+  const std::uint32_t odd = ((hash >> 26) & 6u) | 1u;
+  return ((rank * odd) & 7u) ^ chosenChild(hash);
+}
+
+/// The cell of level 0 whose candidate a cell holds.
+SONO_HD inline Vec3i finestCell(std::uint64_t seed, Vec3i cell, int level)
+{
+  for (; level > 0; --level)
+  {
+    cell = nestedChild(cell, chosenChild(nestedHash(seed, cell, level)));
+  }
+  return cell;
+}
+
+/// A candidate, before the tissue at its position decides on presence and amplitude.
+struct NestedCandidate
+{
+  Vec3f positionMm;
+  float presence; ///< uniform (0, 1): there when below the tissue's probability
+  float deviate;  ///< uniform (0, 1): mapped to a standard normal deviate
+  float sign;     ///< 1 or -1 by chance, so that powers add however regular the cells are
+};
+
+/// A pure function of (seed, cell of level 0); local mm.
+SONO_HD inline NestedCandidate nestedCandidate(std::uint64_t seed, const Vec3i& cell)
+{
+  const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z), 0xbac5ca77u);
+  const float unit = 1.0f / 2097152.0f;
+  const std::uint32_t z = ((w.v[0] & 0x7ffu) << 10) | (w.v[1] & 0x3ffu);
+  return { { (float(cell.x) + float(w.v[0] >> 11) * unit) * nestedFinestMm,
+             (float(cell.y) + float(w.v[1] >> 11) * unit) * nestedFinestMm,
+             (float(cell.z) + float(z) * unit) * nestedFinestMm },
+           uniformFrom(w.v[2]),
+           uniformFrom(w.v[3]),
+           (w.v[1] & 0x400u) ? 1.0f : -1.0f };
+}
+
+/// Which bricks a line takes its scatterers from, and how many eighths of them. Trivially copyable; see
+/// ScattererDensity, which owns the tables. A brick of level a is a cube of 4^3 cells. A line takes the coarsest bricks
+/// whose whole depth does with their density: each point of space lies in exactly one of them.
+struct DensityView
+{
+  const float* perMm3 = nullptr;              ///< candidates that are needed, at each depth
+  const std::uint8_t* coarseEnough = nullptr; ///< bit a: bricks of level a around that depth have enough
+  int count = 0;
+  float depthsPerMm = 1.0f;
+  int finest = 0; ///< first and last level in use
+  int coarsest = 0;
+
+  SONO_HD int at(float depthMm) const
+  {
+    const float place = depthMm * depthsPerMm + 0.5f;
+    const int i = place > 0.0f ? int(place) : 0;
+    return i < count ? i : count - 1;
+  }
+  /// Whether a line takes the brick of this level, with the depth of its centre and that of the centre of the brick of
+  /// the next level in which it lies.
+  SONO_HD bool takes(int level, float depthMm, float parentDepthMm) const
+  {
+    const bool enough = level == finest || ((coarseEnough[at(depthMm)] >> level) & 1u);
+    const bool parentHas = level < coarsest && ((coarseEnough[at(parentDepthMm)] >> (level + 1)) & 1u);
+    return enough && !parentHas;
+  }
+  /// Eighths of the candidates of this level that do at this depth and at this weight of the beam, which is 1 on its
+  /// axis: 1 to 8. Far from the axis fewer and stronger ones do: what they add to the envelope's moments goes with the
+  /// fourth power of the weight.
+  SONO_HD int ranks(int level, float depthMm, float weight) const
+  {
+    const float edge = nestedCellMm(level);
+    const float share = weight * nestedFullWeight;
+    const float needed = perMm3[at(depthMm)] * (share < 1.0f ? share : 1.0f);
+    const int eighths = int(ceilf(8.0f * needed * edge * edge * edge - 1e-4f));
+    return eighths < 1 ? 1 : (eighths > 8 ? 8 : eighths);
+  }
+  /// Factor of the amplitudes, as 1 / sqrt(density), mm^(3/2).
+  SONO_HD static float amplitudeScale(int level, int ranks)
+  {
+    const float edge = nestedCellMm(level);
+    return sqrtf(edge * edge * edge * 8.0f / float(ranks));
+  }
+};
+
+/// Centre of a brick of this level, mm.
+SONO_HD inline Vec3f nestedBrickCentre(const Vec3i& brick, int level)
+{
+  return (Vec3f(brick) + 0.5f) * (nestedCellMm(level) * float(nestedBrickCells));
+}
+
+} // namespace sono
