@@ -93,6 +93,11 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
     const double scale = scattererScale(settings, level ? level->focusAreaMm2() : gaussianAreaMm2(settings));
     tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
   }
+  if (sources.scene && (!sources.traced || sources.traced->model == InterfaceModel::Acoustic))
+  {
+    surfaces.emplace(*sources.scene, sources.traced ? sources.traced->targets.get() : nullptr, settings,
+                     level ? &*level : nullptr);
+  }
   if (field && tissues)
   {
     tissueSight.emplace(*settings.field, tissues->grid().edgeMm);

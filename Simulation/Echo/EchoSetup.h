@@ -4,6 +4,7 @@
 #include "Echo/FieldSight.h"
 #include "Echo/FormRf.h"
 #include "Echo/LineFinisher.h"
+#include "Echo/SurfaceEchoes.h"
 #include "Echo/TissueScatterers.h"
 
 #include <optional>
@@ -34,6 +35,7 @@ struct EchoSetup
   std::optional<TissueScatterers> tissues;
   std::optional<FieldSight> tissueSight; ///< where the field matters to the tissues' bricks; nothing for a Gaussian
   std::optional<FieldSight> pointSight;
+  std::optional<SurfaceEchoes> surfaces; ///< of the scene; nothing in Amadou2024, whose paths bring them
 
 private:
   Beam beam(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
