@@ -132,6 +132,7 @@ TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoS
   });
   traced.echoCount = static_cast<int>(traced.boundaryEcho.size() / layout.lineCount);
   traced.echoSampleMm = echoSampleMm;
+  // Paths bring boundaries in that model alone.
   traced.model = traced.echoCount > 0 ? InterfaceModel::Amadou2024 : InterfaceModel::Acoustic;
   return TracedResult(std::move(traced));
 }

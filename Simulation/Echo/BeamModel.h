@@ -34,6 +34,7 @@ public:
   double focusPowerAreaMm2() const { return focusPowerAreaMm2_; }
   /// Of a Field or an Array it takes some thousand look-ups: ask once a depth, not once a scatterer.
   BeamWidth widthAt(double depthMm) const;
+  BeamWidth focusWidth() const { return widthAt(focusMm_); }
   /// For bricks; null where the kind of beam has none.
   const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }
   const ArraySight* arraySight() const { return sight_ ? &*sight_ : nullptr; }

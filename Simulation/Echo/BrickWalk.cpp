@@ -59,8 +59,10 @@ std::vector<BeamCulling> makeBeamCulling(const std::vector<BeamReach>& group, fl
     const Beam& b = group[i].beam;
     if (group[i].depthMm > group[i].fromMm)
     {
-      beams.push_back({ group[i], i, seenRadius(group[i], edge, 0.0f, group[i].depthMm), halfExtent(b.axis, edge),
-                        halfExtent(b.lateral, edge), halfExtent(b.elevation, edge), wideningOf(group[i]) });
+      const float margin = group[i].marginMm;
+      beams.push_back({ group[i], i, seenRadius(group[i], edge, 0.0f, group[i].depthMm) + margin,
+                        halfExtent(b.axis, edge) + margin, halfExtent(b.lateral, edge) + margin,
+                        halfExtent(b.elevation, edge) + margin, wideningOf(group[i]) });
     }
   }
   return beams;

@@ -20,6 +20,7 @@ struct BeamReach
   const BeamReachTable* table = nullptr; ///< of the beam's aperture or array; null when it has none
   const ArraySight* array = nullptr;     ///< of the beam's array; null when it has none
   float fromMm = 0.0f;
+  float marginMm = 0.0f; ///< how far outside of its brick a scatterer may lie
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

@@ -99,6 +99,10 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
     const double scale = scattererScale(settings, beams.focusPowerAreaMm2());
     tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
   }
+  if (sources.scene && isAcoustic)
+  {
+    surfaces.emplace(*sources.scene, sources.traced ? sources.traced->targets.get() : nullptr, settings, beams);
+  }
   if (settings.field && tissues)
   {
     tissueSight.emplace(*settings.field, tissues->grid().edgeMm);

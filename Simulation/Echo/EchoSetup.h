@@ -7,6 +7,7 @@
 #include "Echo/LineFinisher.h"
 #include "Echo/NestedScatterers.h"
 #include "Echo/ScattererDensity.h"
+#include "Echo/SurfaceEchoes.h"
 #include "Echo/TissueScatterers.h"
 
 #include <optional>
@@ -41,6 +42,7 @@ struct EchoSetup
   std::optional<ScattererDensity> density;
   std::vector<FieldSight> nestedSight; ///< from the density's finest level on; empty for a Gaussian
   std::optional<FieldSight> pointSight;
+  std::optional<SurfaceEchoes> surfaces; ///< of the scene; nothing in Amadou2024, whose paths bring them
 };
 
 } // namespace sono

@@ -168,9 +168,21 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     {
       addPoints(*sources.points, beams([&](int l) { return setup.pointBeam(l); }, setup.pointSight), sums);
     }
+    std::vector<LineSum> surfaces;
+    if (setup.surfaces)
+    {
+      surfaces.assign(sums.size(), setup.finisher.emptySum());
+      std::vector<SurfaceIntensity> intensities;
+      for (int l = first; l < last; ++l)
+      {
+        intensities.push_back(setup.finisher.intensity(l));
+      }
+      setup.surfaces->add(beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), intensities, surfaces);
+    }
     for (int l = first; l < last; ++l)
     {
-      setup.finisher.finish(l, sums[std::size_t(l - first)],
+      const std::size_t at = std::size_t(l - first);
+      setup.finisher.finish(l, sums[at], setup.surfaces ? &surfaces[at] : nullptr,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
   };

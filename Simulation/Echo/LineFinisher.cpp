@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sono {
 
@@ -136,12 +137,29 @@ void LineFinisher::addBoundaryEchoes(int line, LineSum& sum) const
   }
 }
 
-void LineFinisher::finish(int line, LineSum& sum, std::complex<float>* iq) const
+SurfaceIntensity LineFinisher::intensity(int line) const
+{
+  if (!traced_)
+  {
+    return {};
+  }
+  return { traced_->intensity.data() + std::size_t(line) * std::size_t(traced_->binCount), traced_->binCount,
+           float(1.0 / traced_->binMm) };
+}
+
+void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::complex<float>* iq) const
 {
   if (traced_)
   {
     applyIntensity(line, sum);
-    addBoundaryEchoes(line, sum);
+    if (traced_->model == InterfaceModel::Amadou2024)
+    {
+      addBoundaryEchoes(line, sum);
+    }
+  }
+  if (surfaces)
+  {
+    std::transform(sum.iq.begin(), sum.iq.end(), surfaces->iq.begin(), sum.iq.begin(), std::plus<float>());
   }
   // In baseband the phases no longer depend on the sample: the pulse is its envelope. Nothing lies above the first.
   const std::size_t half = std::size_t(pulse_.half());

@@ -5,6 +5,7 @@
 #include "Echo/FormRf.h"
 #include "Echo/Pulse.h"
 #include "Kernel/Downshift.h"
+#include "Kernel/SurfaceEcho.h"
 
 #include <complex>
 #include <optional>
@@ -29,10 +30,13 @@ public:
   LineSum emptySum() const;
   /// Depth, mm, below which scatterers cannot be seen in this line.
   float reachMm(int line) const;
+  /// What the tracer knows of a line.
+  SurfaceIntensity intensity(int line) const;
   /// Adds the traced boundary echoes of a line, times the field's level, phases kept.
   void addBoundaryEchoes(int line, LineSum& sum) const;
-  /// Writes the settings' sampleCount() samples; the sum is used up.
-  void finish(int line, LineSum& sum, std::complex<float>* iq) const;
+  /// Writes the settings' sampleCount() samples; the sum is used up. `surfaces`, which may be null, carries its
+  /// intensity already.
+  void finish(int line, LineSum& sum, const LineSum* surfaces, std::complex<float>* iq) const;
 
 private:
   void applyIntensity(int line, LineSum& sum) const;

@@ -236,6 +236,14 @@ const SurfaceField& Scene::surfaceAt(std::size_t label, const Progress& progress
     [&](std::unique_ptr<SurfaceField> made) { surface = std::move(made); });
 }
 
+const SurfacePieces& Scene::surfacePieces() const
+{
+  return *findOrMake(
+    &pieces_, [&] { return pieces_.get(); },
+    [&] { return std::make_unique<SurfacePieces>(tissueVoxels_.data(), placement().size, placement().spacingMm); },
+    [&](std::unique_ptr<SurfacePieces> made) { pieces_ = std::move(made); });
+}
+
 void Scene::buildAll(const Progress& progress) const
 {
   labelGrid(partOf(progress, 0.0, 0.1));

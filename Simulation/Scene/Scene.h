@@ -6,6 +6,7 @@
 #include "Scene/FibreField.h"
 #include "Scene/RegionOnDemand.h"
 #include "Scene/SurfaceField.h"
+#include "Scene/SurfacePieces.h"
 #include "Scene/VoxelBox.h"
 
 #include <condition_variable>
@@ -65,6 +66,8 @@ public:
   /// The fibres of the tissues that have a fibreAnisotropyDb, built on first need; null where none has. Blood is the
   /// tissue of that name.
   const FibreField* fibres() const;
+  /// The boundaries as smooth pieces, made where they are asked for and kept.
+  const SurfacePieces& surfacePieces() const;
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
@@ -105,6 +108,7 @@ private:
   mutable std::unique_ptr<std::vector<VoxelBox>> boxes_;        // parallel to volume_.labels
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable std::unique_ptr<FibreField> fibres_;
+  mutable std::unique_ptr<SurfacePieces> pieces_;
   mutable SharedRegion region_;
   mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest
 };

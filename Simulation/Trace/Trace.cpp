@@ -105,10 +105,11 @@ void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yi
 
 } // namespace
 
-TracedLines tracedLayout(int lineCount, const TraceSettings& settings)
+TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std::vector<TargetSurface>& targets)
 {
   TracedLines out;
   out.model = settings.model;
+  out.targets = targets.empty() ? nullptr : std::make_shared<const std::vector<TargetSurface>>(targets);
   out.lineCount = lineCount;
   out.binMm = settings.radialBinMm;
   out.binCount = settings.binCount();
@@ -128,7 +129,7 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   const Progress preparing = partOf(progress, 0.0, 0.3);
   const TraceSetup setup(scene, lines, settings, targets, preparing, Records::OnDemand);
   const Progress tracing = partOf(progress, 0.3, 1.0);
-  TracedLines out = tracedLayout(int(lines.size()), settings);
+  TracedLines out = tracedLayout(int(lines.size()), settings, targets);
   TracedLines::visitArrays(out, [&out](auto& values, const char*, TracedAxis axis) {
     values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::Bins ? out.binCount : out.echoCount), {});
   });

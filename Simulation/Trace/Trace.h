@@ -8,6 +8,7 @@
 
 #include <complex>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace sono {
@@ -38,6 +39,7 @@ struct TracedLines
   double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
   std::uint64_t segments = 0;                    ///< path segments traced
+  std::shared_ptr<const std::vector<TargetSurface>> targets; ///< that it was traced with; null: none
 
   /// The arrays with the names and places that they have in a pipeline.
   template<class Self, class Visitor>
@@ -51,7 +53,7 @@ struct TracedLines
 };
 
 /// What trace() will give, without its arrays. Throws Error when it would not fit.
-TracedLines tracedLayout(int lineCount, const TraceSettings& settings);
+TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std::vector<TargetSurface>& targets = {});
 
 /// Traces every line on the CPU, whatever device the settings name. The result depends on the arguments alone, to the
 /// bit, not on the threads. Throws Error when no line meets the volume or a target is not closed, Aborted when asked to

@@ -16,6 +16,7 @@ using namespace sono::test;
 TracedLines tracedEchoes(const std::vector<PointScatterer>& echoes, const EchoSettings& s, double echoSampleMm)
 {
   TracedLines traced;
+  traced.model = InterfaceModel::Amadou2024; // whose paths bring boundaries
   traced.lineCount = 1;
   traced.binMm = 0.25;
   traced.binCount = int(s.depthMm / traced.binMm);
@@ -86,9 +87,11 @@ TEST(EchoBoundary, OnTheSameGridIsNotSplitAgain)
 TEST(EchoBoundary, OfATracedMirrorHasItsReflectionCoefficientAndPlace)
 {
   // Tracer and image formation together: a lossless half space behind another.
+  Tissue front = makeTissue("a", 1.5, 1540, 0.0);
+  Tissue back = makeTissue("b", 3.0, 1540, 0.0);
+  front.roughnessMm = back.roughnessMm = 0.0;
   const auto scene =
-    makeScene({ 40, 40, 60 }, Vec3d(1.0), { makeTissue("a", 1.5, 1540, 0.0), makeTissue("b", 3.0, 1540, 0.0) },
-              [](const Vec3d& p) { return p.z < 30.0 ? 0 : 1; });
+    makeScene({ 40, 40, 60 }, Vec3d(1.0), { front, back }, [](const Vec3d& p) { return p.z < 30.0 ? 0 : 1; });
   TraceSettings tracing;
   tracing.model = InterfaceModel::Amadou2024; // whose boundaries echo
   tracing.deterministic = true;

@@ -203,6 +203,7 @@ TEST(EchoField, WeighsBoundariesByItsIntegralAcrossTheirDepth)
   traced.lineCount = 1;
   traced.binMm = 0.25;
   traced.binCount = 160;
+  traced.model = InterfaceModel::Amadou2024;
   traced.intensity.assign(160, 1.0f);
   traced.standardError.assign(160, 0.0f);
   EchoSettings s;

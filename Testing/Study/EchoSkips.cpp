@@ -109,7 +109,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
     }
     for (int l = first; l < last; ++l)
     {
-      setup.finisher.finish(l, sums[std::size_t(l - first)],
+      setup.finisher.finish(l, sums[std::size_t(l - first)], nullptr,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
   }

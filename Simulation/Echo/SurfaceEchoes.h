@@ -1,0 +1,46 @@
+#pragma once
+
+#include "Echo/BeamModel.h"
+#include "Echo/BrickWalk.h"
+#include "Echo/FieldSight.h"
+#include "Echo/SurfaceRows.h"
+#include "Echo/TargetPieces.h"
+#include "Scene/Scene.h"
+#include "Trace/Trace.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace sono {
+
+/// Echoes of the boundaries between labels and of targets (Data/docs/physics.md section 10), weighted by the beam as
+/// scatterers are. Boundaries become pieces once a scene (SurfacePieces), pieces become points of the size that the
+/// wavelength wants while beams look at them. Echoes do not depend on which paths met what: the tracer's part is the
+/// intensity in front of each piece.
+class SurfaceEchoes
+{
+public:
+  /// `targets` may be null. The scene must outlive this.
+  SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets, const EchoSettings& settings,
+                const BeamModel& beams);
+
+  /// Adds to the sums of a group of lines, intensity included. `beams` are those of the scene, `intensities` and `sums`
+  /// parallel to them.
+  void add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
+           std::vector<LineSum>& sums) const;
+
+private:
+  void expand(const SurfacePiece& piece, std::vector<SurfacePoint>& points) const;
+
+  const SurfacePieces& pieces_;
+  std::uint64_t seed_;
+  double blobMm_;
+  std::unique_ptr<SurfaceRows> rows_;
+  std::unique_ptr<TargetPieces> targets_;
+  std::unique_ptr<FieldSight> pieceSight_;
+  std::unique_ptr<FieldSight> targetSight_;
+  Vec3i cuts_; // points of a voxel along each axis
+};
+
+} // namespace sono

@@ -1,0 +1,181 @@
+#include "Echo/SurfaceRows.h"
+
+#include "Core/SoundSpeed.h"
+#include "Echo/Pulse.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr int nodes = 162;
+constexpr double perTangent = 32.0; // up to 78.7 degrees
+constexpr double mixtureUpTo = 10.0;
+constexpr double nothing = -80.0; // log of an amplitude
+
+/// The surface that counts of two, the rougher.
+const Tissue& rougher(const Tissue& a, const Tissue& b)
+{
+  return a.roughnessMm >= b.roughnessMm ? a : b;
+}
+
+/// Diffuse cross-section per area for r = 1, eq. 10.7 with the beam's own range of directions (10.10); where the
+/// roughness is small against the wavelength, the mixture of (10.12).
+class Roughness
+{
+public:
+  Roughness(const Tissue& tissue, double radPerMm, const BeamExtent& beam)
+    : heightRad_(radPerMm * tissue.roughnessMm)
+    , perCorrelation_(std::pow(2.0 / (radPerMm * tissue.correlationMm), 2))
+    , beamL_(1.0 / std::pow(radPerMm * beam.lateralSigmaMm, 2))
+    , beamE_(1.0 / std::pow(radPerMm * beam.elevationalSigmaMm, 2))
+  {
+  }
+
+  /// The tilt in the lateral or the elevational direction.
+  double crossSection(double tangent, bool lateral) const
+  {
+    const double cosSquared = 1.0 / (1.0 + tangent * tangent);
+    const double g = heightRad_ * heightRad_ * cosSquared;
+    double sum = 0.0;
+    if (heightRad_ * heightRad_ >= mixtureUpTo)
+    {
+      sum = -std::expm1(-g) * lobe(heightRad_ * heightRad_, tangent, lateral);
+    }
+    else
+    {
+      double poisson = std::exp(-g);
+      for (int n = 1; n <= 40; ++n)
+      {
+        poisson *= g / n;
+        sum += poisson * lobe(n, tangent, lateral);
+      }
+    }
+    return sum / (4.0 * pi * cosSquared * cosSquared);
+  }
+
+private:
+  /// alpha^2 = n / (k l)^2
+  double lobe(double n, double tangent, bool lateral) const
+  {
+    const double alphaL = n * perCorrelation_ + beamL_;
+    const double alphaE = n * perCorrelation_ + beamE_;
+    return std::exp(-tangent * tangent / (lateral ? alphaL : alphaE)) / std::sqrt(alphaL * alphaE);
+  }
+
+  double heightRad_; // 2 k h
+  double perCorrelation_;
+  double beamL_; // 1 / (4 k^2 s^2)
+  double beamE_;
+};
+
+double logAmplitude(double crossSection, double scale)
+{
+  return crossSection > 0.0 ? std::max(nothing, 0.5 * std::log(crossSection) + std::log(scale)) : nothing;
+}
+
+} // namespace
+
+BeamExtent beamExtent(const BeamModel& beams)
+{
+  const BeamWidth focus = beams.focusWidth();
+  return { beams.focusAreaMm2(), focus.lateralSigmaMm, focus.elevationalSigmaMm };
+}
+
+SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings,
+                         const BeamExtent& beam, double blobMm)
+  : count_(int(media.size()))
+  , perBeamArea_(1.0 / beam.areaMm2)
+  , pulseSigmaMm_(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth))
+  , rows_(2 * media.size() * media.size())
+{
+  const double radPerMm = 4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs; // 2 k
+  const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
+  // Media of the same roughness share a profile.
+  std::vector<int> profileOf;
+  std::vector<int> owner;
+  for (std::size_t m = 0; m < media.size(); ++m)
+  {
+    const auto same = std::find_if(owner.begin(), owner.end(), [&](int o) {
+      return media[std::size_t(o)].roughnessMm == media[m].roughnessMm &&
+             media[std::size_t(o)].correlationMm == media[m].correlationMm;
+    });
+    profileOf.push_back(int(same - owner.begin()));
+    if (same == owner.end())
+    {
+      owner.push_back(int(m));
+      const Roughness roughness(media[m], radPerMm, beam);
+      for (int n = 0; n < nodes; ++n)
+      {
+        const double tangent = n / perTangent;
+        diffuseL_.push_back(float(logAmplitude(roughness.crossSection(tangent, true), lambdaMm / beam.areaMm2)));
+        diffuseE_.push_back(float(logAmplitude(roughness.crossSection(tangent, false), lambdaMm / beam.areaMm2)));
+      }
+    }
+  }
+  for (int a = 0; a < count_; ++a)
+  {
+    for (int b = 0; b < count_; ++b)
+    {
+      SurfaceRow& out = rows_[std::size_t(row(a, b))];
+      out = {};
+      out.reach = -1.0f;
+      if (a == b || a == coupling)
+      {
+        continue;
+      }
+      const Tissue& before = media[std::size_t(a)];
+      const Tissue& behind = media[std::size_t(b)];
+      const bool ownsRoughness = rougher(before, behind).roughnessMm == before.roughnessMm;
+      out.impedanceBefore = float(before.impedanceMRayl);
+      out.impedanceBehind = float(behind.impedanceMRayl);
+      out.speedRatio = float(behind.soundSpeedMPerS / before.soundSpeedMPerS);
+      const double r =
+        std::abs(behind.impedanceMRayl - before.impedanceMRayl) / (behind.impedanceMRayl + before.impedanceMRayl);
+      out.logDiffuse = float(std::max(nothing, std::log(std::max(r, 1e-300))));
+      const double h = 0.5 * radPerMm * rougher(before, behind).roughnessMm;
+      out.roughness = float(2.0 * h * h);
+      out.tau = float(behind.tau);
+      out.gamma = float(behind.gamma);
+      out.profile = profileOf[std::size_t(ownsRoughness ? a : b)];
+      // Up to where a large piece, seen on the axis, still counts.
+      const double areaMm2 = 16.0 * blobMm * blobMm;
+      for (int n = 0; n < nodes - 1; ++n)
+      {
+        const double tangent = n / perTangent;
+        const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
+        const std::size_t at = std::size_t(out.profile) * nodes + std::size_t(n);
+        const double diffuse = std::exp(double(out.logDiffuse) + std::max(diffuseL_[at], diffuseE_[at]));
+        const double spread = std::pow(blobMm * tangent * cosine, 2);
+        const double pulse = pulseSigmaMm_ * pulseSigmaMm_;
+        const double coherent =
+          std::abs(surfaceReflection(out, float(cosine))) * cosine *
+          std::exp(-out.roughness * cosine * cosine - 0.5 * radPerMm * radPerMm * spread * pulse / (pulse + spread));
+        if (diffuse * std::sqrt(areaMm2) > surfaceFaintest || coherent * areaMm2 * perBeamArea_ > surfaceFaintest)
+        {
+          out.reach = float((n + 1) / perTangent);
+        }
+      }
+      out.reach = std::min(out.reach, float((nodes - 1) / perTangent));
+    }
+  }
+}
+
+SurfaceTable SurfaceRows::view(double slackMm) const
+{
+  SurfaceTable table;
+  table.rows = rows_.data();
+  table.diffuseL = diffuseL_.data();
+  table.diffuseE = diffuseE_.data();
+  table.nodes = nodes;
+  table.perTangent = float(perTangent);
+  table.perBeamArea = float(perBeamArea_);
+  table.slackMm = float(slackMm);
+  table.pulseSigmaMm = float(pulseSigmaMm_);
+  return table;
+}
+
+} // namespace sono

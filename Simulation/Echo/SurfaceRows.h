@@ -1,0 +1,52 @@
+#pragma once
+
+#include "Echo/BeamModel.h"
+#include "Echo/EchoSettings.h"
+#include "Kernel/SurfaceEcho.h"
+#include "Labels/TissueTable.h"
+
+#include <vector>
+
+namespace sono {
+
+/// What of the beam the echoes of surfaces are measured by.
+struct BeamExtent
+{
+  double areaMm2; ///< A_b: integral of |w| across the beam at its focus
+  double lateralSigmaMm;
+  double elevationalSigmaMm;
+};
+
+/// At the beam's focus.
+BeamExtent beamExtent(const BeamModel& beams);
+
+/// The table of all boundaries between some media (Data/docs/physics.md sections 10.3 to 10.5).
+class SurfaceRows
+{
+public:
+  /// Beyond `coupling`, the index of a medium, nothing echoes as seen from there; -1: none. Pieces have blobs of about
+  /// `blobMm` and areas of its square at least.
+  SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings, const BeamExtent& beam,
+              double blobMm);
+
+  /// From medium a onto b.
+  int row(int a, int b) const
+  {
+    const int low = a < b ? a : b;
+    const int high = a < b ? b : a;
+    return 2 * (low * count_ + high) + (a < b ? 0 : 1);
+  }
+  const SurfaceRow& at(int row) const { return rows_[std::size_t(row)]; }
+  /// For lookups while this lives.
+  SurfaceTable view(double slackMm) const;
+
+private:
+  int count_;
+  double perBeamArea_;
+  double pulseSigmaMm_;
+  std::vector<SurfaceRow> rows_;
+  std::vector<float> diffuseL_;
+  std::vector<float> diffuseE_;
+};
+
+} // namespace sono

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "Kernel/Vec.h"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace sono {
+
+/// The surface between two face-adjacent voxels of different tissues, as a function over the voxels' column: at (u, v)
+/// mm from the column's middle it lies at position[axis] + slopeU u + slopeV v + (bendUU u^2 + bendVV v^2) / 2 +
+/// bendUV u v. u and v run along the axes (axis + 1) % 3 and (axis + 2) % 3.
+struct SurfacePiece
+{
+  Vec3f positionMm; ///< local to the scene
+  float slopeU;
+  float slopeV;
+  float bendUU; ///< 1/mm
+  float bendUV;
+  float bendVV;
+  float share;        ///< of the surface in this column that this piece stands for: columns of other axes stand for the
+                      ///< rest
+  std::uint8_t axis;  ///< 0 to 2
+  std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
+  std::uint8_t above;
+  Vec3i voxel; ///< the one below
+};
+
+/// The boundaries of a label map as smooth pieces. Voxels are a staircase, and its terraces would echo like a grating:
+/// where steps of half a wavelength matter, no smoothing by a voxel or two suffices. So a piece's place comes from the
+/// smoothest surface that the labels allow: the steps' heights over the columns around are fitted with a plane or
+/// a quadratic in the widest window, up to 24 voxels to each side, in which every column has its step and none lies
+/// further than a step's rounding from the fit. Small windows at rims and thin parts leave those as they are; a lone
+/// voxel keeps its faces.
+///
+/// Made brick by brick when first asked for, and kept. They depend on the labels alone. Several threads may ask.
+class SurfacePieces
+{
+public:
+  /// `tissues` are the tissue indices of `size` voxels, i fastest; they must outlive this.
+  SurfacePieces(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm);
+  ~SurfacePieces();
+  SurfacePieces(const SurfacePieces&) = delete;
+  SurfacePieces& operator=(const SurfacePieces&) = delete;
+
+  /// Brick b holds the pieces of the voxels whose middle lies in [b, b + 1) * edgeMm; a piece is never more than a
+  /// voxel outside.
+  float edgeMm() const { return edgeMm_; }
+  const Vec3f& sizeMm() const { return sizeMm_; }
+  const Vec3f& spacingMm() const { return spacingMm_; }
+  /// None outside of the volume.
+  const std::vector<SurfacePiece>& brick(const Vec3i& brick) const;
+
+private:
+  using Bricks = std::vector<std::atomic<const std::vector<SurfacePiece>*>>;
+
+  std::vector<SurfacePiece> make(const Vec3i& brick) const;
+
+  const std::uint8_t* tissues_;
+  Vec3i size_;
+  Vec3f spacingMm_;
+  Vec3f sizeMm_;
+  float edgeMm_;
+  Vec3i bricks_;
+  mutable Bricks made_;
+};
+
+} // namespace sono
