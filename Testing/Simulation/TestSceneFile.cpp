@@ -206,8 +206,10 @@ TEST_F(SceneFiles, ForeignAndNewerFilesAreRefused)
   std::string foreign = bytesOf(file("s.nvdb"));
   foreign[foreign.find(std::string("sonovdb\0", 8))] = 'x';
   expectContains(refusalOf(foreign), "no scene of SonoVDB");
-  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 2}"); }), "newer SonoVDB wrote it");
-  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 1}"); }), "incomplete");
+  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 3}"); }), "newer SonoVDB wrote it");
+  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 2}"); }), "incomplete");
+  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 1}"); }),
+                 "without the tissues' roughness");
   expectContains(errorOf([] { parseSceneText("n.nvdb", "{"); }), "incomplete");
 
   const Scene scene(smallVolume(), smallTable(), "air");
