@@ -27,8 +27,8 @@ struct RoughBoundary
 /// A height field steeper than that has no meaning, and paths would rattle about in it.
 constexpr float steepestAlpha = 2.0f;
 
-/// Facets that a path may meet in one surface. What is still inside then leaves on the side where it is: less than
-/// 1e-6 at alpha = 0.5, 0.001 at the steepest.
+/// Facets that a path may meet in one surface. What is still inside then leaves on the side where it is: none of a
+/// million paths at the steepest, from above as aslant.
 constexpr int mostFacets = 64;
 
 /// C_R, C_T (10.3): the share of a branch's power that goes on exactly along its direction.
