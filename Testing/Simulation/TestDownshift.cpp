@@ -95,7 +95,6 @@ TEST(Downshift, FrequencyAndLevelAt12Cm)
   traced.attenuationNpPerMHz.clear();
   const double without = std::abs(formRf({ nullptr, &traced, &point }, oneLine, s).iq[at]);
   EXPECT_NEAR(20.0 * std::log10(with / without), 10.6, 0.1);
-  std::printf("centre %.4f MHz, %.2f dB\n", frequencyMHz, 20.0 * std::log10(with / without));
 }
 
 TEST(Downshift, OffChangesNothing)
