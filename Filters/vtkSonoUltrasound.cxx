@@ -1,45 +1,51 @@
 #include "vtkSonoUltrasound.h"
 
+#include "Simulator.h"
+#include "SonoAnatomy.h"
 #include "SonoChestDefaults.h"
 #include "SonoContent.h"
+#include "SonoFieldImage.h"
+#include "SonoImagePlacement.h"
+#include "SonoImageSettings.h"
+#include "SonoLineImage.h"
 #include "SonoOutputs.h"
+#include "SonoPaths.h"
 #include "SonoProbeField.h"
+#include "SonoScatterers.h"
 #include "SonoStage.h"
-#include "SonoStageChain.h"
+#include "SonoTargets.h"
+#include "Trace/ProbeContact.h"
+#include "Trace/TraceDevice.h"
 #include "vtkSonoBMode.h"
-#include "vtkSonoErrorMap.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoRayTracer.h"
 #include "vtkSonoScanConverter.h"
 #include "vtkSonoSceneBuilder.h"
+#include "vtkSonoSceneHandle.h"
 
-#include "vtkAlgorithmOutput.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkExecutive.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
-#include "vtkInformationInformationVectorKey.h"
-#include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,35 +54,15 @@ vtkStandardNewMacro(vtkSonoUltrasound);
 
 namespace {
 
-/// Announces what another filter's output announces, of an image its size and place too.
-void announceSame(vtkInformation* from, vtkInformation* to)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  for (vtkInformationKey* key : std::initializer_list<vtkInformationKey*>{
-         Pipeline::WHOLE_EXTENT(), vtkDataObject::ORIGIN(), vtkDataObject::SPACING(), vtkDataObject::DIRECTION(),
-         vtkDataObject::POINT_DATA_VECTOR() })
-  {
-    to->CopyEntry(from, key);
-  }
-  sono::announceSameFields(from, to);
-}
+// Where the stages' progress ends in that of the whole; Simulator shares out what is after the tracing.
+constexpr double anatomyEnd = 0.3;
+constexpr double tracingEnd = 0.75;
+constexpr double bmodeEnd = 0.95;
 
 /// The output that somebody asks for; the image where nobody does.
 int portAsked(vtkInformation* request)
 {
   return std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-}
-
-/// A data object belongs to one pipeline. Null of null.
-vtkSmartPointer<vtkDataObject> copyOf(vtkDataObject* input)
-{
-  vtkSmartPointer<vtkDataObject> copy;
-  if (input)
-  {
-    copy = vtk::TakeSmartPointer(input->NewInstance());
-    copy->ShallowCopy(input);
-  }
-  return copy;
 }
 
 /// Whether an output is made when another is asked for. Those that are not keep their data until they are asked for.
@@ -86,29 +72,42 @@ bool isMadeFor(int asked, int port)
   return port == asked || (isImage(asked) && isImage(port));
 }
 
+/// What was made of an input, kept while its content stays.
+template<class Made>
+struct OfInput
+{
+  std::optional<std::vector<double>> content; ///< none: it is to be made
+  Made made;
+
+  template<class Make>
+  const Made& get(vtkDataObject* input, const Make& make)
+  {
+    std::vector<double> now = input ? sono::contentOf(input) : std::vector<double>();
+    if (content != now)
+    {
+      content.reset(); // stays so when it fails
+      made = input ? make() : Made();
+      content = std::move(now);
+    }
+    return made;
+  }
+};
+
 } // namespace
 
+/// The stages, for their settings, and the simulator that does what they say.
 class vtkSonoUltrasound::Stages
 {
 public:
   explicit Stages(vtkSonoUltrasound* owner);
 
-  /// Connects the stages with each other, as they are now.
-  void chainUp();
-  /// Connects the inputs of the filter: a label image, or a scene, and what is optional.
-  void connect(vtkInformationVector** input);
-  /// The point array that holds the labels; null: the scalars.
-  void chooseLabels(const char* name);
-  /// Whether the error map runs with the others, and what the stages share.
-  void share(bool wantsErrorMap);
-  /// The stage and its port that make an output.
-  vtkAlgorithmOutput* port(int outputPort) const;
-  /// The last stage that an output needs.
-  vtkAlgorithm* stageOf(int outputPort) const;
-  /// Whether that stage runs.
-  bool isMade(int outputPort) const;
-  /// Those that have settings.
+  /// To the scene builder, which was replaced.
+  void listenToBuilder();
   std::vector<vtkAlgorithm*> withSettings() const;
+
+  void announce(vtkInformationVector* output);
+  /// Makes an output, and what is made with it.
+  void make(int port, vtkInformationVector** input, vtkInformationVector* output);
 
   vtkSmartPointer<vtkSonoSceneBuilder> scene = vtkSmartPointer<vtkSonoSceneBuilder>::New();
   vtkSmartPointer<vtkSonoProbeSource> probe = vtkSmartPointer<vtkSonoProbeSource>::New();
@@ -116,16 +115,44 @@ public:
   vtkSmartPointer<vtkSonoImageFormation> formation = vtkSmartPointer<vtkSonoImageFormation>::New();
   vtkSmartPointer<vtkSonoBMode> bmode = vtkSmartPointer<vtkSonoBMode>::New();
   vtkSmartPointer<vtkSonoScanConverter> converter = vtkSmartPointer<vtkSonoScanConverter>::New();
-  vtkNew<vtkSonoErrorMap> errors;
-  std::unique_ptr<sono::StageChain> chain;
 
 private:
-  void connectMain(vtkDataObject* input);
-  void connectOptional(int port, vtkDataObject* input, vtkAlgorithm* stage, int stagePort);
+  using Inputs = std::array<vtkSmartPointer<vtkDataObject>, 4>;
+
+  sono::ImageSettings settings(const sono::ProbeField& field) const;
+  /// The part of the whole's progress that a stage reports, with its text.
+  sono::Progress progress(vtkAlgorithm* stage, double from, double to);
+  const std::vector<sono::TargetSurface>& targets(vtkDataObject* input, vtkMultiBlockDataSet* blocks);
+  sono::TracedResult trace(const sono::ProbeField& field, const sono::ImageInput& image);
+  void readEchoInputs(const Inputs& inputs, sono::ImageInput& image);
+  template<class Result, class Fill>
+  void makeLines(const Result& result, Result (*resultOf)(vtkImageData*), const Fill& fill,
+                 vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines);
+  void makePaths(int port, const sono::ImageInput& image, vtkPolyData* output);
+  void makeImage(const sono::ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat);
+  void makeErrorMap(const sono::ProbeField& field, const sono::ImageInput& image, const sono::TracedResult& traced);
 
   vtkSonoUltrasound* owner_;
-  std::array<std::vector<double>, 4> connected_; // content of the inputs
-  std::string labels_;
+  std::unique_ptr<sono::Anatomy> anatomy_;
+  sono::Simulator simulator_;
+  vtkSmartPointer<vtkFieldData> acquisition_; ///< as announced
+  // What is made of the inputs.
+  OfInput<std::vector<sono::TargetSurface>> targets_;
+  std::string targetTissue_;                         ///< and
+  std::shared_ptr<const sono::TissueTable> tissues_; ///< which the targets are made with
+  OfInput<std::shared_ptr<const sono::PointScatterers>> scatterers_;
+  OfInput<std::shared_ptr<const sono::PulseEchoField>> pulseEchoField_;
+  std::shared_ptr<const sono::SampledPulse> pulse_;
+  vtkMTimeType pulseTime_ = 0; ///< of the stage when it was read; 0: it is to be read
+  // The last results, and the arrays that stay as long as they do.
+  sono::TracedResult traced_;
+  sono::ScanPicture picture_;
+  vtkSmartPointer<vtkPointData> pictureArrays_;
+  sono::ImageResult errorMap_;
+  vtkSmartPointer<vtkPointData> errorArrays_;
+  vtkSmartPointer<vtkImageData> tracedLines_;
+  vtkSmartPointer<vtkImageData> rfLines_;
+  vtkSmartPointer<vtkImageData> bmodeLines_;
 };
 
 vtkSonoUltrasound::Stages::Stages(vtkSonoUltrasound* owner)
@@ -139,24 +166,12 @@ vtkSonoUltrasound::Stages::Stages(vtkSonoUltrasound* owner)
   tracer->SetCoherenceMm(tracing.coherenceMm);
   tracer->SetLobeSigmaDeg(tracing.lobeSigmaDeg);
   bmode->SetTgcDbPerCm(grey.tgcDbPerCm);
-  chainUp();
+  listenToBuilder();
 }
 
-void vtkSonoUltrasound::Stages::chainUp()
+void vtkSonoUltrasound::Stages::listenToBuilder()
 {
-  chain.reset(); // before the new one listens to the same stages
-  chain = std::make_unique<sono::StageChain>(owner_, std::vector<sono::StageChain::Link>{ { probe, 0.0 },
-                                                                                          { scene, 0.3 },
-                                                                                          { tracer, 0.75 },
-                                                                                          { formation, 0.95 },
-                                                                                          { bmode, 0.97 },
-                                                                                          { errors, 0.98 },
-                                                                                          { converter, 1.0 } });
-  tracer->SetInputConnection(1, probe->GetOutputPort());
-  formation->SetInputConnection(tracer->GetOutputPort());
-  bmode->SetInputConnection(formation->GetOutputPort());
-  converter->SetInputConnection(bmode->GetOutputPort());
-  connected_ = {};
+  anatomy_ = std::make_unique<sono::Anatomy>(owner_, scene, anatomyEnd);
 }
 
 std::vector<vtkAlgorithm*> vtkSonoUltrasound::Stages::withSettings() const
@@ -164,104 +179,259 @@ std::vector<vtkAlgorithm*> vtkSonoUltrasound::Stages::withSettings() const
   return { scene, probe, tracer, formation, bmode, converter };
 }
 
-void vtkSonoUltrasound::Stages::connect(vtkInformationVector** input)
+sono::ImageSettings vtkSonoUltrasound::Stages::settings(const sono::ProbeField& field) const
 {
-  connectMain(vtkDataObject::GetData(input[LABELS_OR_SCENE]));
-  connectOptional(TARGETS, vtkDataObject::GetData(input[TARGETS]), tracer, 2);
-  connectOptional(SCATTERERS, vtkDataObject::GetData(input[SCATTERERS]), formation, 1);
-  connectOptional(PULSE_ECHO_FIELD, vtkDataObject::GetData(input[PULSE_ECHO_FIELD]), formation, 2);
+  return sono::imageSettings(field, *tracer, *formation, *bmode, sono::pixelMmOf(field, converter->GetPixelMm()));
 }
 
-void vtkSonoUltrasound::Stages::connectOptional(int port, vtkDataObject* input, vtkAlgorithm* stage, int stagePort)
+sono::Progress vtkSonoUltrasound::Stages::progress(vtkAlgorithm* stage, double from, double to)
 {
-  std::vector<double> content = input ? sono::contentOf(input) : std::vector<double>();
-  if (content != connected_[port])
+  owner_->SetProgressText(stage->GetProgressText());
+  return sono::partOf(sono::progressOf(owner_), from, to);
+}
+
+void vtkSonoUltrasound::Stages::announce(vtkInformationVector* output)
+{
+  const auto on = [&](int port) { return output->GetInformationObject(port); };
+  formation->SetDevice(tracer->GetDevice()); // what it says when it is asked
+  const sono::ProbeField field = probe->Probe();
+  const sono::ImageSettings all = settings(field);
+  acquisition_ = vtkSmartPointer<vtkFieldData>::New();
+  sono::writeProbe(field, acquisition_);
+  sono::writeNumber("SamplingMHz", tracer->RfSamplingMHz(field), acquisition_);
+
+  const sono::ImagePlacement placement = sono::placementOf(field, all.pixelMm);
+  placement.announce(VTK_UNSIGNED_CHAR, on(IMAGE));
+  placement.flat(field.pose).announce(VTK_UNSIGNED_CHAR, on(FLAT_IMAGE));
+  placement.announce(VTK_FLOAT, on(ERROR_MAP));
+  if (!owner_->ErrorMap)
   {
-    connected_[port] = std::move(content);
-    stage->SetInputDataObject(stagePort, copyOf(input));
+    const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+    on(ERROR_MAP)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+  }
+  const int lineCount = all.geometry.totalLineCount();
+  const double binMm = all.tracing.radialBinMm;
+  for (int port : { RF_LINES, BMODE_LINES })
+  {
+    sono::announceLineImage({ all.echo.sampleCount(), lineCount, 0.0, all.echo.sampleMm() }, 1, on(port));
+  }
+  sono::announceLineImage({ all.tracing.binCount(), lineCount, binMm / 2.0, binMm }, 1, on(TRACED_LINES));
+  sono::announceFields(acquisition_, on(IMAGE));
+  for (int port : { BMODE_LINES, RF_LINES, TRACED_LINES, PROBE, FLAT_IMAGE, ERROR_MAP })
+  {
+    sono::announceSameFields(on(IMAGE), on(port));
   }
 }
 
-void vtkSonoUltrasound::Stages::connectMain(vtkDataObject* input)
+const std::vector<sono::TargetSurface>& vtkSonoUltrasound::Stages::targets(vtkDataObject* input,
+                                                                           vtkMultiBlockDataSet* blocks)
 {
-  if (!input)
+  const auto tissues = vtkSonoSceneHandle::GetTissues(blocks->GetFieldData());
+  if (tissues != tissues_ || targetTissue_ != tracer->GetTargetTissue())
   {
-    throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
+    targets_.content.reset();
+    tissues_ = tissues;
+    targetTissue_ = tracer->GetTargetTissue();
   }
-  std::vector<double> content = sono::contentOf(input);
-  if (content == connected_[LABELS_OR_SCENE] && tracer->GetNumberOfInputConnections(0) > 0)
+  return targets_.get(input,
+                      [&] { return sono::targetSurfaces(vtkPolyData::SafeDownCast(input), targetTissue_, *tissues_); });
+}
+
+sono::TracedResult vtkSonoUltrasound::Stages::trace(const sono::ProbeField& field, const sono::ImageInput& image)
+{
+  const sono::TraceSettings& tracing = image.settings.tracing;
+  sono::announceDevice(sono::chooseDevice(tracing));
+  const auto lines = sono::makeScanLines(field.geometry, field.pose);
+  const auto warnOfContact = [&] {
+    const std::string sentence = field.preview ? "" : sono::probeContactWarning(*simulator_.scene(), lines);
+    if (!sentence.empty())
+    {
+      sono::warn(owner_, sentence);
+    }
+  };
+  sono::TracedResult traced;
+  try
   {
+    traced = simulator_.traced(image, progress(tracer, anatomyEnd, tracingEnd));
+  }
+  catch (const sono::Error&)
+  {
+    warnOfContact();
+    throw;
+  }
+  if (!(traced == traced_)) // on a GPU it is under way
+  {
+    traced_ = traced;
+    pulseTime_ = 0;
+    warnOfContact();
+    if (field.prepares && !field.preview)
+    {
+      simulator_.prepareInteractive(lines, tracing);
+    }
+  }
+  return traced;
+}
+
+void vtkSonoUltrasound::Stages::readEchoInputs(const Inputs& inputs, sono::ImageInput& image)
+{
+  sono::announceDevice(sono::chooseDevice(image.settings.echo.device));
+  image.settings.echo.field = pulseEchoField_.get(inputs[PULSE_ECHO_FIELD], [&] {
+    return std::make_shared<const sono::PulseEchoField>(
+      sono::fieldFromImage(vtkImageData::SafeDownCast(inputs[PULSE_ECHO_FIELD])));
+  });
+  if (pulseTime_ != formation->GetMTime())
+  {
+    pulseTime_ = 0; // stays so when it fails
+    pulse_ = formation->ReadPulse();
+    pulseTime_ = formation->GetMTime();
+  }
+  image.settings.echo.pulse = pulse_;
+  image.points = scatterers_.get(inputs[SCATTERERS],
+                                 [&] { return sono::pointScatterers(vtkPointSet::SafeDownCast(inputs[SCATTERERS])); });
+}
+
+/// Takes the lines of before where they are of the same result.
+template<class Result, class Fill>
+void vtkSonoUltrasound::Stages::makeLines(const Result& result, Result (*resultOf)(vtkImageData*), const Fill& fill,
+                                          vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines)
+{
+  if (kept && resultOf(kept) == result)
+  {
+    vtkNew<vtkFieldData> fields;
+    fields->ShallowCopy(lines->GetFieldData());
+    lines->ShallowCopy(kept);
+    lines->GetFieldData()->PassData(fields);
     return;
   }
-  connected_[LABELS_OR_SCENE] = std::move(content);
-  const vtkSmartPointer<vtkDataObject> copy = copyOf(input);
-  if (vtkImageData::SafeDownCast(input))
+  fill();
+  kept = vtkSmartPointer<vtkImageData>::New();
+  kept->ShallowCopy(lines);
+}
+
+void vtkSonoUltrasound::Stages::makePaths(int port, const sono::ImageInput& image, vtkPolyData* output)
+{
+  const auto paths =
+    simulator_.paths(sono::makeScanLines(image.settings.geometry, image.pose), image.settings.tracing,
+                     tracer->GetNumberOfShownPaths(), image.targets, progress(tracer, tracingEnd, 1.0));
+  if (port == RAY_PATHS)
   {
-    scene->SetInputDataObject(copy);
-    tracer->SetInputConnection(0, scene->GetOutputPort());
+    sono::fillPaths(*paths, output);
   }
   else
   {
-    scene->SetInputDataObject(nullptr);
-    tracer->SetInputDataObject(0, copy);
+    sono::fillHits(*paths, sono::mediaNames(*simulator_.scene(), image.targets), output);
   }
 }
 
-void vtkSonoUltrasound::Stages::chooseLabels(const char* name)
+void vtkSonoUltrasound::Stages::makeErrorMap(const sono::ProbeField& field, const sono::ImageInput& image,
+                                             const sono::TracedResult& traced)
 {
-  if (name && labels_ != name)
+  const sono::ImageResult map = simulator_.errorMap(field.geometry, traced, field.preview, image.settings.pixelMm,
+                                                    progress(converter, tracingEnd, 1.0));
+  if (!errorArrays_ || !(map == errorMap_))
   {
-    labels_ = name;
-    scene->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+    errorArrays_ = sono::errorArrays(map);
+    errorMap_ = map;
   }
 }
 
-void vtkSonoUltrasound::Stages::share(bool wantsErrorMap)
+void vtkSonoUltrasound::Stages::makeImage(const sono::ImageInput& image, vtkDataArray* errors, vtkImageData* world,
+                                          vtkImageData* flat)
 {
-  errors->SetInputConnection(wantsErrorMap ? tracer->GetOutputPort(0) : nullptr);
-  errors->SetPixelMm(converter->GetPixelMm());
-  formation->SetDevice(tracer->GetDevice());
-}
-
-bool vtkSonoUltrasound::Stages::isMade(int outputPort) const
-{
-  return outputPort != ERROR_MAP || errors->GetNumberOfInputConnections(0) > 0;
-}
-
-vtkAlgorithm* vtkSonoUltrasound::Stages::stageOf(int outputPort) const
-{
-  return outputPort == ANATOMY ? static_cast<vtkAlgorithm*>(scene) : port(outputPort)->GetProducer();
-}
-
-vtkAlgorithmOutput* vtkSonoUltrasound::Stages::port(int outputPort) const
-{
-  switch (outputPort)
+  const sono::ImageResult made = simulator_.image(image, progress(converter, 0.0, 1.0));
+  // All else before the picture, which may have to be waited for.
+  sono::placeImage(made, image.pose, world);
+  sono::placeFlat(made, image.pose, world, flat);
+  const sono::ScanPicture picture = simulator_.picture(made, image.pose, true);
+  if (!pictureArrays_ || picture.grey.data != picture_.grey.data)
   {
-    case IMAGE:
-      return converter->GetOutputPort(0);
-    case BMODE_LINES:
-      return bmode->GetOutputPort();
-    case RF_LINES:
-      return formation->GetOutputPort();
-    case TRACED_LINES:
-      return tracer->GetOutputPort(0);
-    case ANATOMY:
-      return tracer->GetInputConnection(0, 0);
-    case PROBE:
-      return probe->GetOutputPort();
-    case RAY_PATHS:
-      return tracer->GetOutputPort(2);
-    case BOUNDARY_HITS:
-      return tracer->GetOutputPort(3);
-    case ERROR_MAP:
-      return errors->GetOutputPort(0);
-    default:
-      return converter->GetOutputPort(1);
+    pictureArrays_ = sono::pictureArrays(picture);
+    picture_ = picture;
   }
+  for (vtkImageData* output : { world, flat })
+  {
+    output->GetPointData()->ShallowCopy(pictureArrays_);
+    if (errors)
+    {
+      output->GetPointData()->AddArray(errors);
+    }
+  }
+}
+
+void vtkSonoUltrasound::Stages::make(int port, vtkInformationVector** input, vtkInformationVector* output)
+{
+  Inputs inputs; // others may be connected meanwhile
+  for (int i = 0; i < int(inputs.size()); ++i)
+  {
+    inputs[i] = vtkDataObject::GetData(input[i]);
+  }
+  vtkDataObject* made = vtkDataObject::GetData(output, port);
+  vtkFieldData* fields = made->GetFieldData();
+  const sono::ProbeField field = probe->Probe();
+  if (port == PROBE)
+  {
+    fields->Initialize();
+    return sono::fillProbe(field, vtkPolyData::SafeDownCast(made));
+  }
+  const char* labels = owner_->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[LABELS_OR_SCENE], labels);
+  if (port == ANATOMY)
+  {
+    return made->ShallowCopy(blocks);
+  }
+  if (port == ERROR_MAP && !owner_->ErrorMap)
+  {
+    return;
+  }
+  simulator_.setScene(vtkSonoSceneHandle::Get(blocks));
+  sono::ImageInput image{ field.pose, settings(field), targets(inputs[TARGETS], blocks), nullptr };
+  const sono::TracedResult traced = trace(field, image);
+  fields->PassData(blocks->GetFieldData());
+  if (port == RAY_PATHS || port == BOUNDARY_HITS)
+  {
+    return tracer->GetNumberOfShownPaths() != 0 ? makePaths(port, image, vtkPolyData::SafeDownCast(made)) : void();
+  }
+  fields->PassData(acquisition_);
+  auto* lines = vtkImageData::SafeDownCast(made);
+  if (port == TRACED_LINES)
+  {
+    const double samplingMHz = tracer->RfSamplingMHz(field);
+    return makeLines(
+      traced, sono::tracedHandleOf, [&] { sono::fillTraced(traced, field, samplingMHz, lines); }, tracedLines_, lines);
+  }
+  if (owner_->ErrorMap)
+  {
+    makeErrorMap(field, image, traced);
+  }
+  if (port == ERROR_MAP)
+  {
+    sono::placeImage(errorMap_, field.pose, lines);
+    return lines->GetPointData()->ShallowCopy(errorArrays_);
+  }
+  readEchoInputs(inputs, image);
+  const sono::RfResult rf = simulator_.rf(image, progress(formation, 0.0, bmodeEnd));
+  if (port == RF_LINES)
+  {
+    return makeLines(
+      rf, sono::rfOf, [&] { sono::fillRf(rf, lines); }, rfLines_, lines);
+  }
+  if (port == BMODE_LINES)
+  {
+    const sono::BModeResult grey = simulator_.bmode(image, progress(bmode, 0.0, bmodeEnd));
+    return makeLines(
+      grey, sono::bmodeOf, [&] { sono::fillBMode(grey, lines); }, bmodeLines_, lines);
+  }
+  vtkImageData* world = vtkImageData::GetData(output, IMAGE);
+  if (port == FLAT_IMAGE)
+  {
+    world->GetFieldData()->ShallowCopy(fields);
+  }
+  makeImage(image, owner_->ErrorMap ? errorArrays_->GetScalars() : nullptr, world,
+            vtkImageData::GetData(output, FLAT_IMAGE));
 }
 
 vtkSonoUltrasound::vtkSonoUltrasound()
-  : Chain(new Stages(this))
+  : Inside(new Stages(this))
 {
   this->SetNumberOfInputPorts(4);
   this->SetNumberOfOutputPorts(10);
@@ -274,7 +444,7 @@ vtkSonoUltrasound::~vtkSonoUltrasound() = default;
 void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  for (vtkAlgorithm* stage : this->Chain->withSettings())
+  for (vtkAlgorithm* stage : this->Inside->withSettings())
   {
     os << indent << stage->GetClassName() << ":" << endl;
     stage->PrintSelf(os, indent.GetNextIndent());
@@ -287,9 +457,8 @@ void vtkSonoUltrasound::Replace(vtkSmartPointer<Stage>& own, Stage* given)
 {
   if (given && given != own)
   {
-    const vtkSmartPointer<Stage> before = own; // the chain still listens to it
     own = given;
-    this->Chain->chainUp();
+    this->Inside->listenToBuilder();
     this->Modified();
   }
 }
@@ -297,11 +466,11 @@ void vtkSonoUltrasound::Replace(vtkSmartPointer<Stage>& own, Stage* given)
 #define sonoStage(type, name, member)                                                                                  \
   void vtkSonoUltrasound::Set##name(type* stage)                                                                       \
   {                                                                                                                    \
-    this->Replace(this->Chain->member, stage);                                                                         \
+    this->Replace(this->Inside->member, stage);                                                                        \
   }                                                                                                                    \
   type* vtkSonoUltrasound::Get##name()                                                                                 \
   {                                                                                                                    \
-    return this->Chain->member;                                                                                        \
+    return this->Inside->member;                                                                                       \
   }
 sonoStage(vtkSonoSceneBuilder, SceneBuilder, scene);
 sonoStage(vtkSonoProbeSource, Probe, probe);
@@ -314,7 +483,7 @@ sonoStage(vtkSonoScanConverter, ScanConverter, converter);
 vtkMTimeType vtkSonoUltrasound::GetMTime()
 {
   vtkMTimeType time = this->Superclass::GetMTime();
-  for (vtkAlgorithm* stage : this->Chain->withSettings())
+  for (vtkAlgorithm* stage : this->Inside->withSettings())
   {
     time = std::max(time, stage->GetMTime());
   }
@@ -354,22 +523,11 @@ int vtkSonoUltrasound::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    this->Chain->connect(input);
-    this->Chain->share(this->ErrorMap);
-    this->Chain->chain->updateInformation();
-    for (int port : { IMAGE, BMODE_LINES, RF_LINES, TRACED_LINES, PROBE, FLAT_IMAGE })
+    if (!vtkDataObject::GetData(input[LABELS_OR_SCENE]))
     {
-      vtkAlgorithmOutput* made = this->Chain->port(port);
-      announceSame(made->GetProducer()->GetOutputInformation(made->GetIndex()), output->GetInformationObject(port));
+      throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
     }
-    vtkInformation* map = output->GetInformationObject(ERROR_MAP);
-    announceSame(output->GetInformationObject(IMAGE), map);
-    vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_FLOAT, 1);
-    if (!this->Chain->isMade(ERROR_MAP))
-    {
-      const int empty[6] = { 0, -1, 0, -1, 0, -1 };
-      map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
-    }
+    this->Inside->announce(output);
   });
 }
 
@@ -403,33 +561,5 @@ int vtkSonoUltrasound::ProcessRequest(vtkInformation* request, vtkInformationVec
 
 int vtkSonoUltrasound::RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  return sono::runStage(this, output, [&] {
-    this->Chain->connect(input);
-    this->Chain->chooseLabels(this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME()));
-    const int asked = portAsked(request);
-    this->Chain->chain->update(this->Chain->stageOf(asked));
-    for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
-    {
-      if (isMadeFor(asked, port) && this->Chain->isMade(port))
-      {
-        vtkAlgorithmOutput* made = this->Chain->port(port);
-        vtkDataObject* data = made->GetProducer()->GetOutputDataObject(made->GetIndex());
-        if (auto* lines = vtkImageData::SafeDownCast(data))
-        {
-          sono::addArrays(lines);
-        }
-        vtkDataObject::GetData(output, port)->ShallowCopy(data);
-      }
-    }
-    if (isMadeFor(asked, IMAGE) && this->Chain->isMade(ERROR_MAP))
-    {
-      vtkAlgorithmOutput* map = this->Chain->port(ERROR_MAP);
-      vtkDataArray* percent =
-        vtkImageData::SafeDownCast(map->GetProducer()->GetOutputDataObject(0))->GetPointData()->GetScalars();
-      for (int port : { IMAGE, FLAT_IMAGE })
-      {
-        vtkImageData::GetData(output, port)->GetPointData()->AddArray(percent);
-      }
-    }
-  });
+  return sono::runStage(this, output, [&] { this->Inside->make(portAsked(request), input, output); });
 }
