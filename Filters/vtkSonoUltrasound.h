@@ -7,6 +7,9 @@
 
 #include <memory>
 
+namespace sono {
+class UltrasoundStages;
+}
 class vtkSonoBMode;
 class vtkSonoImageFormation;
 class vtkSonoProbeSource;
@@ -120,8 +123,7 @@ private:
   template<class Stage>
   void Replace(vtkSmartPointer<Stage>& own, Stage* given);
 
-  class Stages;
-  std::unique_ptr<Stages> Inside;
+  std::unique_ptr<sono::UltrasoundStages> Inside;
   bool ErrorMap = false;
 };
 
