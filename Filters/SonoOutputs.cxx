@@ -5,16 +5,20 @@
 #include "SonoSharedArray.h"
 #include "vtkSonoResultHandle.h"
 
+#include "vtkCellArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedShortArray.h"
 
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace sono {
 namespace {
@@ -79,17 +83,33 @@ ImagePlacement placementOf(const ImageResult& image, const ProbePose& pose)
 
 } // namespace
 
-void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, Carries carries,
-                vtkImageData* lines)
+void fillProbe(const ProbeField& probe, vtkPolyData* polyData)
+{
+  const ProbePose& pose = probe.pose;
+  const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  for (const std::vector<Vec3d>& polyline : scanOutline(probe.geometry))
+  {
+    lines->InsertNextCell(static_cast<int>(polyline.size()));
+    for (const Vec3d& p : polyline)
+    {
+      const Vec3d world = pose.positionMm + p.x * pose.lateral + p.y * elevation + p.z * pose.axial;
+      lines->InsertCellPoint(points->InsertNextPoint(&world.x));
+    }
+  }
+  polyData->SetPoints(points);
+  polyData->SetLines(lines);
+  writeProbe(probe, polyData->GetFieldData());
+}
+
+void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, vtkImageData* lines)
 {
   const TracedLines& layout = traced.layout();
   setLineImageLayout({ layout.binCount, layout.lineCount, layout.binMm / 2.0, layout.binMm }, lines);
   writeProbe(probe, lines->GetFieldData());
   writeNumber("SamplingMHz", samplingMHz, lines->GetFieldData());
-  if (carries == Carries::Arrays)
-  {
-    addTraced(traced, lines);
-  }
+  addTraced(traced, lines);
   vtkSonoResultHandle::Attach(traced, tracedArrays(lines), lines->GetFieldData());
 }
 
@@ -142,15 +162,12 @@ TracedResult tracedHandleOf(vtkImageData* lines)
   return found<TracedResult>(tracedArrays(lines), lines);
 }
 
-void fillRf(const RfResult& rf, Carries carries, vtkImageData* image)
+void fillRf(const RfResult& rf, vtkImageData* image)
 {
   const RfLines& layout = rf.layout();
   setLineImageLayout({ layout.sampleCount, layout.lineCount, 0.0, layout.sampleMm }, image);
   image->GetFieldData()->RemoveArray("BoundaryEcho"); // it came along from the input and is part of RF now
-  if (carries == Carries::Arrays)
-  {
-    addRf(rf, image);
-  }
+  addRf(rf, image);
   vtkSonoResultHandle::Attach(rf, rfArrays(image), image->GetFieldData());
 }
 
@@ -159,14 +176,11 @@ RfResult rfOf(vtkImageData* image)
   return found<RfResult>(rfArrays(image), image);
 }
 
-void fillBMode(const BModeResult& bmode, Carries carries, vtkImageData* image)
+void fillBMode(const BModeResult& bmode, vtkImageData* image)
 {
   const BModeLines& layout = bmode.layout();
   setLineImageLayout({ layout.sampleCount, layout.lineCount, 0.0, layout.sampleMm }, image);
-  if (carries == Carries::Arrays)
-  {
-    addBMode(bmode, image);
-  }
+  addBMode(bmode, image);
   vtkSonoResultHandle::Attach(bmode, bmodeArrays(image), image->GetFieldData());
 }
 
@@ -175,47 +189,32 @@ BModeResult bmodeOf(vtkImageData* image)
   return found<BModeResult>(bmodeArrays(image), image);
 }
 
-void addArrays(vtkImageData* image)
+void placeImage(const ImageResult& image, const ProbePose& pose, vtkImageData* world)
 {
-  if (image->GetPointData()->GetNumberOfArrays() > 0)
-  {
-    return;
-  }
-  if (const RfResult rf = rfOf(image))
-  {
-    addRf(rf, image);
-    vtkSonoResultHandle::Attach(rf, rfArrays(image), image->GetFieldData());
-  }
-  else if (const BModeResult bmode = bmodeOf(image))
-  {
-    addBMode(bmode, image);
-    vtkSonoResultHandle::Attach(bmode, bmodeArrays(image), image->GetFieldData());
-  }
-  else if (const TracedResult traced = tracedHandleOf(image))
-  {
-    addTraced(traced, image);
-    vtkSonoResultHandle::Attach(traced, tracedArrays(image), image->GetFieldData());
-  }
+  world->GetPointData()->Initialize(); // VTK keeps the scalars of the run before
+  placementOf(image, pose).place(world);
+  vtkSonoResultHandle::Remove(world->GetFieldData());
 }
 
-void fillImage(const ImageResult& image, const ScanPicture& picture, const ProbePose& pose, vtkImageData* world,
-               vtkImageData* flat)
+void placeFlat(const ImageResult& image, const ProbePose& pose, vtkImageData* world, vtkImageData* flat)
 {
-  const ImagePlacement placement = placementOf(image, pose);
-  placement.place(world);
-  vtkPointData* arrays = world->GetPointData();
+  flat->ShallowCopy(world);
+  placementOf(image, pose).flat(pose).place(flat);
+}
+
+vtkSmartPointer<vtkPointData> pictureArrays(const ScanPicture& picture)
+{
+  auto arrays = vtkSmartPointer<vtkPointData>::New();
   arrays->SetScalars(sharedArray<vtkUnsignedCharArray>("BMode", picture.grey));
   arrays->AddArray(sharedArray<vtkUnsignedCharArray>("Mask", picture.mask));
   if (picture.labels.size > 0)
   {
     arrays->AddArray(sharedArray<vtkUnsignedShortArray>("Labels", picture.labels));
   }
-  vtkSonoResultHandle::Remove(world->GetFieldData());
-  flat->ShallowCopy(world);
-  placement.flat(pose).place(flat);
+  return arrays;
 }
 
-void fillErrorMap(const ImageResult& map, const ProbePose& pose, vtkImageData* world, vtkImageData* flat)
+vtkSmartPointer<vtkPointData> errorArrays(const ImageResult& map)
 {
   const std::vector<float>& value = map.isVolume() ? map.volume().value : map.plane().host().value;
   const std::vector<std::uint8_t>& mask = map.isVolume() ? map.volume().mask : map.plane().host().mask;
@@ -224,13 +223,10 @@ void fillErrorMap(const ImageResult& map, const ProbePose& pose, vtkImageData* w
   {
     percent[i] = mask[i] ? value[i] : std::numeric_limits<float>::quiet_NaN();
   }
-  const ImagePlacement placement = placementOf(map, pose);
-  placement.place(world);
-  world->GetPointData()->SetScalars(sharedArray<vtkFloatArray>("ErrorPercent", SharedSpan<float>(std::move(percent))));
-  world->GetPointData()->AddArray(sharedArray<vtkUnsignedCharArray>("Mask", SharedSpan<std::uint8_t>(mask)));
-  vtkSonoResultHandle::Remove(world->GetFieldData());
-  flat->ShallowCopy(world);
-  placement.flat(pose).place(flat);
+  auto arrays = vtkSmartPointer<vtkPointData>::New();
+  arrays->SetScalars(sharedArray<vtkFloatArray>("ErrorPercent", SharedSpan<float>(std::move(percent))));
+  arrays->AddArray(sharedArray<vtkUnsignedCharArray>("Mask", SharedSpan<std::uint8_t>(mask)));
+  return arrays;
 }
 
 } // namespace sono

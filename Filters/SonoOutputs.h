@@ -3,25 +3,24 @@
 #include "ImageResult.h"
 #include "SonoProbeField.h"
 
-class vtkFieldData;
+#include "vtkSmartPointer.h"
+
 class vtkImageData;
+class vtkPointData;
+class vtkPolyData;
 
 namespace sono {
 
 // The stages' results as the filters give them. Field data that are on an output already stay beside what is added.
-// A result travels as a handle, and as arrays unless it stays within a filter; the arrays can be made later.
+// A result travels as a handle beside its arrays.
 
-enum class Carries
-{
-  HandleAlone,
-  Arrays
-};
+/// The outline of what is scanned and the transducer's face, see vtkSonoProbeSource.
+void fillProbe(const ProbeField& probe, vtkPolyData* polyData);
 
 /// Lines x bins "Intensity" and "StandardError", with the boundary echoes in the field data. `samplingMHz` is that of
 /// the RF to be.
-void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, Carries carries,
-                vtkImageData* lines);
-/// Lines x samples "BoundaryEcho", beside traced lines with arrays.
+void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, vtkImageData* lines);
+/// Lines x samples "BoundaryEcho", beside traced lines.
 void fillEchoes(const TracedResult& traced, vtkImageData* lines, vtkImageData* echoes);
 /// What fillTraced has put into some lines, as a result: the handle itself while it is that of the arrays, else what
 /// the arrays say. Throws Error when an array is missing, and when `lines` do not hold the probe's.
@@ -31,23 +30,24 @@ TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoS
 TracedResult tracedHandleOf(vtkImageData* lines);
 
 /// Lines x samples "Envelope", "RF" and "IQ".
-void fillRf(const RfResult& rf, Carries carries, vtkImageData* image);
+void fillRf(const RfResult& rf, vtkImageData* image);
 /// The handle that fillRf has left, while it is that of the arrays; else no result.
 RfResult rfOf(vtkImageData* image);
 
 /// Lines x samples "BMode", and the reference amplitude in the field data.
-void fillBMode(const BModeResult& bmode, Carries carries, vtkImageData* image);
+void fillBMode(const BModeResult& bmode, vtkImageData* image);
 /// As rfOf.
 BModeResult bmodeOf(vtkImageData* image);
 
-/// The arrays of a result that came as a handle alone, whichever of the three it is. Nothing where it came otherwise.
-void addArrays(vtkImageData* image);
+/// Size and place of an image in the world; and flat, with the world's field data. Neither needs pixels, which a GPU
+/// may be making meanwhile.
+void placeImage(const ImageResult& image, const ProbePose& pose, vtkImageData* world);
+void placeFlat(const ImageResult& image, const ProbePose& pose, vtkImageData* world, vtkImageData* flat);
 
-/// The point arrays "BMode", "Mask" and, where there are labels, "Labels"; in the world, and flat.
-void fillImage(const ImageResult& image, const ScanPicture& picture, const ProbePose& pose, vtkImageData* world,
-               vtkImageData* flat);
+/// "BMode", the scalars, "Mask" and, where there are labels, "Labels".
+vtkSmartPointer<vtkPointData> pictureArrays(const ScanPicture& picture);
 
-/// The point arrays "ErrorPercent", NaN outside the mask, and "Mask"; in the world, and flat.
-void fillErrorMap(const ImageResult& map, const ProbePose& pose, vtkImageData* world, vtkImageData* flat);
+/// "ErrorPercent", the scalars, NaN outside the mask, and "Mask".
+vtkSmartPointer<vtkPointData> errorArrays(const ImageResult& map);
 
 } // namespace sono

@@ -36,6 +36,20 @@ vtkSmartPointer<Array> pointArray(const char* name, vtkPolyData* polyData)
 
 } // namespace
 
+std::vector<std::string> mediaNames(const Scene& scene, const std::vector<TargetSurface>& targets)
+{
+  std::vector<std::string> names;
+  for (const Tissue& tissue : scene.tissues())
+  {
+    names.push_back(tissue.name);
+  }
+  for (const TargetSurface& target : targets)
+  {
+    names.push_back(target.tissue.name);
+  }
+  return names;
+}
+
 void fillPaths(const std::vector<RecordedPath>& paths, vtkPolyData* polyData)
 {
   vtkNew<vtkPoints> points;

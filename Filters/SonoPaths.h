@@ -1,6 +1,8 @@
 #pragma once
 
+#include "Scene/Scene.h"
 #include "Trace/RecordPaths.h"
+#include "Trace/Targets.h"
 
 #include <string>
 #include <vector>
@@ -8,6 +10,9 @@
 class vtkPolyData;
 
 namespace sono {
+
+/// The tissues by the numbers that recorded paths give them.
+std::vector<std::string> mediaNames(const Scene& scene, const std::vector<TargetSurface>& targets);
 
 /// One polyline a path, with the point arrays "Intensity", "IntensityDb" (20 log10, at least -400) and "Bounce", and
 /// the cell array "Line".

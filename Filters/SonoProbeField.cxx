@@ -9,6 +9,7 @@
 #include "vtkInformationDataObjectMetaDataKey.h"
 #include "vtkNew.h"
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 
@@ -21,8 +22,25 @@ vtkInformationDataObjectMetaDataKey* acquisitionKey()
   return key;
 }
 
-void writeTuple(const char* name, std::initializer_list<double> values, vtkFieldData* field)
+/// The array of before where it says the same: to make one costs more than to look.
+bool takeBefore(const char* name, std::initializer_list<double> values, vtkFieldData* field, vtkFieldData* before)
 {
+  auto* array = before ? vtkDoubleArray::SafeDownCast(before->GetAbstractArray(name)) : nullptr;
+  if (!array ||
+      !std::equal(values.begin(), values.end(), array->GetPointer(0), array->GetPointer(array->GetNumberOfValues())))
+  {
+    return false;
+  }
+  field->AddArray(array);
+  return true;
+}
+
+void writeTuple(const char* name, std::initializer_list<double> values, vtkFieldData* field, vtkFieldData* before)
+{
+  if (takeBefore(name, values, field, before))
+  {
+    return;
+  }
   vtkNew<vtkDoubleArray> array;
   array->SetName(name);
   array->SetNumberOfComponents(static_cast<int>(values.size()));
@@ -61,14 +79,14 @@ Vec3d readVector(const char* name, vtkFieldData* field)
 
 } // namespace
 
-void writeNumber(const char* name, double value, vtkFieldData* field)
+void writeNumber(const char* name, double value, vtkFieldData* field, vtkFieldData* before)
 {
-  writeTuple(name, { value }, field);
+  writeTuple(name, { value }, field, before);
 }
 
-void writeVector(const char* name, const Vec3d& value, vtkFieldData* field)
+void writeVector(const char* name, const Vec3d& value, vtkFieldData* field, vtkFieldData* before)
 {
-  writeTuple(name, { value.x, value.y, value.z }, field);
+  writeTuple(name, { value.x, value.y, value.z }, field, before);
 }
 
 double readNumber(const char* name, vtkFieldData* field)
@@ -76,18 +94,18 @@ double readNumber(const char* name, vtkFieldData* field)
   return findTuple(name, 1, field)->GetTuple1(0);
 }
 
-void writeProbe(const ProbeField& probe, vtkFieldData* field)
+void writeProbe(const ProbeField& probe, vtkFieldData* field, vtkFieldData* before)
 {
-  ProbeSettings::visit(probe, [field](const auto& value, const Parameter& parameter) {
-    writeNumber(propertyName(parameter).c_str(), numberOf(value), field);
+  ProbeSettings::visit(probe, [field, before](const auto& value, const Parameter& parameter) {
+    writeNumber(propertyName(parameter).c_str(), numberOf(value), field, before);
   });
-  writeNumber("IsVolume", probe.geometry.isVolume(), field);
-  writeNumber("IsCatheter", probe.geometry.lineOrigin() == LineOrigin::Catheter, field);
-  writeVector("ProbePositionMm", probe.pose.positionMm, field);
-  writeVector("ProbeAxial", probe.pose.axial, field);
-  writeVector("ProbeLateral", probe.pose.lateral, field);
-  writeNumber("Preview", probe.preview ? 1.0 : 0.0, field);
-  writeNumber("PrepareInteraction", probe.prepares ? 1.0 : 0.0, field);
+  writeNumber("IsVolume", probe.geometry.isVolume(), field, before);
+  writeNumber("IsCatheter", probe.geometry.lineOrigin() == LineOrigin::Catheter, field, before);
+  writeVector("ProbePositionMm", probe.pose.positionMm, field, before);
+  writeVector("ProbeAxial", probe.pose.axial, field, before);
+  writeVector("ProbeLateral", probe.pose.lateral, field, before);
+  writeNumber("Preview", probe.preview ? 1.0 : 0.0, field, before);
+  writeNumber("PrepareInteraction", probe.prepares ? 1.0 : 0.0, field, before);
 }
 
 ProbeField readProbe(vtkFieldData* field)

@@ -16,15 +16,16 @@ struct ProbeField : ProbeSettings
 };
 
 /// One array a number or vector, units in the names (DepthMm, ProbePositionMm, CentreFrequencyMHz, ...), and what the
-/// kind of scan lines means for who draws the probe (IsVolume, IsCatheter: 0 or 1).
-void writeProbe(const ProbeField& probe, vtkFieldData* field);
+/// kind of scan lines means for who draws the probe (IsVolume, IsCatheter: 0 or 1). Arrays of `before` that say the
+/// same are taken from there.
+void writeProbe(const ProbeField& probe, vtkFieldData* field, vtkFieldData* before = nullptr);
 
 /// Throws Error when an array is missing, naming it.
 ProbeField readProbe(vtkFieldData* field);
 
 /// One number in field data; `readNumber` throws Error when it is missing.
-void writeNumber(const char* name, double value, vtkFieldData* field);
-void writeVector(const char* name, const Vec3d& value, vtkFieldData* field);
+void writeNumber(const char* name, double value, vtkFieldData* field, vtkFieldData* before = nullptr);
+void writeVector(const char* name, const Vec3d& value, vtkFieldData* field, vtkFieldData* before = nullptr);
 double readNumber(const char* name, vtkFieldData* field);
 
 /// The same numbers travel ahead of the data, as meta-data of the pipeline's information pass, because an image's

@@ -1,9 +1,9 @@
 #include "vtkSonoAcousticWindow.h"
 
 #include "Probe/AcousticWindow.h"
+#include "SonoAnatomy.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
-#include "SonoStageChain.h"
 #include "vtkSonoSceneBuilder.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -32,15 +32,11 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, bool fillBody, 
   {
     return vtkSonoSceneHandle::Get(blocks);
   }
-  const vtkSmartPointer<vtkDataObject> copy = vtk::TakeSmartPointer(input->NewInstance());
-  copy->ShallowCopy(input);
   vtkNew<vtkSonoSceneBuilder> builder;
-  builder->SetInputDataObject(copy);
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
   builder->SetProgressText(owner->GetProgressText()); // it is a part of that
-  sono::StageChain(owner, { { builder, 0.5 } }).update(builder);
-  return vtkSonoSceneHandle::Get(builder->GetOutput());
+  return vtkSonoSceneHandle::Get(sono::Anatomy(owner, builder, 0.5).blocks(input, nullptr));
 }
 
 /// The pose that the data bring along.

@@ -85,15 +85,14 @@ int vtkSonoBMode::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
-    const sono::Carries carries = sono::isInner(this) ? sono::Carries::HandleAlone : sono::Carries::Arrays;
     if (const sono::RfResult rf = sono::rfOf(lines))
     {
-      return sono::fillBMode(this->Simulator->makeBMode(rf, this->Settings()), carries, vtkImageData::GetData(output));
+      return sono::fillBMode(this->Simulator->makeBMode(rf, this->Settings()), vtkImageData::GetData(output));
     }
     const std::vector<float> envelope =
       sono::lineValues("Envelope", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
     sono::fillBMode(sono::BModeResult(sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm,
                                                       this->Settings())),
-                    carries, vtkImageData::GetData(output));
+                    vtkImageData::GetData(output));
   });
 }

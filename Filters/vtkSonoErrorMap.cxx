@@ -76,6 +76,12 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     }
     const sono::ImageResult map = sono::Simulator().errorMap(
       probe.geometry, traced, probe.preview, sono::pixelMmOf(probe, this->PixelMm), sono::progressOf(this));
-    sono::fillErrorMap(map, probe.pose, vtkImageData::GetData(output, 0), vtkImageData::GetData(output, 1));
+    vtkImageData* world = vtkImageData::GetData(output, 0);
+    vtkImageData* flat = vtkImageData::GetData(output, 1);
+    sono::placeImage(map, probe.pose, world);
+    sono::placeFlat(map, probe.pose, world, flat);
+    const auto arrays = sono::errorArrays(map);
+    world->GetPointData()->ShallowCopy(arrays);
+    flat->GetPointData()->ShallowCopy(arrays);
   });
 }

@@ -1,54 +1,26 @@
 #include "vtkSonoImageFormation.h"
 
 #include "Core/Policy.h"
+#include "Probe/PulseFile.h"
 #include "Simulator.h"
 #include "SonoFieldImage.h"
 #include "SonoLineImage.h"
 #include "SonoOutputs.h"
 #include "SonoProbeField.h"
+#include "SonoScatterers.h"
 #include "SonoSettings.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
-#include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
 
 #include <memory>
-#include <vector>
 
 vtkStandardNewMacro(vtkSonoImageFormation);
-
-namespace {
-
-/// Null where no scatterers are connected.
-std::shared_ptr<const sono::PointScatterers> pointScatterers(vtkPointSet* points)
-{
-  if (!points || points->GetNumberOfPoints() == 0)
-  {
-    return nullptr;
-  }
-  vtkDataArray* amplitude = points->GetPointData()->GetArray("Amplitude");
-  if (!amplitude || amplitude->GetNumberOfComponents() != 1)
-  {
-    throw sono::Error("The scatterers have no point array 'Amplitude' with one component; add it, for example with a "
-                      "Calculator.");
-  }
-  std::vector<sono::PointScatterer> scatterers(static_cast<std::size_t>(points->GetNumberOfPoints()));
-  for (std::size_t i = 0; i < scatterers.size(); ++i)
-  {
-    const auto id = static_cast<vtkIdType>(i);
-    points->GetPoint(id, &scatterers[i].positionMm.x);
-    scatterers[i].amplitude = static_cast<float>(amplitude->GetTuple1(id));
-  }
-  return std::make_shared<const sono::PointScatterers>(scatterers);
-}
-
-} // namespace
 
 vtkSonoImageFormation::vtkSonoImageFormation()
   : Parameters(new sono::SettingsOf<sono::EchoSettings>)
@@ -77,14 +49,13 @@ int vtkSonoImageFormation::FillInputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
-sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) const
+sono::EchoSettings vtkSonoImageFormation::Settings(const sono::ProbeField& probe, double samplingMHz) const
 {
-  const sono::ProbeField probe = sono::readProbe(acquisition);
   auto settings = sono::settingsIn<sono::EchoSettings>(*this->Parameters);
   settings.centreFrequencyMHz = probe.centreFrequencyMHz;
   settings.fractionalBandwidth = probe.fractionalBandwidth;
   settings.aperture = probe.aperture();
-  settings.samplingMHz = sono::readNumber("SamplingMHz", acquisition);
+  settings.samplingMHz = samplingMHz;
   settings.depthMm = probe.geometry.depthMm;
   settings.scattererCellMm =
     probe.preview ? sono::interactiveCellMm(settings.scattererCellMm) : settings.scattererCellMm;
@@ -92,13 +63,20 @@ sono::EchoSettings vtkSonoImageFormation::Settings(vtkFieldData* acquisition) co
   return settings;
 }
 
+std::shared_ptr<const sono::SampledPulse> vtkSonoImageFormation::ReadPulse() const
+{
+  return this->PulseFileName.empty() ? nullptr
+                                     : std::make_shared<const sono::SampledPulse>(sono::readPulse(this->PulseFileName));
+}
+
 int vtkSonoImageFormation::RequestInformation(vtkInformation*, vtkInformationVector** input,
                                               vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
-    const sono::EchoSettings settings = this->Settings(acquisition);
-    const int lineCount = sono::readProbe(acquisition).geometry.totalLineCount();
+    const sono::ProbeField probe = sono::readProbe(acquisition);
+    const sono::EchoSettings settings = this->Settings(probe, sono::readNumber("SamplingMHz", acquisition));
+    const int lineCount = probe.geometry.totalLineCount();
     vtkInformation* outInfo = output->GetInformationObject(0);
     sono::announceLineImage({ settings.sampleCount(), lineCount, 0.0, settings.sampleMm() }, 1, outInfo);
     sono::announceFields(acquisition, outInfo);
@@ -116,22 +94,18 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
   return sono::runStage(this, output, [&] {
     vtkImageData* input0 = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(input0->GetFieldData());
-    sono::EchoSettings settings = this->Settings(input0->GetFieldData());
+    sono::EchoSettings settings = this->Settings(probe, sono::readNumber("SamplingMHz", input0->GetFieldData()));
     sono::announceDevice(sono::chooseDevice(settings.device));
     if (vtkImageData* field = vtkImageData::GetData(input[2]))
     {
       settings.field = std::make_shared<const sono::PulseEchoField>(sono::fieldFromImage(field));
     }
-    if (!this->PulseFileName.empty())
-    {
-      settings.pulse = std::make_shared<const sono::SampledPulse>(sono::readPulse(this->PulseFileName));
-    }
+    settings.pulse = this->ReadPulse();
     this->Simulator->setScene(vtkSonoSceneHandle::Get(input0->GetFieldData()));
     const sono::TracedResult traced = sono::tracedOf(input0, probe, settings.sampleMm());
     const sono::RfResult rf =
       this->Simulator->formRf(sono::makeScanLines(probe.geometry, probe.pose), traced, settings,
-                              pointScatterers(vtkPointSet::GetData(input[1])), sono::progressOf(this));
-    sono::fillRf(rf, sono::isInner(this) ? sono::Carries::HandleAlone : sono::Carries::Arrays,
-                 vtkImageData::GetData(output));
+                              sono::pointScatterers(vtkPointSet::GetData(input[1])), sono::progressOf(this));
+    sono::fillRf(rf, vtkImageData::GetData(output));
   });
 }

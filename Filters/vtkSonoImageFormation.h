@@ -11,8 +11,9 @@
 namespace sono {
 class Simulator;
 struct EchoSettings;
+struct ProbeField;
+struct SampledPulse;
 }
-class vtkFieldData;
 
 /**
  * @class vtkSonoImageFormation
@@ -61,10 +62,15 @@ public:
   ///@}
 
   /**
-   * What the stage is asked to do: the parameters with what comes from the probe and the tracer, in the field data of
-   * the traced lines, but neither pulse nor pulse-echo field. Throws sono::Error for what is out of range.
+   * What the stage is asked to do: the parameters with what comes from the probe and, in MHz, the tracer, but neither
+   * pulse nor pulse-echo field. Throws sono::Error for what is out of range.
    */
-  sono::EchoSettings Settings(vtkFieldData* acquisition) const;
+  sono::EchoSettings Settings(const sono::ProbeField& probe, double samplingMHz) const;
+
+  /**
+   * The pulse of the file that is named, or null. Throws sono::Error when it cannot be read.
+   */
+  std::shared_ptr<const sono::SampledPulse> ReadPulse() const;
 
 protected:
   vtkSonoImageFormation();

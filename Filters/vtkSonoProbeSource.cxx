@@ -2,17 +2,16 @@
 
 #include "Core/Progress.h"
 #include "SonoDataFile.h"
+#include "SonoOutputs.h"
 #include "SonoProbeField.h"
 #include "SonoSettings.h"
 #include "SonoStage.h"
 
-#include "vtkCellArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 vtkStandardNewMacro(vtkSonoProbeSource);
@@ -99,24 +98,5 @@ int vtkSonoProbeSource::RequestInformation(vtkInformation*, vtkInformationVector
 
 int vtkSonoProbeSource::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
-  return sono::runStage(this, output, [&] {
-    const sono::ProbeField probe = this->Probe();
-    const sono::ProbePose& pose = probe.pose;
-    const sono::Vec3d elevation = glm::cross(pose.axial, pose.lateral);
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> lines;
-    for (const std::vector<sono::Vec3d>& polyline : sono::scanOutline(probe.geometry))
-    {
-      lines->InsertNextCell(static_cast<int>(polyline.size()));
-      for (const sono::Vec3d& p : polyline)
-      {
-        const sono::Vec3d world = pose.positionMm + p.x * pose.lateral + p.y * elevation + p.z * pose.axial;
-        lines->InsertCellPoint(points->InsertNextPoint(&world.x));
-      }
-    }
-    vtkPolyData* polyData = vtkPolyData::GetData(output);
-    polyData->SetPoints(points);
-    polyData->SetLines(lines);
-    sono::writeProbe(probe, polyData->GetFieldData());
-  });
+  return sono::runStage(this, output, [&] { sono::fillProbe(this->Probe(), vtkPolyData::GetData(output)); });
 }

@@ -11,7 +11,6 @@
 #include "SonoStage.h"
 #include "SonoTargets.h"
 #include "Trace/ProbeContact.h"
-#include "Trace/RecordPaths.h"
 #include "Trace/TraceDevice.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -36,27 +35,6 @@ sono::EchoSettings rfGrid(double samplingMHz, double depthMm)
   grid.samplingMHz = samplingMHz;
   grid.depthMm = depthMm;
   return grid;
-}
-
-/// Of the RF of this probe.
-double rfSamplingMHz(double settingMHz, const sono::ProbeField& probe)
-{
-  return probe.preview ? sono::interactiveSamplingMHz(settingMHz, probe.centreFrequencyMHz) : settingMHz;
-}
-
-/// The tissues by the numbers that recorded paths give them.
-std::vector<std::string> mediaNames(const sono::Scene& scene, const std::vector<sono::TargetSurface>& targets)
-{
-  std::vector<std::string> names;
-  for (const sono::Tissue& tissue : scene.tissues())
-  {
-    names.push_back(tissue.name);
-  }
-  for (const sono::TargetSurface& target : targets)
-  {
-    names.push_back(target.tissue.name);
-  }
-  return names;
 }
 
 } // namespace
@@ -97,6 +75,11 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
+double vtkSonoRayTracer::RfSamplingMHz(const sono::ProbeField& probe) const
+{
+  return probe.preview ? sono::interactiveSamplingMHz(this->SamplingMHz, probe.centreFrequencyMHz) : this->SamplingMHz;
+}
+
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
 {
   auto settings = sono::settingsIn<sono::TraceSettings>(*this->Parameters);
@@ -104,7 +87,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
   settings.depthMm = probe.geometry.depthMm;
-  settings.echoSampleMm = rfGrid(rfSamplingMHz(this->SamplingMHz, probe), settings.depthMm).sampleMm();
+  settings.echoSampleMm = rfGrid(this->RfSamplingMHz(probe), settings.depthMm).sampleMm();
   settings.validate();
   return settings;
 }
@@ -115,7 +98,7 @@ int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector**
     vtkNew<vtkFieldData> acquisition;
     acquisition->ShallowCopy(sono::announcedFields(input[1]->GetInformationObject(0)));
     const sono::ProbeField probe = sono::readProbe(acquisition);
-    const double samplingMHz = rfSamplingMHz(this->SamplingMHz, probe);
+    const double samplingMHz = this->RfSamplingMHz(probe);
     sono::writeNumber("SamplingMHz", samplingMHz, acquisition);
     const sono::TraceSettings settings = this->Settings(probe);
     const int lineCount = probe.geometry.totalLineCount();
@@ -158,20 +141,16 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     }
     if (this->NumberOfShownPaths != 0)
     {
-      const auto paths = sono::recordPaths(*scene, scanLines, settings, this->NumberOfShownPaths, targets,
-                                           sono::partOf(progress, share, 1.0));
-      sono::fillPaths(paths, vtkPolyData::GetData(output, 2));
-      sono::fillHits(paths, mediaNames(*scene, targets), vtkPolyData::GetData(output, 3));
+      const auto paths = this->Simulator->paths(scanLines, settings, this->NumberOfShownPaths, targets,
+                                                sono::partOf(progress, share, 1.0));
+      sono::fillPaths(*paths, vtkPolyData::GetData(output, 2));
+      sono::fillHits(*paths, sono::mediaNames(*scene, targets), vtkPolyData::GetData(output, 3));
     }
-    const sono::Carries carries = sono::isInner(this) ? sono::Carries::HandleAlone : sono::Carries::Arrays;
     vtkImageData* lines = vtkImageData::GetData(output, 0);
-    sono::fillTraced(traced, probe, rfSamplingMHz(this->SamplingMHz, probe), carries, lines);
-    if (carries == sono::Carries::Arrays)
-    {
-      vtkImageData* echoes = vtkImageData::GetData(output, 1);
-      sono::fillEchoes(traced, lines, echoes);
-      sono::writeProbe(probe, echoes->GetFieldData());
-      sono::writeNumber("SamplingMHz", rfSamplingMHz(this->SamplingMHz, probe), echoes->GetFieldData());
-    }
+    sono::fillTraced(traced, probe, this->RfSamplingMHz(probe), lines);
+    vtkImageData* echoes = vtkImageData::GetData(output, 1);
+    sono::fillEchoes(traced, lines, echoes);
+    sono::writeProbe(probe, echoes->GetFieldData());
+    sono::writeNumber("SamplingMHz", this->RfSamplingMHz(probe), echoes->GetFieldData());
   });
 }

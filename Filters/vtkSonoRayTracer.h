@@ -109,6 +109,11 @@ public:
    */
   sono::TraceSettings Settings(const sono::ProbeField& probe) const;
 
+  /**
+   * Sampling frequency of this probe's RF lines: lower than it is set while the probe is being moved.
+   */
+  double RfSamplingMHz(const sono::ProbeField& probe) const;
+
 protected:
   vtkSonoRayTracer();
   ~vtkSonoRayTracer() override;

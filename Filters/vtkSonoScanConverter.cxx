@@ -118,11 +118,15 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
     const sono::ImageResult image =
       this->Simulator->scanConvert(probe.geometry, bmode, pixelMm, sono::progressOf(this));
+    // All else before the picture, which may have to be waited for.
     vtkImageData* world = vtkImageData::GetData(output, 0);
-    if (connected || scene) // before the picture, which may have to be waited for
+    vtkImageData* flat = vtkImageData::GetData(output, 1);
+    if (connected || scene)
     {
       sono::writeLabelTable(connected ? connected->labels : scene->volume().labels, world->GetFieldData());
     }
+    sono::placeImage(image, probe.pose, world);
+    sono::placeFlat(image, probe.pose, world, flat);
     sono::ScanPicture picture = this->Simulator->picture(image, probe.pose, scene && !connected);
     if (connected)
     {
@@ -130,6 +134,8 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
         image.isVolume() ? sono::sliceLabels(*connected, probe.pose, image.volume())
                          : sono::sliceLabels(*connected, probe.pose, image.plane().host()));
     }
-    sono::fillImage(image, picture, probe.pose, world, vtkImageData::GetData(output, 1));
+    const auto arrays = sono::pictureArrays(picture);
+    world->GetPointData()->ShallowCopy(arrays);
+    flat->GetPointData()->ShallowCopy(arrays);
   });
 }

@@ -15,7 +15,7 @@ vtkStandardNewMacro(vtkSonoSceneHandle);
 
 namespace {
 
-constexpr const char* handleName = "SonoScene";
+constexpr const char* sceneHandleName = "SonoScene";
 
 std::string summary(const sono::Scene& scene)
 {
@@ -43,7 +43,7 @@ void vtkSonoSceneHandle::Attach(std::shared_ptr<const sono::Scene> scene,
                                 std::shared_ptr<const sono::TissueTable> tissues, vtkMultiBlockDataSet* blocks)
 {
   vtkNew<vtkSonoSceneHandle> handle;
-  handle->SetName(handleName);
+  handle->SetName(sceneHandleName);
   handle->InsertNextValue(summary(*scene));
   handle->Scene = std::move(scene);
   handle->Tissues = std::move(tissues);
@@ -102,6 +102,6 @@ vtkSonoSceneHandle* vtkSonoSceneHandle::Need(vtkFieldData* field)
 
 vtkSonoSceneHandle* vtkSonoSceneHandle::Find(vtkFieldData* field)
 {
-  auto* handle = field ? vtkSonoSceneHandle::SafeDownCast(field->GetAbstractArray(handleName)) : nullptr;
+  auto* handle = field ? vtkSonoSceneHandle::SafeDownCast(field->GetAbstractArray(sceneHandleName)) : nullptr;
   return handle && handle->Scene ? handle : nullptr;
 }

@@ -1,15 +1,14 @@
 #include "vtkSonoSweep.h"
 
 #include "Core/ParallelFor.h"
-#include "Probe/PulseFile.h"
 #include "Simulator.h"
+#include "SonoAnatomy.h"
 #include "SonoChestDefaults.h"
-#include "SonoContent.h"
+#include "SonoImageSettings.h"
 #include "SonoLabelImage.h"
 #include "SonoPoses.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
-#include "SonoStageChain.h"
 #include "Trace/TraceDevice.h"
 #include "vtkSonoBMode.h"
 #include "vtkSonoImageFormation.h"
@@ -19,8 +18,6 @@
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
-#include "vtkExecutive.h"
-#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -63,6 +60,9 @@ void renew(const char* name, std::size_t count, vtkSmartPointer<Array>& array)
   array->Modified();
 }
 
+// The progress's end of the anatomy, where it is built here.
+constexpr double anatomyEnd = 0.3;
+
 /// The probe stands wherever a pose says, and never moves.
 sono::ProbeField resting(sono::ProbeField probe)
 {
@@ -73,25 +73,12 @@ sono::ProbeField resting(sono::ProbeField probe)
 
 } // namespace
 
-/// The scene builder inside, and the input that it has.
-class vtkSonoSweep::Inner
-{
-public:
-  Inner(vtkSonoSweep* owner, vtkAlgorithm* builder)
-    : chain(owner, { { builder, 0.3 } })
-  {
-  }
-
-  sono::StageChain chain;
-  std::vector<double> connected;
-};
-
 vtkSonoSweep::vtkSonoSweep()
   : SceneBuilder(vtkSmartPointer<vtkSonoSceneBuilder>::New())
   , RayTracer(vtkSmartPointer<vtkSonoRayTracer>::New())
   , ImageFormation(vtkSmartPointer<vtkSonoImageFormation>::New())
   , BMode(vtkSmartPointer<vtkSonoBMode>::New())
-  , Builder(new Inner(this, this->SceneBuilder))
+  , Anatomy(new sono::Anatomy(this, this->SceneBuilder, anatomyEnd))
   , Simulator(new sono::Simulator)
 {
   this->SetNumberOfInputPorts(3);
@@ -147,10 +134,9 @@ void vtkSonoSweep::SetSceneBuilder(vtkSonoSceneBuilder* stage)
 {
   if (stage && stage != this->SceneBuilder)
   {
-    this->Builder.reset(); // listens to the one before
     this->SceneBuilder = stage;
     this->HideSurfaces();
-    this->Builder = std::make_unique<Inner>(this, stage);
+    this->Anatomy = std::make_unique<sono::Anatomy>(this, stage, anatomyEnd);
     this->Modified();
   }
 }
@@ -203,21 +189,6 @@ int vtkSonoSweep::FillOutputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-sono::ImageSettings vtkSonoSweep::Settings(const sono::ProbeField& probe) const
-{
-  vtkNew<vtkFieldData> acquisition;
-  sono::writeProbe(probe, acquisition);
-  sono::writeNumber("SamplingMHz", this->RayTracer->GetSamplingMHz(), acquisition);
-  sono::ImageSettings settings;
-  settings.geometry = probe.geometry;
-  settings.tracing = this->RayTracer->Settings(probe);
-  settings.echo = this->ImageFormation->Settings(acquisition);
-  settings.echo.device = settings.tracing.device;
-  settings.bmode = this->BMode->Settings();
-  settings.pixelMm = this->PixelMm;
-  return settings;
-}
-
 int vtkSonoSweep::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
@@ -254,48 +225,25 @@ int vtkSonoSweep::RequestUpdateExtent(vtkInformation*, vtkInformationVector** in
   return isImage ? sono::requestWholeImage(input) : 1;
 }
 
-vtkMultiBlockDataSet* vtkSonoSweep::Anatomy(vtkDataObject* input)
-{
-  if (!vtkImageData::SafeDownCast(input))
-  {
-    return vtkMultiBlockDataSet::SafeDownCast(input);
-  }
-  std::vector<double> content = sono::contentOf(input);
-  if (content != this->Builder->connected)
-  {
-    // A copy, because a data object belongs to one pipeline.
-    const auto copy = vtk::TakeSmartPointer(input->NewInstance());
-    copy->ShallowCopy(input);
-    this->SceneBuilder->SetInputDataObject(copy);
-    this->Builder->connected = std::move(content);
-  }
-  if (const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME()))
-  {
-    this->SceneBuilder->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
-  }
-  this->Builder->chain.update(this->SceneBuilder);
-  return vtkMultiBlockDataSet::SafeDownCast(this->SceneBuilder->GetOutputDataObject(0));
-}
-
 int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
     const sono::ProbeField probe = resting(sono::readProbe(vtkPolyData::GetData(input[PROBE])->GetFieldData()));
     const std::vector<sono::ProbePose> poses = sono::posesOf(vtkDataObject::GetData(input[POSES]));
-    sono::ImageSettings settings = this->Settings(probe);
-    if (*this->ImageFormation->GetPulseFileName())
-    {
-      settings.echo.pulse =
-        std::make_shared<const sono::SampledPulse>(sono::readPulse(this->ImageFormation->GetPulseFileName()));
-    }
+    sono::ImageSettings settings =
+      sono::imageSettings(probe, *this->RayTracer, *this->ImageFormation, *this->BMode, this->PixelMm);
+    settings.echo.pulse = this->ImageFormation->ReadPulse();
     sono::announceDevice(sono::chooseDevice(settings.tracing));
     vtkDataObject* anatomy = vtkDataObject::GetData(input[LABELS_OR_SCENE]);
-    const double begin = vtkImageData::SafeDownCast(anatomy) ? 0.3 : 0.0;
-    const auto scene = vtkSonoSceneHandle::Get(this->Anatomy(anatomy));
+    const double begin = vtkImageData::SafeDownCast(anatomy) ? anatomyEnd : 0.0;
+    const char* labels = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+    const auto scene = vtkSonoSceneHandle::Get(this->Anatomy->blocks(anatomy, labels));
     this->Simulator->setScene(scene);
 
     const sono::PlaneImage layout = sono::planeImageLayout(settings.geometry, settings.pixelMm);
     const std::size_t pixels = std::size_t(layout.width) * layout.height;
+    vtkImageData* images = vtkImageData::GetData(output, 0);
+    images->GetPointData()->Initialize(); // VTK keeps the scalars of the run before
     renew("BMode", pixels * poses.size(), this->Grey);
     renew("Mask", pixels * poses.size(), this->Mask);
     if (this->WithLabels)
@@ -315,6 +263,7 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
       });
       if (pictures.firstPose == 0) // all at once, while a GPU is at work on the others
       {
+        sono::fillPoses(poses, vtkTable::GetData(output, 1));
         sono::parallelFor(static_cast<int>(poses.size()), {}, [&](int n) {
           std::copy_n(pictures.mask, pixels, this->Mask->GetPointer(static_cast<vtkIdType>(n * pixels)));
         });
@@ -322,7 +271,6 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     };
     this->Simulator->sweep(poses, settings, this->WithLabels, take, sono::partOf(sono::progressOf(this), begin, 1.0));
 
-    vtkImageData* images = vtkImageData::GetData(output, 0);
     images->SetDimensions(layout.width, layout.height, static_cast<int>(poses.size()));
     images->SetOrigin(layout.lateralMinMm, layout.axialMinMm, 0.0);
     images->SetSpacing(layout.pixelMm, layout.pixelMm, 1.0);
@@ -333,6 +281,5 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
       images->GetPointData()->AddArray(this->Labels);
       sono::writeLabelTable(scene->volume().labels, images->GetFieldData());
     }
-    sono::fillPoses(poses, vtkTable::GetData(output, 1));
   });
 }

@@ -8,11 +8,9 @@
 #include <memory>
 
 namespace sono {
+class Anatomy;
 class Simulator;
-struct ImageSettings;
-struct ProbeField;
 }
-class vtkMultiBlockDataSet;
 class vtkSonoBMode;
 class vtkSonoImageFormation;
 class vtkSonoRayTracer;
@@ -98,17 +96,13 @@ private:
   vtkSonoSweep(const vtkSonoSweep&) = delete;
   void operator=(const vtkSonoSweep&) = delete;
 
-  sono::ImageSettings Settings(const sono::ProbeField& probe) const;
   void HideSurfaces();
-  /// The scene's blocks, built here from a label image.
-  vtkMultiBlockDataSet* Anatomy(vtkDataObject* input);
 
   vtkSmartPointer<vtkSonoSceneBuilder> SceneBuilder;
   vtkSmartPointer<vtkSonoRayTracer> RayTracer;
   vtkSmartPointer<vtkSonoImageFormation> ImageFormation;
   vtkSmartPointer<vtkSonoBMode> BMode;
-  class Inner;
-  std::unique_ptr<Inner> Builder;
+  std::unique_ptr<sono::Anatomy> Anatomy; // of the scene builder
   double PixelMm = 0.23;
   bool WithLabels = true;
   std::unique_ptr<sono::Simulator> Simulator;

@@ -7,6 +7,9 @@
 
 #include <memory>
 
+namespace sono {
+class UltrasoundStages;
+}
 class vtkSonoBMode;
 class vtkSonoImageFormation;
 class vtkSonoProbeSource;
@@ -18,11 +21,11 @@ class vtkSonoSceneBuilder;
  * @class vtkSonoUltrasound
  * @brief Simulates ultrasound from a label map, all stages in one
  *
- * Chains vtkSonoSceneBuilder, vtkSonoProbeSource, vtkSonoRayTracer, vtkSonoImageFormation, vtkSonoBMode and
- * vtkSonoScanConverter, and runs again only those that a change concerns. Input 0 is a label image, or a scene that
- * vtkSonoSceneBuilder or vtkSonoSceneReader made; then the settings of the scene are not used. Optional inputs, as the
- * stages describe them: 1 targets (of vtkSonoRayTracer), 2 point scatterers and 3 a pulse-echo field (of
- * vtkSonoImageFormation).
+ * Does what vtkSonoSceneBuilder, vtkSonoProbeSource, vtkSonoRayTracer, vtkSonoImageFormation, vtkSonoBMode and
+ * vtkSonoScanConverter do one after the other, by one sono::Simulator, and again only what a change concerns. Input 0
+ * is a label image, or a scene that vtkSonoSceneBuilder or vtkSonoSceneReader made; then the settings of the scene are
+ * not used. Optional inputs, as the stages describe them: 1 targets (of vtkSonoRayTracer), 2 point scatterers and 3 a
+ * pulse-echo field (of vtkSonoImageFormation).
  *
  * Outputs: 0 the image in the world (of vtkSonoScanConverter), 1 the B-mode lines, 2 the RF lines, 3 the traced lines
  * with their standard error, 4 the anatomy (of vtkSonoSceneBuilder), 5 the probe (of vtkSonoProbeSource), 6 the ray
@@ -120,8 +123,7 @@ private:
   template<class Stage>
   void Replace(vtkSmartPointer<Stage>& own, Stage* given);
 
-  class Stages;
-  std::unique_ptr<Stages> Chain;
+  std::unique_ptr<sono::UltrasoundStages> Inside;
   bool ErrorMap = false;
 };
 

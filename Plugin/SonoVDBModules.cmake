@@ -1,7 +1,14 @@
 # The VTK modules, their Python wrapping and the ParaView plugin. Included, not added, by the top CMakeLists.txt, so that
 # the modules' folders are relative to it.
-enable_language(C) # which FindMPI asks for, inside ParaView's package
-find_package(ParaView 5.11 REQUIRED)
+# ParaView's package looks for whatever any of its modules was built with. Of the modules that the plugin stands on, these
+# targets are named in the link interfaces, though neither their headers nor their libraries are asked for by ours: where
+# the package did not find them, an empty target spares a user their -dev packages.
+find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingViews pqApplicationComponents)
+foreach(target IN ITEMS Boost::boost GLEW::GLEW LibXml2::LibXml2 MPI::MPI_C NetCDF::NetCDF hdf5::hdf5 hdf5::hdf5_hl)
+  if(NOT TARGET ${target})
+    add_library(${target} INTERFACE IMPORTED)
+  endif()
+endforeach()
 
 # The plugin lies three folders below the libraries, lib/python3/dist-packages/sonovdb four below the prefix.
 list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../../.." "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")

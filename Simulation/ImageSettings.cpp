@@ -1,6 +1,28 @@
 #include "ImageSettings.h"
 
+#include "Core/Error.h"
+
+#include <cmath>
+#include <string>
+
 namespace sono {
+
+namespace {
+
+void requireAlike(bool same, const char* what)
+{
+  if (!same)
+  {
+    throw Error(std::string("the stages disagree about ") + what + ": set it alike for tracing and image formation");
+  }
+}
+
+} // namespace
+
+bool agree(double a, double b)
+{
+  return std::abs(a - b) <= 1e-9 * std::abs(b);
+}
 
 void ImageSettings::matchStages()
 {
@@ -8,6 +30,13 @@ void ImageSettings::matchStages()
   echo.depthMm = geometry.depthMm;
   tracing.frequencyMHz = echo.centreFrequencyMHz;
   tracing.echoSampleMm = echo.sampleMm();
+}
+
+void ImageSettings::requireMatch() const
+{
+  requireAlike(agree(tracing.depthMm, geometry.depthMm) && agree(echo.depthMm, geometry.depthMm), "the depth");
+  requireAlike(agree(tracing.frequencyMHz, echo.centreFrequencyMHz), "the frequency");
+  requireAlike(agree(tracing.echoSampleMm, echo.sampleMm()), "the sampling of echoes");
 }
 
 void ImageSettings::setDevice(Device device)

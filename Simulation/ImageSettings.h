@@ -8,6 +8,9 @@
 
 namespace sono {
 
+/// Whether two distances, times or frequencies are the same but for rounding.
+bool agree(double a, double b);
+
 /// Every stage's settings. Depth and frequency of tracing and image formation must agree with the geometry's depth and
 /// with each other, and the tracer's echo samples with the RF's: see matchStages.
 struct ImageSettings
@@ -20,6 +23,8 @@ struct ImageSettings
 
   /// Takes depth from the geometry, and frequency and sampling from the RF, for all stages.
   void matchStages();
+  /// Throws Error, naming it, when the stages disagree about one of these.
+  void requireMatch() const;
   /// Computes tracing and image formation there; the stages after them work where their input lies.
   void setDevice(Device device);
 };

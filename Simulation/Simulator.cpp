@@ -1,7 +1,5 @@
 #include "Simulator.h"
 
-#include "Core/ParallelFor.h"
-#include "Core/Policy.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
 #include "Cuda/RunOnDevice.h"
@@ -9,32 +7,15 @@
 #include "Image/ErrorMap.h"
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
-#include "Kernel/TracePath.h"
 #include "SameSettings.h"
 #include "Trace/TraceSetup.h"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
-#include <string>
 #include <utility>
 
 namespace sono {
 
 namespace {
-
-void requireMatch(bool same, const char* what)
-{
-  if (!same)
-  {
-    throw Error(std::string("the stages disagree about ") + what + ": set it alike for tracing and image formation");
-  }
-}
-
-bool near(double a, double b)
-{
-  return std::abs(a - b) <= 1e-9 * std::abs(b);
-}
 
 /// What a stage made last, and from what. Another result replaces it when it is there.
 template<class From, class Result>
@@ -148,6 +129,14 @@ struct ErrorFrom
   }
 };
 
+struct PathsFrom
+{
+  TraceFrom trace;
+  int count;
+
+  bool same(const PathsFrom& o) const { return count == o.count && trace.same(o.trace); }
+};
+
 void fetchTraced(const DeviceTraced& device, TracedLines& lines)
 {
   FetchedTrace fetched = DeviceImager::instance().fetch(device);
@@ -196,40 +185,6 @@ Image unknown(Image layout, std::size_t count)
   return layout;
 }
 
-/// Some line of each image meets the label map, as where each is asked for alone.
-void requireEachMeets(const TraceSetup& setup, std::size_t images)
-{
-  const CellSpace<NoTargets> space{ setup.region->view(), {} };
-  const std::size_t perImage = setup.lines.size() / images;
-  for (std::size_t image = 0; image < images; ++image)
-  {
-    const auto first = setup.lines.begin() + std::ptrdiff_t(image * perImage);
-    PathState path;
-    if (std::none_of(first, first + std::ptrdiff_t(perImage),
-                     [&](const TraceLine& line) { return enterSpace(space, line, setup.view.depthMm, path); }))
-    {
-      throw Error("no scan line of pose " + std::to_string(image) +
-                  " meets the label map: move the probe onto the skin or increase the depth");
-    }
-  }
-}
-
-void requireMatching(const ImageSettings& settings)
-{
-  requireMatch(near(settings.tracing.depthMm, settings.geometry.depthMm) &&
-                 near(settings.echo.depthMm, settings.geometry.depthMm),
-               "the depth");
-  requireMatch(near(settings.tracing.frequencyMHz, settings.echo.centreFrequencyMHz), "the frequency");
-  requireMatch(near(settings.tracing.echoSampleMm, settings.echo.sampleMm()), "the sampling of echoes");
-}
-
-/// Bytes that the stages need for an image, without what a single launch of the tracer needs.
-double bytesPerImage(const TracedLines& traced, int linesPerImage, const PlaneScan& scan)
-{
-  const double bytesPerLine = 48.0 * traced.echoCount + 16.0 * traced.binCount;
-  return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
-}
-
 } // namespace
 
 struct Simulator::Last
@@ -242,6 +197,7 @@ struct Simulator::Last
   LastResult<ImageFrom, ImageResult> image;
   LastResult<PictureFrom, ScanPicture> picture;
   LastResult<ErrorFrom, ImageResult> errorMap;
+  LastResult<PathsFrom, std::shared_ptr<const std::vector<RecordedPath>>> paths;
 
   const std::shared_ptr<const BModeJob>& bmodeJobFor(const BModeSettings& settings, int sampleCount, double sampleMm)
   {
@@ -286,6 +242,17 @@ TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSet
   });
 }
 
+std::shared_ptr<const std::vector<RecordedPath>> Simulator::paths(const std::vector<ScanLine>& lines,
+                                                                  const TraceSettings& settings, int count,
+                                                                  const std::vector<TargetSurface>& targets,
+                                                                  const Progress& progress)
+{
+  return last_->paths.get({ { lines, settings, targets }, count }, [&] {
+    return std::make_shared<const std::vector<RecordedPath>>(
+      recordPaths(needScene(), lines, settings, count, targets, progress));
+  });
+}
+
 RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResult& traced, const EchoSettings& settings,
                            const std::shared_ptr<const PointScatterers>& points, const Progress& progress)
 {
@@ -297,7 +264,7 @@ RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResul
     // Echoes on other samples are brought onto the RF's on the host.
     const bool takesDevices =
       onDevice && (!traced || (traced.onDevice() && traced.layout().lineCount == int(lines.size()) &&
-                               near(traced.layout().echoSampleMm, settings.sampleMm())));
+                               agree(traced.layout().echoSampleMm, settings.sampleMm())));
     if (traced && !takesDevices)
     {
       sources.traced = &traced.host();
@@ -415,7 +382,7 @@ ImageResult Simulator::errorMap(const ScanGeometry& geometry, const TracedResult
 
 TracedResult Simulator::traced(const ImageInput& input, const Progress& progress)
 {
-  requireMatching(input.settings);
+  input.settings.requireMatch();
   return trace(makeScanLines(input.settings.geometry, input.pose), input.settings.tracing, input.targets, progress);
 }
 
@@ -435,106 +402,6 @@ ImageResult Simulator::image(const ImageInput& input, const Progress& progress)
 {
   return scanConvert(input.settings.geometry, bmode(input, partOf(progress, 0.0, 0.95)), input.settings.pixelMm,
                      partOf(progress, 0.95, 1.0));
-}
-
-void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
-                      const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets)
-{
-  requireMatching(settings);
-  planeImageLayout(settings.geometry, settings.pixelMm); // throws for a matrix
-  if (poses.empty())
-  {
-    return;
-  }
-  const bool onDevice = runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda;
-  (this->*(onDevice ? &Simulator::sweepOnDevice : &Simulator::sweepOnCpu))(poses, settings, withLabels, sink, progress,
-                                                                           targets);
-}
-
-void Simulator::sweepOnCpu(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
-                           const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets)
-{
-  Simulator each(scene_); // whose results go with the sweep
-  ImageInput input{ {}, settings, targets, nullptr };
-  input.settings.setDevice(Device::Cpu);
-  for (std::size_t i = 0; i < poses.size(); ++i)
-  {
-    const double done = double(i) / double(poses.size());
-    input.pose = poses[i];
-    ScanPicture picture;
-    try
-    {
-      picture = each.picture(each.image(input, partOf(progress, done, done + 1.0 / double(poses.size()))), input.pose,
-                             withLabels);
-    }
-    catch (const Error& error)
-    {
-      throw Error("pose " + std::to_string(i) + ": " + error.what());
-    }
-    sink({ int(i), 1, picture.grey.data.get(), picture.labels.data.get(), picture.mask.data.get() });
-  }
-}
-
-void Simulator::sweepOnDevice(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
-                              const SweepSink& sink, const Progress& progress,
-                              const std::vector<TargetSurface>& targets)
-{
-  const Scene& scene = needScene();
-  const int perImage = settings.geometry.totalLineCount();
-  std::vector<ScanLine> lines(poses.size() * std::size_t(perImage));
-  parallelFor(int(poses.size()), {}, [&](int pose) {
-    const auto made = makeScanLines(settings.geometry, poses[std::size_t(pose)]);
-    std::copy(made.begin(), made.end(), lines.begin() + std::ptrdiff_t(pose) * perImage);
-  });
-  const TracedLines tracedOfOne = tracedLayout(perImage, settings.tracing);
-  const RfLines rfOfOne = rfLayout(perImage, settings.echo);
-  const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
-  const PlaneScan scan = planeScan(settings.geometry, rfOfOne.sampleCount, rfOfOne.sampleMm, settings.pixelMm);
-  std::shared_ptr<const TraceJob> traceJob;
-  {
-    const TraceSetup setup(scene, lines, settings.tracing, targets, partOf(progress, 0.0, 0.3));
-    requireEachMeets(setup, poses.size());
-    traceJob = std::make_shared<const TraceJob>(makeTraceJob(setup, settings.tracing, perImage));
-  }
-  const Progress running = partOf(progress, 0.3, 1.0);
-  DeviceImager& imager = DeviceImager::instance();
-  const int together = std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, perImage, scan)));
-  std::shared_ptr<const EchoJob> echoJob; // made while the first lines are traced
-  SweptPictures before;
-  std::shared_ptr<DeviceImager::Download> onTheWay;
-  const auto deliver = [&] {
-    const PictureCopy copy = imager.wait(onTheWay);
-    before.grey = copy.bytes.data.get();
-    before.labels = copy.labels.data.get();
-    before.mask = copy.mask.data.get();
-    sink(before);
-    report(running, double(before.firstPose + before.count) / double(poses.size()));
-  };
-  for (int first = 0; first < int(poses.size()); first += together)
-  {
-    const int count = std::min(together, int(poses.size()) - first);
-    const LineRange range{ first * perImage, count * perImage };
-    const auto traced = imager.trace(traceJob, range);
-    if (!echoJob)
-    {
-      const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model };
-      const EchoSetup setup(sources, lines, settings.echo);
-      echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
-    }
-    const auto rf = imager.formRf(echoJob, range, traced.get(), false);
-    const auto& bmodeJob = last_->bmodeJobFor(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm);
-    const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
-    const auto labels =
-      withLabels ? imager.slice(makeLabelJob(scene, poses.data() + first, count, layout), *picture) : nullptr;
-    auto next = imager.beginDownload(picture, labels);
-    if (onTheWay)
-    {
-      deliver();
-    }
-    onTheWay = std::move(next);
-    before = { first, count, nullptr, nullptr, nullptr };
-  }
-  deliver();
 }
 
 void Simulator::prepareInteractive(const std::vector<ScanLine>& lines, const TraceSettings& settings)

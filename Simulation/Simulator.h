@@ -5,6 +5,7 @@
 #include "ImageResult.h"
 #include "ImageSettings.h"
 #include "Scene/Scene.h"
+#include "Trace/RecordPaths.h"
 #include "Trace/Targets.h"
 
 #include <functional>
@@ -55,6 +56,11 @@ public:
   /// The stages one by one.
   TracedResult trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
                      const std::vector<TargetSurface>& targets = {}, const Progress& progress = {});
+  /// `count` of these paths, see recordPaths.
+  std::shared_ptr<const std::vector<RecordedPath>> paths(const std::vector<ScanLine>& lines,
+                                                         const TraceSettings& settings, int count,
+                                                         const std::vector<TargetSurface>& targets = {},
+                                                         const Progress& progress = {});
   /// `traced` may be no result: intensity 1 everywhere and no boundaries. `points` may be null. Without a scene only
   /// points echo.
   RfResult formRf(const std::vector<ScanLine>& lines, const TracedResult& traced, const EchoSettings& settings,
@@ -93,10 +99,6 @@ public:
 private:
   struct Last;
   const Scene& needScene() const;
-  void sweepOnCpu(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
-                  const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets);
-  void sweepOnDevice(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
-                     const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets);
 
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Last> last_;

@@ -6,12 +6,9 @@ set -euo pipefail
 packages=(
   # tools
   g++ cmake ninja-build ccache
-  # ParaView 5.11 and what its CMake package asks for
+  # ParaView 5.11 and what the modules below the plugin ask for (see Plugin/SonoVDBModules.cmake)
   paraview paraview-dev python3-paraview python3-numpy qtbase5-dev libqt5svg5-dev libqt5opengl5-dev qttools5-dev
-  qtxmlpatterns5-dev-tools
-  libutfcpp-dev libxml2-dev libhdf5-openmpi-dev libogg-dev libtheora-dev libavformat-dev libavcodec-dev libavutil-dev
-  libswscale-dev libgl2ps-dev libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev
-  libfreetype-dev
+  qtxmlpatterns5-dev-tools libfreetype-dev
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
   nlohmann-json3-dev libpugixml-dev zlib1g-dev

@@ -1,12 +1,10 @@
 #include "Phantoms/ThoraxPhantom.h"
 
-#include "Core/Progress.h"
+#include "Core/Error.h"
+#include "Core/ParallelFor.h"
 #include "Phantoms/ThoraxAorta.h"
 #include "Phantoms/ThoraxChest.h"
 #include "Phantoms/ThoraxHeart.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <glm/common.hpp>
 
@@ -170,16 +168,13 @@ LabelVolume makeThoraxPhantom(double spacingMm)
   volume.placement = placementFor(spacingMm);
   volume.voxels.resize(volume.placement.voxelCount());
   const Vec3i size = volume.placement.size;
-  tbb::parallel_for(tbb::blocked_range<int>(0, size.z), [&](const tbb::blocked_range<int>& slices) {
-    for (int k = slices.begin(); k < slices.end(); ++k)
+  parallelFor(size.z, {}, [&](int k) {
+    std::uint16_t* voxel = volume.voxels.data() + std::size_t(k) * size.x * size.y;
+    for (int j = 0; j < size.y; ++j)
     {
-      std::uint16_t* voxel = volume.voxels.data() + std::size_t(k) * size.x * size.y;
-      for (int j = 0; j < size.y; ++j)
+      for (int i = 0; i < size.x; ++i)
       {
-        for (int i = 0; i < size.x; ++i)
-        {
-          *voxel++ = anatomy.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
-        }
+        *voxel++ = anatomy.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
       }
     }
   });

@@ -1,5 +1,6 @@
 #include "Trace/TraceSetup.h"
 
+#include "Core/ParallelFor.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
 #include "Scene/NanoGridStorage.h"
@@ -23,6 +24,27 @@ TraceMedium makeMedium(const Tissue& tissue, double frequencyMHz)
   m.roughnessMm = float(tissue.roughnessMm);
   m.correlationMm = float(tissue.correlationMm);
   return m;
+}
+
+/// Lines are cheap; those of a sweep are many.
+constexpr std::size_t blockLines = 512;
+
+int blocksOf(const std::vector<ScanLine>& lines)
+{
+  return int((lines.size() + blockLines - 1) / blockLines);
+}
+
+/// Calls visit(block, line) for all lines, those of a block one after the other.
+template<class Visit>
+void forBlocks(const std::vector<ScanLine>& lines, const Visit& visit)
+{
+  parallelFor(blocksOf(lines), {}, [&](int block) {
+    const std::size_t end = std::min(lines.size(), std::size_t(block + 1) * blockLines);
+    for (std::size_t l = std::size_t(block) * blockLines; l < end; ++l)
+    {
+      visit(block, l);
+    }
+  });
 }
 
 TraceView makeView(const TraceSettings& settings, const Scene& scene)
@@ -51,19 +73,30 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
 VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm)
 {
   const Mat3d toLocal = scene.rotationToLocal();
-  // The half balls of radius depthMm in front of each line's origin.
-  Vec3d low(1e30);
-  Vec3d high(-1e30);
-  for (const ScanLine& line : lines)
+  struct Corners
   {
-    const Vec3d origin = scene.localFromWorld(line.originMm);
-    const Vec3d axis = toLocal * line.axis;
+    Vec3d low = Vec3d(1e30);
+    Vec3d high = Vec3d(-1e30);
+  };
+  std::vector<Corners> corners(std::size_t(blocksOf(lines)));
+  forBlocks(lines, [&](int block, std::size_t l) {
+    // The half ball of radius depthMm in front of the line's origin.
+    Corners& c = corners[std::size_t(block)];
+    const Vec3d origin = scene.localFromWorld(lines[l].originMm);
+    const Vec3d axis = toLocal * lines[l].axis;
     for (int a = 0; a < 3; ++a)
     {
       const double across = std::sqrt(std::max(0.0, 1.0 - axis[a] * axis[a]));
-      high[a] = std::max(high[a], origin[a] + depthMm * (axis[a] >= 0.0 ? 1.0 : across));
-      low[a] = std::min(low[a], origin[a] - depthMm * (axis[a] <= 0.0 ? 1.0 : across));
+      c.high[a] = std::max(c.high[a], origin[a] + depthMm * (axis[a] >= 0.0 ? 1.0 : across));
+      c.low[a] = std::min(c.low[a], origin[a] - depthMm * (axis[a] <= 0.0 ? 1.0 : across));
     }
+  });
+  Vec3d low(1e30);
+  Vec3d high(-1e30);
+  for (const Corners& c : corners)
+  {
+    low = glm::min(low, c.low);
+    high = glm::max(high, c.high);
   }
   const Vec3d spacing = scene.placement().spacingMm;
   const Vec3d size(scene.placement().size);
@@ -109,10 +142,11 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   }
   view = makeView(settings, scene);
   view.media = media.data();
-  for (const ScanLine& line : worldLines)
-  {
-    lines.push_back({ Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) });
-  }
+  lines.resize(worldLines.size());
+  forBlocks(worldLines, [&](int, std::size_t l) {
+    const ScanLine& line = worldLines[l];
+    lines[l] = { Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) };
+  });
   const CellSpace<NoTargets> empty{ region->view(), {} };
   PathState path;
   if (std::none_of(lines.begin(), lines.end(),

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataObject;
+class vtkMultiBlockDataSet;
+class vtkSonoSceneBuilder;
+
+namespace sono {
+
+/// The anatomy of a filter that takes a label image or a scene: a scene builder inside, whose progress, warnings and
+/// failures are told as the filter's own. It runs when the image or its settings have changed.
+class Anatomy
+{
+public:
+  /// `progressEnd`: where the builder's progress ends in that of the whole, which has the builder's text meanwhile.
+  Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd);
+  ~Anatomy();
+  Anatomy(const Anatomy&) = delete;
+  Anatomy& operator=(const Anatomy&) = delete;
+
+  /// The scene's blocks: those of the input, or of the builder where the input is an image, whose point array `labels`
+  /// holds the labels; null: as the builder has it. Throws Error with the builder's sentence, Aborted when the owner is
+  /// to stop.
+  vtkMultiBlockDataSet* blocks(vtkDataObject* input, const char* labels);
+
+private:
+  void reportProgress(double fraction);
+  void update();
+
+  vtkAlgorithm* owner_;
+  vtkSmartPointer<vtkSonoSceneBuilder> builder_;
+  double progressEnd_;
+  unsigned long ear_;             ///< of the builder's progress
+  std::vector<double> connected_; ///< content of the builder's input
+  vtkMTimeType builtAt_ = 0;      ///< the builder's time then; 0: what it has is not whole
+};
+
+} // namespace sono

@@ -1,0 +1,326 @@
+#include "SonoUltrasoundStages.h"
+
+#include "SonoChestDefaults.h"
+#include "SonoFieldImage.h"
+#include "SonoImagePlacement.h"
+#include "SonoImageSettings.h"
+#include "SonoLineImage.h"
+#include "SonoOutputs.h"
+#include "SonoPaths.h"
+#include "SonoScatterers.h"
+#include "SonoStage.h"
+#include "SonoTargets.h"
+#include "Trace/ProbeContact.h"
+#include "Trace/TraceDevice.h"
+#include "vtkSonoBMode.h"
+#include "vtkSonoImageFormation.h"
+#include "vtkSonoProbeSource.h"
+#include "vtkSonoRayTracer.h"
+#include "vtkSonoScanConverter.h"
+#include "vtkSonoSceneBuilder.h"
+#include "vtkSonoSceneHandle.h"
+#include "vtkSonoUltrasound.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+namespace sono {
+namespace {
+
+using Filter = vtkSonoUltrasound; // of the ports
+
+// Where the stages' progress ends in that of the whole; Simulator shares out what is after the tracing.
+constexpr double anatomyEnd = 0.3;
+constexpr double tracingEnd = 0.75;
+constexpr double bmodeEnd = 0.95;
+
+} // namespace
+
+UltrasoundStages::UltrasoundStages(vtkSonoUltrasound* owner)
+  : scene(vtkSmartPointer<vtkSonoSceneBuilder>::New())
+  , probe(vtkSmartPointer<vtkSonoProbeSource>::New())
+  , tracer(vtkSmartPointer<vtkSonoRayTracer>::New())
+  , formation(vtkSmartPointer<vtkSonoImageFormation>::New())
+  , bmode(vtkSmartPointer<vtkSonoBMode>::New())
+  , converter(vtkSmartPointer<vtkSonoScanConverter>::New())
+  , owner_(owner)
+{
+  TraceSettings tracing;
+  BModeSettings grey;
+  setChestDefaults(tracing);
+  setChestDefaults(grey);
+  tracer->SetMaxCollisions(tracing.maxCollisions);
+  tracer->SetCoherenceMm(tracing.coherenceMm);
+  tracer->SetLobeSigmaDeg(tracing.lobeSigmaDeg);
+  bmode->SetTgcDbPerCm(grey.tgcDbPerCm);
+  listenToBuilder();
+}
+
+UltrasoundStages::~UltrasoundStages() = default;
+
+void UltrasoundStages::listenToBuilder()
+{
+  anatomy_ = std::make_unique<Anatomy>(owner_, scene, anatomyEnd);
+}
+
+std::vector<vtkAlgorithm*> UltrasoundStages::withSettings() const
+{
+  return { scene, probe, tracer, formation, bmode, converter };
+}
+
+Progress UltrasoundStages::progress(vtkAlgorithm* stage, double from, double to)
+{
+  owner_->SetProgressText(stage->GetProgressText());
+  return partOf(progressOf(owner_), from, to);
+}
+
+void UltrasoundStages::announce(vtkInformationVector* output)
+{
+  const auto on = [&](int port) { return output->GetInformationObject(port); };
+  formation->SetDevice(tracer->GetDevice()); // what it says when it is asked
+  field_ = probe->Probe();
+  settings_ = imageSettings(field_, *tracer, *formation, *bmode, pixelMmOf(field_, converter->GetPixelMm()));
+  const vtkSmartPointer<vtkFieldData> before = acquisition_;
+  acquisition_ = vtkSmartPointer<vtkFieldData>::New();
+  writeProbe(field_, acquisition_, before);
+  writeNumber("SamplingMHz", settings_.echo.samplingMHz, acquisition_, before);
+
+  const ImagePlacement placement = placementOf(field_, settings_.pixelMm);
+  placement.announce(VTK_UNSIGNED_CHAR, on(Filter::IMAGE));
+  placement.flat(field_.pose).announce(VTK_UNSIGNED_CHAR, on(Filter::FLAT_IMAGE));
+  placement.announce(VTK_FLOAT, on(Filter::ERROR_MAP));
+  if (!owner_->GetErrorMap())
+  {
+    const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+    on(Filter::ERROR_MAP)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+  }
+  const int lineCount = settings_.geometry.totalLineCount();
+  const double binMm = settings_.tracing.radialBinMm;
+  for (int port : { Filter::RF_LINES, Filter::BMODE_LINES })
+  {
+    announceLineImage({ settings_.echo.sampleCount(), lineCount, 0.0, settings_.echo.sampleMm() }, 1, on(port));
+  }
+  announceLineImage({ settings_.tracing.binCount(), lineCount, binMm / 2.0, binMm }, 1, on(Filter::TRACED_LINES));
+  announceFields(acquisition_, on(Filter::IMAGE));
+  for (int port : { Filter::BMODE_LINES, Filter::RF_LINES, Filter::TRACED_LINES, Filter::PROBE, Filter::FLAT_IMAGE,
+                    Filter::ERROR_MAP })
+  {
+    announceSameFields(on(Filter::IMAGE), on(port));
+  }
+}
+
+const std::vector<TargetSurface>& UltrasoundStages::targets(vtkDataObject* input, vtkMultiBlockDataSet* blocks)
+{
+  const auto tissues = vtkSonoSceneHandle::GetTissues(blocks->GetFieldData());
+  if (tissues != tissues_ || targetTissue_ != tracer->GetTargetTissue())
+  {
+    targets_.content.reset();
+    tissues_ = tissues;
+    targetTissue_ = tracer->GetTargetTissue();
+  }
+  return targets_.get(input,
+                      [&] { return targetSurfaces(vtkPolyData::SafeDownCast(input), targetTissue_, *tissues_); });
+}
+
+TracedResult UltrasoundStages::trace(const ImageInput& image)
+{
+  const TraceSettings& tracing = image.settings.tracing;
+  announceDevice(chooseDevice(tracing));
+  const auto lines = [&] { return makeScanLines(image.settings.geometry, image.pose); };
+  const auto warnOfContact = [&] {
+    const std::string sentence = field_.preview ? "" : probeContactWarning(*simulator_.scene(), lines());
+    if (!sentence.empty())
+    {
+      warn(owner_, sentence);
+    }
+  };
+  TracedResult traced;
+  try
+  {
+    traced = simulator_.traced(image, progress(tracer, anatomyEnd, tracingEnd));
+  }
+  catch (const Error&)
+  {
+    warnOfContact();
+    throw;
+  }
+  if (!(traced == traced_)) // on a GPU it is under way
+  {
+    traced_ = traced;
+    pulseTime_ = 0;
+    warnOfContact();
+    if (field_.prepares && !field_.preview)
+    {
+      simulator_.prepareInteractive(lines(), tracing);
+    }
+  }
+  return traced;
+}
+
+void UltrasoundStages::readEchoInputs(const Inputs& inputs, ImageInput& image)
+{
+  announceDevice(chooseDevice(image.settings.echo.device));
+  image.settings.echo.field = pulseEchoField_.get(inputs[Filter::PULSE_ECHO_FIELD], [&] {
+    return std::make_shared<const PulseEchoField>(
+      fieldFromImage(vtkImageData::SafeDownCast(inputs[Filter::PULSE_ECHO_FIELD])));
+  });
+  if (pulseTime_ != formation->GetMTime())
+  {
+    pulseTime_ = 0; // stays so when it fails
+    pulse_ = formation->ReadPulse();
+    pulseTime_ = formation->GetMTime();
+  }
+  image.settings.echo.pulse = pulse_;
+  image.points = scatterers_.get(
+    inputs[Filter::SCATTERERS], [&] { return pointScatterers(vtkPointSet::SafeDownCast(inputs[Filter::SCATTERERS])); });
+}
+
+/// Takes the lines of before where they are of the same result.
+template<class Result, class Fill>
+void UltrasoundStages::makeLines(const Result& result, Result (*resultOf)(vtkImageData*), const Fill& fill,
+                                 vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines)
+{
+  if (kept && resultOf(kept) == result)
+  {
+    vtkNew<vtkFieldData> fields;
+    fields->ShallowCopy(lines->GetFieldData());
+    lines->ShallowCopy(kept);
+    lines->GetFieldData()->PassData(fields);
+    return;
+  }
+  fill();
+  kept = vtkSmartPointer<vtkImageData>::New();
+  kept->ShallowCopy(lines);
+}
+
+void UltrasoundStages::makePaths(int port, const ImageInput& image, vtkPolyData* output)
+{
+  const auto paths =
+    simulator_.paths(makeScanLines(image.settings.geometry, image.pose), image.settings.tracing,
+                     tracer->GetNumberOfShownPaths(), image.targets, progress(tracer, tracingEnd, 1.0));
+  if (port == Filter::RAY_PATHS)
+  {
+    fillPaths(*paths, output);
+  }
+  else
+  {
+    fillHits(*paths, mediaNames(*simulator_.scene(), image.targets), output);
+  }
+}
+
+void UltrasoundStages::makeErrorMap(const ImageInput& image, const TracedResult& traced)
+{
+  const ImageResult map = simulator_.errorMap(image.settings.geometry, traced, field_.preview, image.settings.pixelMm,
+                                              progress(converter, tracingEnd, 1.0));
+  if (!errorArrays_ || !(map == errorMap_))
+  {
+    errorArrays_ = errorArrays(map);
+    errorMap_ = map;
+  }
+}
+
+void UltrasoundStages::makeImage(const ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat)
+{
+  const ImageResult made = simulator_.image(image, progress(converter, 0.0, 1.0));
+  // All else before the picture, which may have to be waited for.
+  placeImage(made, image.pose, world);
+  placeFlat(made, image.pose, world, flat);
+  const ScanPicture picture = simulator_.picture(made, image.pose, true);
+  if (!pictureArrays_ || picture.grey.data != picture_.grey.data)
+  {
+    pictureArrays_ = pictureArrays(picture);
+    picture_ = picture;
+  }
+  for (vtkImageData* output : { world, flat })
+  {
+    output->GetPointData()->ShallowCopy(pictureArrays_);
+    if (errors)
+    {
+      output->GetPointData()->AddArray(errors);
+    }
+  }
+}
+
+void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformationVector* output)
+{
+  Inputs inputs; // others may be connected meanwhile
+  for (int i = 0; i < int(inputs.size()); ++i)
+  {
+    inputs[i] = vtkDataObject::GetData(input[i]);
+  }
+  vtkDataObject* made = vtkDataObject::GetData(output, port);
+  vtkFieldData* fields = made->GetFieldData();
+  if (port == Filter::PROBE)
+  {
+    fields->Initialize();
+    return fillProbe(field_, vtkPolyData::SafeDownCast(made));
+  }
+  const char* labels = owner_->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[Filter::LABELS_OR_SCENE], labels);
+  if (port == Filter::ANATOMY)
+  {
+    return made->ShallowCopy(blocks);
+  }
+  if (port == Filter::ERROR_MAP && !owner_->GetErrorMap())
+  {
+    return;
+  }
+  simulator_.setScene(vtkSonoSceneHandle::Get(blocks));
+  ImageInput image{ field_.pose, settings_, targets(inputs[Filter::TARGETS], blocks), nullptr };
+  const TracedResult traced = trace(image);
+  fields->PassData(blocks->GetFieldData());
+  if (port == Filter::RAY_PATHS || port == Filter::BOUNDARY_HITS)
+  {
+    return tracer->GetNumberOfShownPaths() != 0 ? makePaths(port, image, vtkPolyData::SafeDownCast(made)) : void();
+  }
+  fields->PassData(acquisition_);
+  auto* lines = vtkImageData::SafeDownCast(made);
+  if (port == Filter::TRACED_LINES)
+  {
+    return makeLines(
+      traced, tracedHandleOf, [&] { fillTraced(traced, field_, settings_.echo.samplingMHz, lines); }, tracedLines_,
+      lines);
+  }
+  if (owner_->GetErrorMap())
+  {
+    makeErrorMap(image, traced);
+  }
+  if (port == Filter::ERROR_MAP)
+  {
+    placeImage(errorMap_, field_.pose, lines);
+    return lines->GetPointData()->ShallowCopy(errorArrays_);
+  }
+  readEchoInputs(inputs, image);
+  const RfResult rf = simulator_.rf(image, progress(formation, 0.0, bmodeEnd));
+  if (port == Filter::RF_LINES)
+  {
+    return makeLines(
+      rf, rfOf, [&] { fillRf(rf, lines); }, rfLines_, lines);
+  }
+  if (port == Filter::BMODE_LINES)
+  {
+    const BModeResult grey = simulator_.bmode(image, progress(bmode, 0.0, bmodeEnd));
+    return makeLines(
+      grey, bmodeOf, [&] { fillBMode(grey, lines); }, bmodeLines_, lines);
+  }
+  vtkImageData* world = vtkImageData::GetData(output, Filter::IMAGE);
+  if (port == Filter::FLAT_IMAGE)
+  {
+    world->GetFieldData()->ShallowCopy(fields);
+  }
+  makeImage(image, owner_->GetErrorMap() ? errorArrays_->GetScalars() : nullptr, world,
+            vtkImageData::GetData(output, Filter::FLAT_IMAGE));
+}
+
+} // namespace sono

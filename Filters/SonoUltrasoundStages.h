@@ -1,0 +1,122 @@
+#pragma once
+
+#include "Simulator.h"
+#include "SonoAnatomy.h"
+#include "SonoContent.h"
+#include "SonoProbeField.h"
+
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataArray;
+class vtkDataObject;
+class vtkFieldData;
+class vtkImageData;
+class vtkInformationVector;
+class vtkMultiBlockDataSet;
+class vtkPointData;
+class vtkPolyData;
+class vtkSonoBMode;
+class vtkSonoImageFormation;
+class vtkSonoProbeSource;
+class vtkSonoRayTracer;
+class vtkSonoScanConverter;
+class vtkSonoSceneBuilder;
+class vtkSonoUltrasound;
+
+namespace sono {
+
+/// What was made of an input, kept while its content stays.
+template<class Made>
+struct OfInput
+{
+  std::optional<std::vector<double>> content; ///< none: it is to be made
+  Made made;
+
+  template<class Make>
+  const Made& get(vtkDataObject* input, const Make& make)
+  {
+    std::vector<double> now = input ? contentOf(input) : std::vector<double>();
+    if (content != now)
+    {
+      content.reset(); // stays so when it fails
+      made = input ? make() : Made();
+      content = std::move(now);
+    }
+    return made;
+  }
+};
+
+/// The stages, for their settings, and the simulator that does what they say.
+class UltrasoundStages
+{
+public:
+  explicit UltrasoundStages(vtkSonoUltrasound* owner);
+  ~UltrasoundStages();
+
+  /// To the scene builder, which was replaced.
+  void listenToBuilder();
+  std::vector<vtkAlgorithm*> withSettings() const;
+
+  /// What the outputs will be. Throws Error for what is out of range.
+  void announce(vtkInformationVector* output);
+  /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
+  /// stop.
+  void make(int port, vtkInformationVector** input, vtkInformationVector* output);
+
+  vtkSmartPointer<vtkSonoSceneBuilder> scene;
+  vtkSmartPointer<vtkSonoProbeSource> probe;
+  vtkSmartPointer<vtkSonoRayTracer> tracer;
+  vtkSmartPointer<vtkSonoImageFormation> formation;
+  vtkSmartPointer<vtkSonoBMode> bmode;
+  vtkSmartPointer<vtkSonoScanConverter> converter;
+
+private:
+  using Inputs = std::array<vtkSmartPointer<vtkDataObject>, 4>;
+
+  /// The part of the whole's progress that a stage reports, with its text.
+  Progress progress(vtkAlgorithm* stage, double from, double to);
+  const std::vector<TargetSurface>& targets(vtkDataObject* input, vtkMultiBlockDataSet* blocks);
+  TracedResult trace(const ImageInput& image);
+  void readEchoInputs(const Inputs& inputs, ImageInput& image);
+  template<class Result, class Fill>
+  void makeLines(const Result& result, Result (*resultOf)(vtkImageData*), const Fill& fill,
+                 vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines);
+  void makePaths(int port, const ImageInput& image, vtkPolyData* output);
+  void makeImage(const ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat);
+  void makeErrorMap(const ImageInput& image, const TracedResult& traced);
+
+  vtkSonoUltrasound* owner_;
+  std::unique_ptr<Anatomy> anatomy_;
+  Simulator simulator_;
+  // As announced.
+  ProbeField field_;
+  ImageSettings settings_;
+  vtkSmartPointer<vtkFieldData> acquisition_;
+  // What is made of the inputs.
+  OfInput<std::vector<TargetSurface>> targets_;
+  std::string targetTissue_;                   ///< and
+  std::shared_ptr<const TissueTable> tissues_; ///< which the targets are made with
+  OfInput<std::shared_ptr<const PointScatterers>> scatterers_;
+  OfInput<std::shared_ptr<const PulseEchoField>> pulseEchoField_;
+  std::shared_ptr<const SampledPulse> pulse_;
+  vtkMTimeType pulseTime_ = 0; ///< of the stage when it was read; 0: it is to be read
+  // The last results, and the arrays that stay as long as they do.
+  TracedResult traced_;
+  ScanPicture picture_;
+  vtkSmartPointer<vtkPointData> pictureArrays_;
+  ImageResult errorMap_;
+  vtkSmartPointer<vtkPointData> errorArrays_;
+  vtkSmartPointer<vtkImageData> tracedLines_;
+  vtkSmartPointer<vtkImageData> rfLines_;
+  vtkSmartPointer<vtkImageData> bmodeLines_;
+};
+
+} // namespace sono

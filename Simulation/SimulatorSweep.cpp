@@ -1,0 +1,152 @@
+#include "Core/ParallelFor.h"
+#include "Core/Policy.h"
+#include "Cuda/DeviceImager.h"
+#include "Cuda/MakeImageJob.h"
+#include "Cuda/RunOnDevice.h"
+#include "Echo/EchoSetup.h"
+#include "Kernel/TracePath.h"
+#include "Simulator.h"
+#include "Trace/TraceSetup.h"
+
+#include <algorithm>
+#include <string>
+
+namespace sono {
+
+namespace {
+
+/// Some line of each image meets the label map, as where each is asked for alone.
+void requireEachMeets(const TraceSetup& setup, std::size_t images)
+{
+  const CellSpace<NoTargets> space{ setup.region->view(), {} };
+  const std::size_t perImage = setup.lines.size() / images;
+  for (std::size_t image = 0; image < images; ++image)
+  {
+    const auto first = setup.lines.begin() + std::ptrdiff_t(image * perImage);
+    PathState path;
+    if (std::none_of(first, first + std::ptrdiff_t(perImage),
+                     [&](const TraceLine& line) { return enterSpace(space, line, setup.view.depthMm, path); }))
+    {
+      throw Error("no scan line of pose " + std::to_string(image) +
+                  " meets the label map: move the probe onto the skin or increase the depth");
+    }
+  }
+}
+
+/// Bytes that the stages need for an image, without what a single launch of the tracer needs.
+double bytesPerImage(const TracedLines& traced, int linesPerImage, const PlaneScan& scan)
+{
+  const double bytesPerLine = 48.0 * traced.echoCount + 12.0 * traced.binCount;
+  return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
+}
+
+void sweepOnCpu(const std::shared_ptr<const Scene>& scene, const std::vector<ProbePose>& poses,
+                const ImageSettings& settings, bool withLabels, const SweepSink& sink, const Progress& progress,
+                const std::vector<TargetSurface>& targets)
+{
+  Simulator each(scene); // whose results go with the sweep
+  ImageInput input{ {}, settings, targets, nullptr };
+  input.settings.setDevice(Device::Cpu);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+  {
+    const double done = double(i) / double(poses.size());
+    input.pose = poses[i];
+    ScanPicture picture;
+    try
+    {
+      picture = each.picture(each.image(input, partOf(progress, done, done + 1.0 / double(poses.size()))), input.pose,
+                             withLabels);
+    }
+    catch (const Error& error)
+    {
+      throw Error("pose " + std::to_string(i) + ": " + error.what());
+    }
+    sink({ int(i), 1, picture.grey.data.get(), picture.labels.data.get(), picture.mask.data.get() });
+  }
+}
+
+void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, const ImageSettings& settings,
+                   bool withLabels, const SweepSink& sink, const Progress& progress,
+                   const std::vector<TargetSurface>& targets)
+{
+  const int perImage = settings.geometry.totalLineCount();
+  std::vector<ScanLine> lines(poses.size() * std::size_t(perImage));
+  parallelFor(int(poses.size()), {}, [&](int pose) {
+    const auto made = makeScanLines(settings.geometry, poses[std::size_t(pose)]);
+    std::copy(made.begin(), made.end(), lines.begin() + std::ptrdiff_t(pose) * perImage);
+  });
+  const TracedLines tracedOfOne = tracedLayout(perImage, settings.tracing);
+  const RfLines rfOfOne = rfLayout(perImage, settings.echo);
+  const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
+  const PlaneScan scan = planeScan(settings.geometry, rfOfOne.sampleCount, rfOfOne.sampleMm, settings.pixelMm);
+  std::shared_ptr<const TraceJob> traceJob;
+  {
+    const TraceSetup setup(scene, lines, settings.tracing, targets, partOf(progress, 0.0, 0.3));
+    requireEachMeets(setup, poses.size());
+    traceJob = std::make_shared<const TraceJob>(makeTraceJob(setup, settings.tracing, perImage));
+  }
+  const Progress running = partOf(progress, 0.3, 1.0);
+  DeviceImager& imager = DeviceImager::instance();
+  const int together = std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, perImage, scan)));
+  const auto bmodeJob =
+    std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
+  std::shared_ptr<const EchoJob> echoJob; // made while the first lines are traced
+  SweptPictures before;
+  std::shared_ptr<DeviceImager::Download> download;
+  const auto deliver = [&] {
+    const PictureCopy copy = imager.wait(download);
+    before.grey = copy.bytes.data.get();
+    before.labels = copy.labels.data.get();
+    before.mask = copy.mask.data.get();
+    sink(before);
+    report(running, double(before.firstPose + before.count) / double(poses.size()));
+  };
+  for (int first = 0; first < int(poses.size()); first += together)
+  {
+    const int count = std::min(together, int(poses.size()) - first);
+    const LineRange range{ first * perImage, count * perImage };
+    const auto traced = imager.trace(traceJob, range);
+    if (!echoJob)
+    {
+      const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model };
+      const EchoSetup setup(sources, lines, settings.echo);
+      echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
+    }
+    const auto rf = imager.formRf(echoJob, range, traced.get(), false);
+    const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
+    const auto labels =
+      withLabels ? imager.slice(makeLabelJob(scene, poses.data() + first, count, layout), *picture) : nullptr;
+    auto next = imager.beginDownload(picture, labels);
+    if (download)
+    {
+      deliver();
+    }
+    download = std::move(next);
+    before = { first, count, nullptr, nullptr, nullptr };
+  }
+  deliver();
+}
+
+} // namespace
+
+void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels,
+                      const SweepSink& sink, const Progress& progress, const std::vector<TargetSurface>& targets)
+{
+  settings.requireMatch();
+  planeImageLayout(settings.geometry, settings.pixelMm); // throws for a matrix
+  if (poses.empty())
+  {
+    return;
+  }
+  const bool onDevice = runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda;
+  if (onDevice)
+  {
+    sweepOnDevice(needScene(), poses, settings, withLabels, sink, progress, targets);
+  }
+  else
+  {
+    sweepOnCpu(scene_, poses, settings, withLabels, sink, progress, targets);
+  }
+}
+
+} // namespace sono
