@@ -123,6 +123,12 @@ BeamWidth BeamModel::widthAt(double depthMm) const
   }
 }
 
+double BeamModel::cellAreaMm2(double depthMm) const
+{
+  const BeamWidth width = widthAt(depthMm);
+  return pi * width.lateralSigmaMm * width.elevationalSigmaMm;
+}
+
 void BeamModel::tabulateReach()
 {
   BeamReachTable table;

@@ -34,6 +34,8 @@ public:
   double focusPowerAreaMm2() const { return focusPowerAreaMm2_; }
   /// Of a Field or an Array it takes some thousand look-ups: ask once a depth, not once a scatterer.
   BeamWidth widthAt(double depthMm) const;
+  /// Of the resolution cell at a depth, however strong the beam is there: pi s_L s_E.
+  double cellAreaMm2(double depthMm) const;
   BeamWidth focusWidth() const { return widthAt(focusMm_); }
   /// For bricks; null where the kind of beam has none.
   const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }

@@ -85,10 +85,8 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
     const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
     nested.emplace(*sources.scene, settings.centreFrequencyMHz, wavelengthMm / beams.focusAreaMm2(), settings.seed);
     const double energyMm = pulseEnergyMm(settings);
-    density.emplace(finisher.sumCount() * settings.sampleMm(), [&](double depthMm) {
-      const BeamWidth width = beams.widthAt(depthMm);
-      return pi * width.lateralSigmaMm * width.elevationalSigmaMm * energyMm;
-    });
+    density.emplace(finisher.sumCount() * settings.sampleMm(),
+                    [&](double depthMm) { return beams.cellAreaMm2(depthMm) * energyMm; });
     for (int level = density->finest(); settings.field && level <= density->coarsest(); ++level)
     {
       nestedSight.emplace_back(*settings.field, nested->grid(level).edgeMm);
