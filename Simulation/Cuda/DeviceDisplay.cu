@@ -73,12 +73,12 @@ __device__ void pickBin(RankState& state, std::uint32_t rank, int shift)
   }
 }
 
-/// blockIdx.y is the image. The last pass leaves the reference: the value of the rank where it is an amplitude at all,
-/// else the largest, else 1.
+/// blockIdx.y is the image, `perImage` how many of its values count: of each line those from `first` on. The last pass
+/// leaves the reference: the value of the rank where it is an amplitude at all, else the largest, else 1.
 template<int pass>
 __global__ void __launch_bounds__(threads)
-  findRank(const float* envelope, const float* factor, int samples, std::size_t perImage, std::uint32_t rank,
-           RankState* states, double* reference)
+  findRank(const float* envelope, const float* factor, int samples, int first, int lines, std::size_t perImage,
+           std::uint32_t rank, RankState* states, double* reference)
 {
   __shared__ std::uint32_t counts[binCount];
   __shared__ std::uint32_t largest;
@@ -92,13 +92,16 @@ __global__ void __launch_bounds__(threads)
   }
   largest = 0u;
   __syncthreads();
-  const float* values = envelope + blockIdx.y * perImage;
+  const float* values = envelope + blockIdx.y * std::size_t(lines) * samples;
+  const auto counted = std::uint32_t(samples - first);
   const std::uint32_t prefix = state.bits;
   std::uint32_t most = 0;
   for (std::size_t i = blockIdx.x * std::size_t(threads) + threadIdx.x; i < perImage;
        i += std::size_t(gridDim.x) * threads)
   {
-    const std::uint32_t v = gainedBits(values[i], factor[i % samples]);
+    const std::uint32_t line = std::uint32_t(i) / counted;
+    const std::uint32_t s = first + (std::uint32_t(i) - line * counted);
+    const std::uint32_t v = gainedBits(values[std::size_t(line) * samples + s], factor[s]);
     most = max(most, v);
     if (pass == 0 || v >> (shift + bits) == prefix >> (shift + bits))
     {
@@ -266,10 +269,12 @@ GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines,
     rank_.clear(stream);
     auto* states = reinterpret_cast<RankState*>(rank_.data());
     const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 4096, 264))), images);
-    const auto rank = std::uint32_t(perImage - perImage / 1000);
+    const int first = settings_.firstReferenceSample;
+    const std::size_t counted = std::size_t(lines) * (samples - first);
+    const auto rank = std::uint32_t(counted - counted / 1000);
     for (const auto pass : { findRank<0>, findRank<1>, findRank<2> })
     {
-      pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples, perImage, rank, states,
+      pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples, first, lines, counted, rank, states,
                                          out.reference.data());
     }
   }

@@ -133,6 +133,7 @@ struct BModeJob
 {
   std::vector<float> gainFactor; ///< for the automatic reference
   std::vector<double> gainDb;    ///< of depth, all other gain and the bottom of the range, without the reference
+  int firstReferenceSample = 0;  ///< of a line: the automatic reference leaves out what lies above
   bool automaticReference = true;
   double referenceAmplitude = 1.0;
   float rangeDb = 60.0f;

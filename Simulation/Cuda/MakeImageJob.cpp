@@ -196,6 +196,7 @@ BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sam
     job.gainFactor.push_back(gainFactor(decibels));
     job.gainDb.push_back(decibels + settings.gainDb + settings.dynamicRangeDb);
   }
+  job.firstReferenceSample = firstReferenceSample(sampleCount, sampleMm);
   job.automaticReference = settings.automaticReference;
   job.referenceAmplitude = settings.referenceAmplitude;
   job.rangeDb = float(settings.dynamicRangeDb);

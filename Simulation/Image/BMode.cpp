@@ -133,8 +133,7 @@ double automaticReference(const std::vector<float>& envelope, int lineCount, con
 {
   std::vector<float> factor(gainDb.size());
   std::transform(gainDb.begin(), gainDb.end(), factor.begin(), gainFactor);
-  const auto near = std::size_t(std::min(std::ceil(nearFieldMm / sampleMm), 1e9));
-  const std::size_t first = near < factor.size() ? near : 0; // a line that ends there has nothing else
+  const auto first = std::size_t(firstReferenceSample(int(factor.size()), sampleMm));
   const RankSearch search(envelope, factor, first, lineCount);
   const std::uint64_t count = (factor.size() - first) * std::uint64_t(lineCount);
   const float percentile = search.find(count - count / 1000); // ceil(0.999 n) without rounding
@@ -160,6 +159,12 @@ void validateSizes(const std::vector<float>& envelope, int lineCount, int sample
 }
 
 } // namespace
+
+int firstReferenceSample(int sampleCount, double sampleMm)
+{
+  const double near = std::ceil(nearFieldMm / sampleMm);
+  return near < sampleCount ? int(near) : 0; // a line that ends there has nothing else
+}
 
 std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm)
 {

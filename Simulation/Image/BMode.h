@@ -21,6 +21,9 @@ std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, 
 /// The same as a factor, at most the largest finite float.
 float gainFactor(double decibels);
 
+/// The sample of a line from which on the automatic reference looks: what lies above is the skin.
+int firstReferenceSample(int sampleCount, double sampleMm);
+
 /// Time-gain compensation, log compression, reject:
 /// x = 1 + (20 log10(envelope + noise) + tgc(depth) + gain - 20 log10(reference)) / range, clamped to [0, 1], within
 /// 1e-4 dB, then grey = greyMap(x). `envelope` is lineCount x sampleCount. NaN, negative and subnormal envelopes are
