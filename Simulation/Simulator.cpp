@@ -142,7 +142,7 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
   FetchedTrace fetched = DeviceImager::instance().fetch(device);
   lines.intensity = std::move(fetched.intensity);
   lines.standardError = std::move(fetched.standardError);
-  lines.attenuationNpPerMHz.assign(lines.intensity.size(), 0.0f); // the device does not keep it yet
+  lines.attenuationNpPerMHz = std::move(fetched.attenuationNpPerMHz);
   lines.boundaryEcho = std::move(fetched.boundaryEcho);
   lines.segments = fetched.segments;
 }
@@ -263,8 +263,9 @@ RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResul
     const bool onDevice = chooseDevice(settings.device).cuda;
     // Echoes on other samples are brought onto the RF's on the host.
     const bool takesDevices =
-      onDevice && (!traced || (traced.onDevice() && traced.layout().lineCount == int(lines.size()) &&
-                               agree(traced.layout().echoSampleMm, settings.sampleMm())));
+      onDevice &&
+      (!traced || (traced.onDevice() && traced.layout().lineCount == int(lines.size()) &&
+                   (traced.layout().echoCount == 0 || agree(traced.layout().echoSampleMm, settings.sampleMm()))));
     if (traced && !takesDevices)
     {
       sources.traced = &traced.host();

@@ -34,9 +34,9 @@ void requireEachMeets(const TraceSetup& setup, std::size_t images)
 }
 
 /// Bytes that the stages need for an image, without what a single launch of the tracer needs.
-double bytesPerImage(const TracedLines& traced, int linesPerImage, const PlaneScan& scan)
+double bytesPerImage(const TracedLines& traced, const RfLines& rf, int linesPerImage, const PlaneScan& scan)
 {
-  const double bytesPerLine = 48.0 * traced.echoCount + 12.0 * traced.binCount;
+  const double bytesPerLine = 32.0 * traced.echoCount + 20.0 * traced.binCount + 32.0 * rf.sampleCount;
   return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
 }
 
@@ -87,7 +87,8 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   }
   const Progress running = partOf(progress, 0.3, 1.0);
   DeviceImager& imager = DeviceImager::instance();
-  const int together = std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, perImage, scan)));
+  const int together =
+    std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
   const auto bmodeJob =
     std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
   std::shared_ptr<const EchoJob> echoJob; // made while the first lines are traced

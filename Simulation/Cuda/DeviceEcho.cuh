@@ -13,7 +13,8 @@ namespace sono {
 /// Where the tracer's results lie on the device.
 struct TracedOnDevice
 {
-  const float* intensity = nullptr; ///< lines x bins; null: 1 everywhere
+  const float* intensity = nullptr;   ///< lines x bins; null: 1 everywhere
+  const float* attenuation = nullptr; ///< lines x bins: B, Np of amplitude per MHz; null: not known
   int binCount = 0;
   float binMm = 0.0f;
   const EchoSum* echoSums = nullptr; ///< lines x echoCount x (re, im), on the RF's samples

@@ -260,6 +260,7 @@ std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<co
     made->arrays = w.tracer->take();
     made->lineCount = lines.count;
     made->view.intensity = made->arrays.intensity.data();
+    made->view.attenuation = made->arrays.attenuation.data();
     made->view.binCount = job->binCount;
     made->view.binMm = job->binMm;
     made->view.echoSums = made->arrays.echo.data();
@@ -354,6 +355,7 @@ FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
     FetchedTrace out;
     out.intensity = w.bring<float, float>(arrays.intensity.data(), arrays.intensity.size());
     out.standardError = w.bring<float, float>(arrays.standardError.data(), arrays.standardError.size());
+    out.attenuationNpPerMHz = w.bring<float, float>(arrays.attenuation.data(), arrays.attenuation.size());
     out.boundaryEcho = w.bring<float2, std::complex<float>>(echo.data(), echo.size());
     download(arrays.segments.data(), 1, &out.segments, stream, w.traffic);
     check(cudaStreamSynchronize(stream), "computing");

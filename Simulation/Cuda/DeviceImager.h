@@ -15,7 +15,7 @@ namespace sono {
 // What a stage has left on the device. Complete where nvcc compiles; others hold it only. It stays as it is, whatever
 // the device makes next, and its memory goes back when nobody holds it any more.
 
-struct DeviceTraced;     ///< intensities, their errors and boundary echoes of some lines
+struct DeviceTraced;     ///< intensities, their errors, attenuation and boundary echoes of some lines
 struct DeviceRf;         ///< IQ and envelopes of some lines
 struct DeviceGrey;       ///< grey levels in beam space, of one image or several of equally many lines
 struct DevicePicture;    ///< scan-converted bytes of those images, and their mask
@@ -33,6 +33,7 @@ struct FetchedTrace
 {
   std::vector<float> intensity;
   std::vector<float> standardError;
+  std::vector<float> attenuationNpPerMHz;
   std::vector<std::complex<float>> boundaryEcho;
   std::uint64_t segments = 0;
 };

@@ -128,7 +128,13 @@ public:
     upload(from.data(), from.size(), stream, traffic);
   }
 
-  void clear(cudaStream_t stream) { check(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "clearing memory"); }
+  void clear(cudaStream_t stream)
+  {
+    if (size_ > 0)
+    {
+      check(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "clearing memory");
+    }
+  }
 
 private:
   T* data_ = nullptr;
@@ -141,8 +147,11 @@ template<class T, class U>
 void download(const T* from, std::size_t count, U* to, cudaStream_t stream, Traffic& traffic)
 {
   static_assert(sizeof(T) == sizeof(U), "one value becomes one value");
-  check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream), "downloading");
-  traffic.down += count * sizeof(T);
+  if (count > 0)
+  {
+    check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream), "downloading");
+    traffic.down += count * sizeof(T);
+  }
 }
 
 } // namespace sono

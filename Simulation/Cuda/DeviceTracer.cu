@@ -12,7 +12,7 @@ namespace {
 
 constexpr int launchWarps = 4096;              // few lines of many paths are cut into so many warps, to fill a device
 constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
-constexpr double binsPerLaunch = 1.25e8;       // 1 GB of sums
+constexpr double binsPerLaunch = 6.25e7;       // 1 GB of sums
 constexpr int fewPaths = 1024;                 // of a line: nothing is lost of their sums, so nothing need be folded
 constexpr std::size_t sharedBytes = 96 * 1024; // more would keep other blocks away
 
@@ -46,7 +46,7 @@ template<class Targets>
 void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
   const std::size_t scrambleBytes = std::size_t(launch.view.maxCollisions) * sizeof(BounceScramble);
-  const std::size_t bytes = scrambleBytes + (inShared ? blockWarps * launch.binCount * sizeof(float) : 0);
+  const std::size_t bytes = scrambleBytes + (inShared ? blockWarps * launch.binCount * sizeof(float2) : 0);
   const auto kernel = !inShared   ? tracePaths<false, true, Targets>
                       : manyPaths ? tracePaths<true, true, Targets>
                                   : tracePaths<true, false, Targets>;
@@ -94,6 +94,7 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
   paths_ = job.paths;
   binCount_ = job.binCount;
   binMm_ = job.binMm;
+  frequencyMHz_ = job.frequencyMHz;
   echoCount_ = job.echoCount;
   echoSampleMm_ = job.echoSampleMm;
   radPerMm_ = job.radPerMm;
@@ -113,7 +114,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const int wanted = std::max(1, launchWarps / (blockWarps * std::max(1, batches * linesPerImage_)));
   const int slices = std::max(1, std::min(wanted, ceilDiv(longest, blockPaths)));
   const std::size_t scrambleBytes = std::size_t(view_.maxCollisions) * sizeof(BounceScramble);
-  const std::size_t binBytes = blockWarps * bins * sizeof(float);
+  const std::size_t binBytes = blockWarps * bins * sizeof(float2);
   const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, BvhTargets>));
   const bool inShared = binBytes + scrambleBytes <= sharedLimit;
   const bool manyPaths = !inShared || paths_ > fewPaths;
@@ -124,6 +125,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   shared_.clear(stream);
   intensity_.resize(lineCount * bins);
   error_.resize(lineCount * bins);
+  attenuation_.resize(lineCount * bins);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echo_.clear(stream);
   if (manyPaths)
@@ -155,6 +157,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      bins_.data(),
                      intensity_.data() + skip * bins,
                      error_.data() + skip * bins,
+                     attenuation_.data() + skip * bins,
                      echo_.data() + skip * std::size_t(echoCount_) * 2,
                      manyPaths ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
                      segments_.data(),
@@ -165,6 +168,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      slices,
                      binCount_,
                      binMm_,
+                     frequencyMHz_,
                      echoCount_,
                      echoSampleMm_,
                      radPerMm_,

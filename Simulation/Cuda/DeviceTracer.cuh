@@ -14,7 +14,8 @@ struct TracedArrays
 {
   DeviceArray<float> intensity; ///< lines x bins
   DeviceArray<float> standardError;
-  DeviceArray<EchoSum> echo; ///< lines x echoCount x (re, im)
+  DeviceArray<float> attenuation; ///< B, Np of amplitude per MHz, of the round trip
+  DeviceArray<EchoSum> echo;      ///< lines x echoCount x (re, im); none in Acoustic
   DeviceArray<std::uint64_t> segments;
 };
 
@@ -28,7 +29,11 @@ public:
   void run(int first, int count, const Progress& progress, cudaStream_t stream);
 
   /// Hands over what run() has just made.
-  TracedArrays take() { return { std::move(intensity_), std::move(error_), std::move(echo_), std::move(segments_) }; }
+  TracedArrays take()
+  {
+    return { std::move(intensity_), std::move(error_), std::move(attenuation_), std::move(echo_),
+             std::move(segments_) };
+  }
   float echoPerUnit() const { return echoPerUnit_; } ///< turns an EchoSum into an amplitude
   int binCount() const { return binCount_; }
   int echoCount() const { return echoCount_; }
@@ -45,11 +50,12 @@ private:
   DeviceArray<TraceMedium> media_;
   DeviceArray<TraceLine> lines_;
   DeviceArray<std::uint8_t> starts_;
-  DeviceArray<double> sums_;
-  DeviceArray<float> bins_;
-  DeviceArray<float> shared_;
+  DeviceArray<double2> sums_;
+  DeviceArray<float2> bins_;
+  DeviceArray<float2> shared_;
   DeviceArray<float> intensity_;
   DeviceArray<float> error_;
+  DeviceArray<float> attenuation_;
   DeviceArray<EchoSum> echo_;
   DeviceArray<EchoSum> echoRest_;
   DeviceArray<std::uint64_t> segments_;
@@ -59,6 +65,7 @@ private:
   int paths_ = 0;
   int binCount_ = 0;
   float binMm_ = 0.0f;
+  double frequencyMHz_ = 1.0;
   int echoCount_ = 0;
   float echoSampleMm_ = 0.0f;
   float radPerMm_ = 0.0f;

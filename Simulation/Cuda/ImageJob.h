@@ -39,7 +39,8 @@ struct TraceJob
   int paths = 0; ///< of a line
   int binCount = 0;
   float binMm = 0.0f;
-  int echoCount = 0;
+  double frequencyMHz = 1.0;
+  int echoCount = 0; ///< 0: boundaries do not echo
   float echoSampleMm = 0.0f;
   float radPerMm = 0.0f; ///< 2 k of the boundary echoes' phases
 };

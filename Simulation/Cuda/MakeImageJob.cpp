@@ -109,6 +109,7 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.paths = setup.paths;
   job.binCount = settings.binCount();
   job.binMm = float(settings.radialBinMm);
+  job.frequencyMHz = setup.frequencyMHz;
   job.echoCount = settings.echoCount();
   job.echoSampleMm = float(settings.echoSampleMm);
   job.radPerMm = float(4.0 * 3.14159265358979323846 * settings.frequencyMHz / assumedSoundSpeedMmPerUs);

@@ -15,7 +15,7 @@ namespace sono {
 constexpr int blockWarps = 4;
 constexpr int blockPaths = blockWarps * warpLanes;
 constexpr int blocksAtOnce =
-  9; // on a multiprocessor: more warps, that hide their waits, are worth some spilled registers
+  8; // on a multiprocessor, where more bins do not fit: all of an image's warps at once, worth some spilled registers
 constexpr unsigned allLanes = 0xffffffffu;
 constexpr int restBits = 28; // of what rounding leaves of an echo
 
@@ -27,11 +27,12 @@ struct TraceLaunch
   CellSpace<Targets, RowCells> space;
   const TraceLine* lines; // of the launch
   LineStart* starts;
-  float* shared; // what all paths of a line leave: lines x bins
-  double* sums;  // of parts of batches: lines x batches x parts x bins
-  float* bins;   // of the warps, where they do not lie in shared memory
+  float2* shared; // what all paths of a line leave: lines x bins; as all bins, the intensity and what is absorbed of it
+  double2* sums;  // of parts of batches: lines x batches x parts x bins
+  float2* bins;   // of the warps, where they do not lie in shared memory
   float* intensity;
   float* error;
+  float* attenuation;
   EchoSum* echo;
   EchoSum* echoRest; // what rounding left of each echo, 2^restBits a unit of `echo`; null: not kept
   std::uint64_t* segments;
@@ -42,7 +43,8 @@ struct TraceLaunch
   int slices; // of a batch, each traced by one block
   int binCount;
   float binMm;
-  int echoCount;
+  double frequencyMHz;
+  int echoCount; // 0: boundaries do not echo
   float echoSampleMm;
   float radPerMm;
   float echoScale;
@@ -53,6 +55,10 @@ struct TraceLaunch
 template<bool KeepsRest, class Launch>
 __device__ void addEcho(const Launch& launch, int line, const Vec3f& point, float amplitude)
 {
+  if (launch.echoCount == 0)
+  {
+    return;
+  }
   const EchoSplit split = splitEcho(launch.lines[line], point, amplitude, launch.view.coherenceMm, launch.echoSampleMm,
                                     launch.echoCount, launch.radPerMm);
   if (split.sample < 0)
@@ -162,12 +168,13 @@ __device__ bool nextPath(const Launch& launch, const LineStart& start, int end, 
 }
 
 /// A warp's bins go over into its doubles; each lane has its own (see depositByWarp).
-__device__ inline void foldBins(int binCount, int lane, float* bins, double* sums)
+__device__ inline void foldBins(int binCount, int lane, float2* bins, double2* sums)
 {
   for (int b = lane; b < binCount; b += warpLanes)
   {
-    sums[b] += double(bins[b]);
-    bins[b] = 0.0f;
+    sums[b].x += double(bins[b].x);
+    sums[b].y += double(bins[b].y);
+    bins[b] = { 0.0f, 0.0f };
   }
 }
 
@@ -179,7 +186,7 @@ __device__ inline void foldBins(int binCount, int lane, float* bins, double* sum
 template<bool BinsInShared, bool ManyPaths, class Targets>
 __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
 {
-  extern __shared__ float dynamic[];
+  extern __shared__ float2 dynamic[];
   __shared__ StagedSegment staged[blockWarps][warpLanes];
   const int slice = blockIdx.x % launch.slices;
   const int batch = blockIdx.x / launch.slices;
@@ -192,13 +199,13 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
   auto* scrambles = reinterpret_cast<BounceScramble*>(dynamic + std::size_t(slots) * launch.binCount);
   const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
   const std::size_t warpRow = (row * blockWarps + warp) * launch.binCount;
-  float* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
+  float2* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
   for (int b = lane; b < launch.binCount; b += warpLanes)
   {
-    bins[b] = 0.0f;
+    bins[b] = { 0.0f, 0.0f };
     if (ManyPaths)
     {
-      launch.sums[warpRow + b] = 0.0;
+      launch.sums[warpRow + b] = { 0.0, 0.0 };
     }
   }
   const std::uint32_t lineKey = launch.keyOf(line);
@@ -258,16 +265,24 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
   __syncthreads();
   for (int b = threadIdx.x; b < launch.binCount; b += blockPaths)
   {
-    double sum = 0.0;
+    double2 sum{ 0.0, 0.0 };
     for (int g = 0; g < blockWarps; ++g)
     {
-      sum += double(dynamic[std::size_t(g) * launch.binCount + b]);
+      const float2 bin = dynamic[std::size_t(g) * launch.binCount + b];
+      sum.x += double(bin.x);
+      sum.y += double(bin.y);
     }
     launch.sums[row * launch.binCount + b] = sum;
   }
 }
 
-/// Mean over the batches and its standard error, for each bin.
+/// B of a bin: a path's intensity falls as the round trip's amplitude does, so what is absorbed is B f.
+__device__ inline float attenuationOf(float intensity, double absorbed, double frequencyMHz)
+{
+  return intensity > 0.0f ? float(absorbed / (double(intensity) * frequencyMHz)) : 0.0f;
+}
+
+/// Mean over the batches and its standard error, for each bin, and what is absorbed per MHz.
 template<class Targets>
 __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
 {
@@ -279,23 +294,29 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   }
   const std::size_t at = std::size_t(line) * launch.binCount + b;
   launch.error[at] = 0.0f;
-  launch.intensity[at] = launch.shared[at];
+  launch.intensity[at] = launch.shared[at].x;
   if (!launch.starts[line].meets)
   {
+    launch.attenuation[at] = attenuationOf(launch.shared[at].x, double(launch.shared[at].y), launch.frequencyMHz);
     return;
   }
   double means[batchCount];
   double mean = 0.0;
+  double absorbed = 0.0;
   for (int batch = 0; batch < launch.batches; ++batch)
   {
     const PathRange range = batchRange(launch.paths, launch.batches, batch);
-    double sum = 0.0;
+    double2 sum{ 0.0, 0.0 };
     for (int p = 0; p < parts; ++p)
     {
-      sum += launch.sums[((std::size_t(line) * launch.batches + batch) * parts + p) * launch.binCount + b];
+      const double2 part =
+        launch.sums[((std::size_t(line) * launch.batches + batch) * parts + p) * launch.binCount + b];
+      sum.x += part.x;
+      sum.y += part.y;
     }
-    means[batch] = sum / double(range.last - range.first);
+    means[batch] = sum.x / double(range.last - range.first);
     mean += means[batch];
+    absorbed += sum.y / double(range.last - range.first) / launch.batches;
   }
   mean /= launch.batches;
   double spread = 0.0;
@@ -304,6 +325,8 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
     spread += (means[batch] - mean) * (means[batch] - mean);
   }
   launch.intensity[at] += float(mean);
+  launch.attenuation[at] =
+    attenuationOf(launch.intensity[at], double(launch.shared[at].y) + absorbed, launch.frequencyMHz);
   launch.error[at] = launch.batches > 1 ? float(sqrt(spread / (double(launch.batches) * (launch.batches - 1)))) : 0.0f;
 }
 

@@ -10,16 +10,17 @@ namespace sono {
 
 constexpr int warpLanes = 32;
 
-/// A segment and the bins that it covers, as lanes share it.
+/// A segment and the bins that it covers, as lanes share it: no more than this, since bins fill what is left of the
+/// shared memory.
 struct StagedSegment
 {
   BeamSegment beam;
-  float inverseMu;
   float low;
   float high;
   int binLow;
   int binHigh;
-  float scale; ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
+  float scale;    ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
+  float absorbed; ///< of PathSegment, at its start
 };
 
 __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& piece, float coherenceMm, float binMm,
@@ -27,34 +28,42 @@ __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& 
 {
   StagedSegment staged;
   staged.beam = beamSegment(line, piece, coherenceMm);
+  staged.absorbed = piece.absorbed;
   const DepthSpan span = depthSpan(staged.beam, piece.length, binMm * float(binCount));
   staged.low = span.low;
   staged.high = span.high;
-  staged.inverseMu = 1.0f / staged.beam.mu;
   const int last = binCount - 1;
   staged.binLow = min(int(span.low / binMm), last);
   staged.binHigh = span.high > span.low ? min(int(span.high / binMm), last) : -1;
   // At a bin's middle w is within step^2 / 12 C0^2 of its mean: here 1e-4.
-  const float step = binMm * fabsf(staged.inverseMu);
+  const float step = binMm / fabsf(staged.beam.mu);
   const float half = 0.5f * staged.beam.decay * step;
   const bool smooth = step < 0.035f * staged.beam.coherence && half < 0.3f;
   staged.scale = smooth ? piece.intensity * (1.0f + half * half * (1.0f / 6.0f)) / binMm : 0.0f;
   return staged;
 }
 
+/// What a bin holds: the sum of I w_R, and that of A I w_R with A the attenuation met, Np of intensity.
+__device__ inline void addToBin(const StagedSegment& s, float value, float at, float2& bin)
+{
+  bin.x += value;
+  bin.y += value * (s.absorbed + s.beam.decay * at);
+}
+
 /// A warp adds a segment to its bins; a bin always belongs to the same lane, so that the sum's order is that of the
 /// segments.
-__device__ inline void depositByWarp(const StagedSegment s, float binMm, int lane, float* __restrict__ bins)
+__device__ inline void depositByWarp(const StagedSegment s, float binMm, int lane, float2* __restrict__ bins)
 {
   int b = s.binLow + ((lane - s.binLow) & (warpLanes - 1));
+  const float inverseMu = 1.0f / s.beam.mu;
   if (s.scale > 0.0f)
   {
     float from = fmaxf(s.low, float(b) * binMm);
     for (; b <= s.binHigh; b += warpLanes)
     {
       const float to = fminf(s.high, float(b + 1) * binMm);
-      const float at = (0.5f * (from + to) - s.beam.r0) * s.inverseMu;
-      bins[b] += s.scale * (to - from) * expNegative(-s.beam.decay * at) * beamWeightAt(s.beam, at);
+      const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
+      addToBin(s, s.scale * (to - from) * expNegative(-s.beam.decay * at) * beamWeightAt(s.beam, at), at, bins[b]);
       from = float(b + warpLanes) * binMm;
     }
     return;
@@ -64,7 +73,8 @@ __device__ inline void depositByWarp(const StagedSegment s, float binMm, int lan
   {
     const float from = fmaxf(s.low, float(b) * binMm);
     const float to = fminf(s.high, float(b + 1) * binMm);
-    bins[b] += meanOver(s.beam, from, to, s.inverseMu) * (to - from) * perMm;
+    const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
+    addToBin(s, meanOver(s.beam, from, to, inverseMu) * (to - from) * perMm, at, bins[b]);
   }
 }
 
