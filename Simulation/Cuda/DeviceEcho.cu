@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace sono {
 
@@ -49,6 +50,25 @@ __device__ bool isLit(const TissueLaunch& launch, const Chunk& chunk)
   return __syncthreads_or(lit);
 }
 
+/// The block goes through the cells of all rows; lanes of a warp together. visit(exists, cell).
+template<class Visit>
+__device__ void forCells(const CellRows& rows, const Visit& visit)
+{
+  const int rowCount = rows.rowCount();
+  for (int first = int(threadIdx.x) / warpLanes * warpLanes; first < rowCount; first += blockThreads)
+  {
+    const int r = first + int(threadIdx.x) % warpLanes;
+    const CellRows::Row row = r < rowCount ? rows.row(r) : CellRows::Row{ 0, 0, 0, 0 };
+    forItemsOfWarp(row.count, [&](int owner, int place) {
+      const int layer = __shfl_sync(allLanes, row.layer, owner);
+      const int v = __shfl_sync(allLanes, row.v, owner);
+      const int u = __shfl_sync(allLanes, row.first, owner) + place;
+      visit(owner >= 0, rows.cell(layer, v, u));
+    });
+  }
+}
+
+template<BeamKind kind>
 __global__ void __launch_bounds__(blockThreads) splatTissueCells(TissueLaunch launch)
 {
   __shared__ ShortSums sums;
@@ -63,21 +83,17 @@ __global__ void __launch_bounds__(blockThreads) splatTissueCells(TissueLaunch la
   const bool lit = isLit(launch, chunk);
   __syncthreads();
   const Beam beam = splat.beams[chunk.line];
+  const float brickMm = launch.cellMm * brickCells;
+  const BrickSight<kind> sight(splat, beam, brickMm);
   const auto splatCell = [&](const Vec3i& cell) {
-    const Vec3i brick(cell.x >> 2, cell.y >> 2, cell.z >> 2);
-    if (!splat.sightMeets(beam, (Vec3f(brick) + 0.5f) * (launch.cellMm * brickCells)))
-    {
-      return;
-    }
     const ScattererSeed seed = scattererSeed(launch.seed, cell);
     const float x = (float(cell.x) + seed.fraction.x) * launch.cellMm;
     const float y = (float(cell.y) + seed.fraction.y) * launch.cellMm;
     const float z = (float(cell.z) + seed.fraction.z) * launch.cellMm;
-    const BeamPlace place = placeInBeam(x, y, z, beam, splat.grid);
-    const float weight = chunk.holds(place) ? splat.weight(place) : 0.0f;
+    const SeenEcho<kind> echo = seenEcho<kind>(splat, beam, chunk, placeInBeam(x, y, z, beam, splat.grid));
     const Vec3i voxel(int(floorf(x * launch.perMm.x)), int(floorf(y * launch.perMm.y)),
                       int(floorf(z * launch.perMm.z)));
-    if (weight == 0.0f || unsigned(voxel.x) >= unsigned(launch.size.x) ||
+    if (isZero(echo.weight) || unsigned(voxel.x) >= unsigned(launch.size.x) ||
         unsigned(voxel.y) >= unsigned(launch.size.y) || unsigned(voxel.z) >= unsigned(launch.size.z))
     {
       return;
@@ -87,30 +103,41 @@ __global__ void __launch_bounds__(blockThreads) splatTissueCells(TissueLaunch la
     const float amplitude = scattererAmplitude(media[launch.voxels[at]], seed.presence, seed.deviate);
     if (amplitude != 0.0f)
     {
-      addScatterer(sums, splitScatterer(amplitude * weight, place.position, splat.grid), chunk.first, splat.scale);
+      addScatterer(sums, splitScatterer(times(echo.weight, amplitude), echo.position, splat.grid), chunk.first,
+                   splat.scale);
     }
   };
-  if (lit)
+  if (lit && kind == BeamKind::Array)
   {
-    const CellRows rows(beam, { chunk.fromMm, chunk.toMm, splat.lateralMm, splat.elevationalMm }, launch.cellMm,
-                        Vec3f(0.0f), launch.extentMm);
-    const int rowCount = rows.rowCount();
-    for (int first = int(threadIdx.x) / warpLanes * warpLanes; first < rowCount; first += blockThreads)
-    {
-      const int r = first + int(threadIdx.x) % warpLanes;
-      const CellRows::Row row = r < rowCount ? rows.row(r) : CellRows::Row{ 0, 0, 0, 0 };
-      forItemsOfWarp(row.count, [&](int owner, int place) {
-        const int layer = __shfl_sync(allLanes, row.layer, owner);
-        const int v = __shfl_sync(allLanes, row.v, owner);
-        const int u = __shfl_sync(allLanes, row.first, owner) + place;
-        if (owner >= 0)
+    // Its side lobes reach far, but only some bricks count: a lane asks for each, then the warp takes those that do.
+    const CellRows bricks(beam, pieceOf<kind>(splat, beam, chunk), brickMm, Vec3f(0.0f), launch.extentMm);
+    forCells(bricks, [&](bool exists, const Vec3i& brick) {
+      const bool seen = exists && sight.meets((Vec3f(brick) + 0.5f) * brickMm);
+      for (unsigned waiting = __ballot_sync(allLanes, seen); waiting; waiting &= waiting - 1)
+      {
+        const int lane = __ffs(int(waiting)) - 1;
+        const Vec3i first =
+          brickCells * Vec3i(__shfl_sync(allLanes, brick.x, lane), __shfl_sync(allLanes, brick.y, lane),
+                             __shfl_sync(allLanes, brick.z, lane));
+        for (int n = int(threadIdx.x) % warpLanes; n < brickCells * brickCells * brickCells; n += warpLanes)
         {
-          splatCell(rows.cell(layer, v, u));
+          splatCell(first + Vec3i(n & 3, (n >> 2) & 3, n >> 4));
         }
-      });
-    }
-    __syncthreads();
+      }
+    });
   }
+  else if (lit)
+  {
+    const CellRows cells(beam, pieceOf<kind>(splat, beam, chunk), launch.cellMm, Vec3f(0.0f), launch.extentMm);
+    forCells(cells, [&](bool exists, const Vec3i& cell) {
+      const Vec3i brick(cell.x >> 2, cell.y >> 2, cell.z >> 2);
+      if (exists && sight.meets((Vec3f(brick) + 0.5f) * brickMm))
+      {
+        splatCell(cell);
+      }
+    });
+  }
+  __syncthreads();
   writeChunk(splat, chunk, sums, false);
 }
 
@@ -128,13 +155,6 @@ struct PointLaunch
   bool add;
 };
 
-/// A point in front of its beam: what it echoes, at a position on the line.
-struct SeenPoint
-{
-  float amplitude;
-  float position;
-};
-
 struct PointRange
 {
   int first;
@@ -142,12 +162,12 @@ struct PointRange
 };
 
 /// The points of a brick that the beam may see.
-__device__ PointRange pointsOf(const PointLaunch& launch, const Beam& beam, const Vec3i& cell)
+template<BeamKind kind>
+__device__ PointRange pointsOf(const PointLaunch& launch, const BrickSight<kind>& sight, const Vec3i& cell)
 {
   const Vec3i brick = cell - launch.firstBrick;
   if (unsigned(brick.x) >= unsigned(launch.bricks.x) || unsigned(brick.y) >= unsigned(launch.bricks.y) ||
-      unsigned(brick.z) >= unsigned(launch.bricks.z) ||
-      !launch.splat.sightMeets(beam, (Vec3f(cell) + 0.5f) * launch.edgeMm))
+      unsigned(brick.z) >= unsigned(launch.bricks.z) || !sight.meets((Vec3f(cell) + 0.5f) * launch.edgeMm))
   {
     return { 0, 0 };
   }
@@ -155,8 +175,10 @@ __device__ PointRange pointsOf(const PointLaunch& launch, const Beam& beam, cons
   return { launch.begin[b], launch.begin[b + 1] - launch.begin[b] };
 }
 
+template<BeamKind kind>
 __global__ void __launch_bounds__(blockThreads) splatPointBricks(PointLaunch launch)
 {
+  using SeenPoint = SeenEcho<kind>; // of the point's amplitude
   __shared__ LongSums sums;
   __shared__ WarpQueue<SeenPoint> queues[blockThreads / warpLanes];
   const SplatLaunch& splat = launch.splat;
@@ -166,10 +188,10 @@ __global__ void __launch_bounds__(blockThreads) splatPointBricks(PointLaunch lau
   const Beam beam = splat.beams[chunk.line];
   const Vec3f low = Vec3f(launch.firstBrick) * launch.edgeMm;
   const Vec3f high = Vec3f(launch.firstBrick + launch.bricks) * launch.edgeMm;
-  const CellRows rows(beam, { chunk.fromMm, chunk.toMm, splat.lateralMm, splat.elevationalMm }, launch.edgeMm, low,
-                      high);
+  const BrickSight<kind> sight(splat, beam, launch.edgeMm);
+  const CellRows rows(beam, pieceOf<kind>(splat, beam, chunk), launch.edgeMm, low, high);
   const auto splatPoint = [&](const SeenPoint& p) {
-    addScatterer(sums, splitScatterer(p.amplitude, p.position, splat.grid), chunk.first, splat.scale);
+    addScatterer(sums, splitScatterer(p.weight, p.position, splat.grid), chunk.first, splat.scale);
   };
   const int lane = int(threadIdx.x) % warpLanes;
   const int warp = int(threadIdx.x) / warpLanes;
@@ -181,17 +203,18 @@ __global__ void __launch_bounds__(blockThreads) splatPointBricks(PointLaunch lau
     const CellRows::Row row = rows.row(r);
     for (int n = 0; n < row.count; ++n)
     {
-      const PointRange range = pointsOf(launch, beam, rows.cell(row.layer, row.v, row.first + n));
+      const PointRange range = pointsOf(launch, sight, rows.cell(row.layer, row.v, row.first + n));
       for (int first = 0; first < range.count; first += warpLanes)
       {
         const int p = range.first + first + lane;
-        SeenPoint point{ 0.0f, 0.0f };
+        SeenPoint point{};
         if (first + lane < range.count)
         {
           const BeamPlace at = placeInBeam(launch.x[p], launch.y[p], launch.z[p], beam, splat.grid);
-          point = { chunk.holds(at) ? launch.amplitude[p] * splat.weight(at) : 0.0f, at.position };
+          point = seenEcho<kind>(splat, beam, chunk, at);
+          point.weight = times(point.weight, launch.amplitude[p]);
         }
-        queues[warp].push(point.amplitude != 0.0f, point, queued, splatPoint);
+        queues[warp].push(!isZero(point.weight), point, queued, splatPoint);
       }
     }
   }
@@ -200,9 +223,52 @@ __global__ void __launch_bounds__(blockThreads) splatPointBricks(PointLaunch lau
   writeChunk(splat, chunk, sums, launch.add);
 }
 
-float halfWidth(const BeamFieldAxis& axis)
+/// Calls launch with the kind as a constant.
+template<class Launch>
+void withKind(BeamKind kind, const Launch& launch)
 {
-  return std::max(-axis.lowMm, axis.highMm);
+  switch (kind)
+  {
+    case BeamKind::Gaussian:
+      launch(std::integral_constant<BeamKind, BeamKind::Gaussian>());
+      break;
+    case BeamKind::Aperture:
+      launch(std::integral_constant<BeamKind, BeamKind::Aperture>());
+      break;
+    case BeamKind::Field:
+      launch(std::integral_constant<BeamKind, BeamKind::Field>());
+      break;
+    case BeamKind::Array:
+      launch(std::integral_constant<BeamKind, BeamKind::Array>());
+      break;
+  }
+}
+
+/// An ellipse around a rectangle is so much larger.
+constexpr float aroundRectangle = 1.4143f;
+
+/// Sets what an array's beam sees of a chunk whose echoes come from ranges between the piece's two depths: whole bricks
+/// (their diagonal is `brickMm` long), and depths that are less than the range to the side. Lines are up to `widening`
+/// times wider than straight ahead.
+void widenByRange(const BeamReachTable& reach, float brickMm, const Vec2f& widening, BeamPiece& piece)
+{
+  const int last = int(reach.lateralMm.size()) - 1;
+  const int to = std::clamp(int((piece.toMm + brickMm) / reach.stepMm), 0, last);
+  const float firstMm = piece.fromMm;
+  Vec2f widest(0.0f);
+  for (int n = to; n >= 0; --n)
+  {
+    const Vec2f seen(reach.lateralMm[std::size_t(n)] + brickMm, reach.elevationalMm[std::size_t(n)] + brickMm);
+    // What a brick in this step shows may lie a brick deeper.
+    const float deepestMm = n == last ? piece.toMm : float(n + 1) * reach.stepMm + brickMm;
+    if (glm::length(Vec3f(seen * widening, deepestMm)) >= firstMm)
+    {
+      widest = glm::max(widest, seen);
+      piece.fromMm = std::min(piece.fromMm, float(n) * reach.stepMm - brickMm);
+    }
+  }
+  piece.lateralMm = aroundRectangle * widest.x;
+  piece.elevationalMm = aroundRectangle * widest.y;
 }
 
 /// The unit of 64-bit sums: the largest single amplitude becomes 2^30, which leaves room for 2^32 of them.
@@ -213,29 +279,78 @@ float scaleFor(float largest)
 
 } // namespace
 
-void DeviceEcho::Sight::upload(const std::optional<SightJob>& job, cudaStream_t stream, Traffic& traffic)
+/// The table of the beam's kind, kept on the device while it is the same.
+void DeviceEcho::uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& traffic)
 {
-  some = job.has_value();
-  if (some)
+  kind_ = job.kind;
+  reach_ = job.reach;
+  if (job.field)
   {
-    seen.upload(job->seen, stream, traffic);
-    view = job->view;
-    view.seen = seen.data();
-    lateralMm = job->lateralMm;
-    elevationalMm = job->elevationalMm;
+    if (fieldSource_ != job.field->values)
+    {
+      fieldSource_ = nullptr; // stays so when the upload fails
+      fieldValues_.upload(*job.field->values, stream, traffic);
+      fieldSource_ = job.field->values;
+    }
+    field_ = job.field->view;
+    field_.values = fieldValues_.data();
+  }
+  if (job.array)
+  {
+    if (arraySource_ != job.array->field)
+    {
+      arraySource_ = nullptr;
+      arrayLateral_.upload(job.array->field->lateral(), stream, traffic);
+      arrayElevational_.upload(job.array->field->elevational(), stream, traffic);
+      sightLateral_.upload(job.array->sight->lateral(), stream, traffic);
+      sightElevational_.upload(job.array->sight->elevational(), stream, traffic);
+      arraySource_ = job.array->field;
+    }
+    array_ = job.array->field->view(arrayLateral_.data(), arrayElevational_.data());
+    arraySight_ = job.array->sight->view(sightLateral_.data(), sightElevational_.data());
   }
 }
 
-void DeviceEcho::setBeams(const std::vector<Beam>& beams)
+/// Of each chunk the ellipse around the axis that holds all that a beam straight ahead sees.
+void DeviceEcho::uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm,
+                             Sight& sight, cudaStream_t stream, Traffic& traffic)
 {
   sigmas_ = Vec2f(beams.front().lateralSigmaMm, beams.front().elevationalSigmaMm);
-}
-
-/// Half axes of the ellipse around the axis that holds all that a beam sees: around a field's rectangle, or a
-/// Gaussian's own.
-Vec2f DeviceEcho::ellipse(const Sight& sight) const
-{
-  return sight.some ? Vec2f(1.4143f * sight.lateralMm, 1.4143f * sight.elevationalMm) : beamCutSigma * sigmas_;
+  if (job)
+  {
+    sight.seen.upload(job->seen, stream, traffic);
+    sight.view = job->view;
+    sight.view.seen = sight.seen.data();
+  }
+  Vec2f widening(1.0f);
+  for (const Beam& beam : beams)
+  {
+    widening = kind_ == BeamKind::Array ? glm::max(widening, 1.0f / Vec2f(beam.lateralCosine, beam.elevationalCosine))
+                                        : widening;
+  }
+  std::vector<BeamPiece> pieces;
+  for (int c = 0; c < chunks(); ++c)
+  {
+    const int last = std::min((c + 1) * chunkSamples, sumCount_);
+    BeamPiece piece{ float((c * chunkSamples - 1) * sampleMm_), float(last * sampleMm_), 0.0f, 0.0f };
+    Vec2f halfAxes = beamCutSigma * sigmas_;
+    if (job)
+    {
+      halfAxes = aroundRectangle * Vec2f(job->lateralMm, job->elevationalMm);
+    }
+    else if (reach_)
+    {
+      halfAxes = reach_->widest(piece.fromMm, piece.toMm);
+    }
+    piece.lateralMm = halfAxes.x;
+    piece.elevationalMm = halfAxes.y;
+    if (kind_ == BeamKind::Array)
+    {
+      widenByRange(*reach_, std::sqrt(3.0f) * brickMm, widening, piece);
+    }
+    pieces.push_back(piece);
+  }
+  sight.pieces.upload(pieces, stream, traffic);
 }
 
 void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
@@ -270,18 +385,8 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   pulse_.upload(pulse, stream, traffic);
   uploadCarrier(job, stream, traffic);
   level_.upload(job.boundaryLevel, stream, traffic);
-  field_.reset();
-  if (job.field)
-  {
-    if (fieldSource_ != job.field->values)
-    {
-      fieldSource_ = nullptr; // stays so when the upload fails
-      fieldValues_.upload(*job.field->values, stream, traffic);
-      fieldSource_ = job.field->values;
-    }
-    field_ = job.field->view;
-    field_->values = fieldValues_.data();
-  }
+  downshift_ = job.downshift;
+  uploadBeam(job.beam, stream, traffic);
 
   tissues_ = job.tissues.has_value();
   if (tissues_)
@@ -294,9 +399,8 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
       sceneId_ = tissues.sceneId;
     }
     sceneBeams_.upload(tissues.beams, stream, traffic);
-    setBeams(tissues.beams);
     media_.upload(tissues.media.data(), tissues.media.size(), stream, traffic);
-    tissueSight_.upload(tissues.sight, stream, traffic);
+    uploadSight(tissues.sight, tissues.beams, tissues.cellMm * brickCells, tissueSight_, stream, traffic);
     size_ = tissues.size;
     spacing_ = tissues.spacing;
     cellMm_ = tissues.cellMm;
@@ -308,9 +412,8 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
     }
     // Amplitudes that come together in a sample, on average, and a wide margin; 32 bits hold them with 24 to spare for
     // their fractions.
-    const double areaMm2 = field_ ? 4.0 * halfWidth(field_->lateral) * halfWidth(field_->elevational)
-                                  : 6.3 * double(sigmas_.x) * double(sigmas_.y);
-    const double together = 64.0 + 16.0 * areaMm2 * sampleMm_ / std::pow(double(cellMm_), 3);
+    const double together =
+      64.0 * job.beam.largestWeight + 16.0 * job.beam.largestAreaMm2 * sampleMm_ / std::pow(double(cellMm_), 3);
     tissueScale_ = largest > 0.0f ? float(2147483647.0 / (together * largest)) : 1.0f;
   }
 
@@ -326,17 +429,16 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
       z_.upload(points.table->z, stream, traffic);
       amplitude_.upload(points.table->amplitude, stream, traffic);
       begin_.upload(points.table->begin, stream, traffic);
-      float largest = 0.0f;
+      largestPoint_ = 0.0f;
       for (const float a : points.table->amplitude)
       {
-        largest = std::max(largest, std::fabs(a));
+        largestPoint_ = std::max(largestPoint_, std::fabs(a));
       }
-      pointScale_ = scaleFor(largest);
       table_ = points.table;
     }
     pointBeams_.upload(points.beams, stream, traffic);
-    setBeams(points.beams);
-    pointSight_.upload(points.sight, stream, traffic);
+    uploadSight(points.sight, points.beams, table_->edgeMm, pointSight_, stream, traffic);
+    pointScale_ = scaleFor(largestPoint_ * std::max(1.0f, float(job.beam.largestWeight)));
   }
 
   given_ = {};
@@ -344,6 +446,11 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   {
     givenIntensity_.upload(job.given->intensity, stream, traffic);
     given_.intensity = givenIntensity_.data();
+    if (!job.given->attenuationNpPerMHz.empty())
+    {
+      givenAttenuation_.upload(job.given->attenuationNpPerMHz, stream, traffic);
+      given_.attenuation = givenAttenuation_.data();
+    }
     given_.binCount = job.given->binCount;
     given_.binMm = job.given->binMm;
     if (!job.given->boundaryEcho.empty())
@@ -359,24 +466,23 @@ TracedOnDevice DeviceEcho::given(int first) const
 {
   TracedOnDevice traced = given_;
   traced.intensity = given_.intensity ? given_.intensity + std::size_t(first) * given_.binCount : nullptr;
+  traced.attenuation = given_.attenuation ? given_.attenuation + std::size_t(first) * given_.binCount : nullptr;
   traced.echo = given_.echo ? given_.echo + std::size_t(first) * sumCount_ : nullptr;
   return traced;
 }
 
 SplatLaunch DeviceEcho::splat(const Beam* beams, float scale, const Sight& sight) const
 {
-  const Vec2f halfAxes = ellipse(sight);
   return { beams,
            grid_,
            float(sampleMm_),
            sumCount_,
            scale,
-           field_.has_value(),
-           field_.value_or(BeamFieldView{}),
-           sight.some,
+           field_,
            sight.view,
-           halfAxes.x,
-           halfAxes.y,
+           array_,
+           arraySight_,
+           sight.pieces.data(),
            1.0f / sigmas_.x,
            1.0f / sigmas_.y,
            sum_.data() };
@@ -396,7 +502,9 @@ void DeviceEcho::splatTissues(int first, int count, const TracedOnDevice& traced
   launch.intensity = traced.intensity;
   launch.binCount = traced.binCount;
   launch.binMm = traced.binMm;
-  splatTissueCells<<<dim3(count, chunks()), blockThreads, 0, stream>>>(launch);
+  withKind(kind_, [&](auto kind) {
+    splatTissueCells<kind.value><<<dim3(count, chunks()), blockThreads, 0, stream>>>(launch);
+  });
 }
 
 void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)
@@ -412,7 +520,9 @@ void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)
   launch.bricks = table_->bricks;
   launch.edgeMm = table_->edgeMm;
   launch.add = tissues_;
-  splatPointBricks<<<dim3(count, chunks()), blockThreads, 0, stream>>>(launch);
+  withKind(kind_, [&](auto kind) {
+    splatPointBricks<kind.value><<<dim3(count, chunks()), blockThreads, 0, stream>>>(launch);
+  });
 }
 
 void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wantsIq, cudaStream_t stream)
@@ -429,9 +539,13 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
   {
     splatPoints(first, count, stream);
   }
+  const bool sinks = downshift_ && traced.intensity && traced.attenuation;
+  turns_.resize(sinks ? lines * sumCount_ : 0);
   const FinishLaunch launch{ tissues_ || points_ ? sum_.data() : nullptr,
                              traced,
                              level_.size() > 0 ? level_.data() : nullptr,
+                             downshift_.value_or(Downshift{}),
+                             sinks ? turns_.data() : nullptr,
                              carrier_.data(),
                              pulse_.data(),
                              half_,
@@ -440,6 +554,10 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
                              float(sampleMm_),
                              wantsIq ? iq_.data() : nullptr,
                              envelope_.data() };
+  if (sinks)
+  {
+    sumTurns<<<count, turnThreads, 0, stream>>>(launch, turns_.data());
+  }
   const int width = tileSamples + 2 * half_;
   const std::size_t bytes = (2 * std::size_t(width + width / 32 + 2) + pulse_.size()) * sizeof(float);
   const auto kernel = complexPulse_ ? convolveLines<true> : convolveLines<false>;

@@ -41,19 +41,17 @@ public:
   int sampleCount() const { return sampleCount_; }
 
 private:
-  /// Where the field matters to one kind of scatterers.
+  /// What beams see of one kind of scatterers, which lie in bricks.
   struct Sight
   {
-    BeamSightView view{};
+    BeamSightView view{}; ///< of a field
     DeviceArray<std::uint8_t> seen;
-    float lateralMm = 0.0f;
-    float elevationalMm = 0.0f;
-    bool some = false;
-    void upload(const std::optional<SightJob>& job, cudaStream_t stream, Traffic& traffic);
+    DeviceArray<BeamPiece> pieces; ///< of each chunk
   };
   void uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
-  void setBeams(const std::vector<Beam>& beams);
-  Vec2f ellipse(const Sight& sight) const;
+  void uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& traffic);
+  void uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm, Sight& sight,
+                   cudaStream_t stream, Traffic& traffic);
   /// What a launch for these beams holds.
   SplatLaunch splat(const Beam* beams, float scale, const Sight& sight) const;
   int chunks() const { return (sumCount_ + chunkSamples - 1) / chunkSamples; }
@@ -65,15 +63,22 @@ private:
   int half_ = 0;
   double sampleMm_ = 0.0;
   LineGrid grid_{};
+  BeamKind kind_ = BeamKind::Gaussian;
+  std::optional<BeamReachTable> reach_;
   Vec2f sigmas_{ 1.0f }; ///< of all Gaussian beams
   bool complexPulse_ = false;
   DeviceArray<float> pulse_; ///< re, then im
   DeviceArray<float2> carrier_;
   double carrierRadPerSample_ = 0.0; ///< of that carrier
   DeviceArray<float> level_;
-  std::optional<BeamFieldView> field_;
+  std::optional<Downshift> downshift_;
+  BeamFieldView field_{};
   SharedVector<float> fieldSource_;
   DeviceArray<float> fieldValues_;
+  ArrayBeamView array_{};
+  ArraySightView arraySight_{};
+  std::shared_ptr<const ArrayField> arraySource_;
+  DeviceArray<float> arrayLateral_, arrayElevational_, sightLateral_, sightElevational_;
 
   bool tissues_ = false;
   std::uint64_t sceneId_ = 0;
@@ -93,13 +98,15 @@ private:
   DeviceArray<int> begin_;
   DeviceArray<Beam> pointBeams_;
   Sight pointSight_;
+  float largestPoint_ = 0.0f;
   float pointScale_ = 1.0f;
 
-  DeviceArray<float> givenIntensity_;
+  DeviceArray<float> givenIntensity_, givenAttenuation_;
   DeviceArray<float2> givenEcho_;
   TracedOnDevice given_;
 
-  DeviceArray<float2> sum_; ///< lines x sumCount
+  DeviceArray<float2> sum_;  ///< lines x sumCount
+  DeviceArray<float> turns_; ///< the same: of the downshift's phase
   DeviceArray<float2> iq_;
   DeviceArray<float> envelope_;
 };

@@ -1,14 +1,17 @@
 #pragma once
 
+#include "Echo/ArraySight.h"
 #include "Echo/PointTable.h"
 #include "Echo/ScattererDensity.h"
 #include "Kernel/BeamSight.h"
+#include "Kernel/Downshift.h"
 #include "Kernel/EchoSplat.h"
 #include "Kernel/GreyLevel.h"
 #include "Kernel/LabelRow.h"
 #include "Kernel/PlaneScan.h"
 #include "Kernel/Scatterer.h"
 #include "Kernel/TraceView.h"
+#include "Probe/ArrayField.h"
 #include "Scene/FibreField.h"
 #include "Scene/TraceRegion.h"
 #include "Trace/TargetBvh.h"
@@ -50,6 +53,25 @@ struct FieldJob
 {
   BeamFieldView view;         ///< its `values` are those below
   SharedVector<float> values; ///< kept on the device while they are the same
+};
+
+/// A computed complex beam in place of a Gaussian, and where it matters. Kept on the device while the field is the
+/// same.
+struct ArrayJob
+{
+  std::shared_ptr<const ArrayField> field;
+  std::shared_ptr<const ArraySight> sight;
+};
+
+/// What all lines' beams have in common. Those of the scatterers below hold no pointers to tables.
+struct BeamJob
+{
+  BeamKind kind = BeamKind::Gaussian;
+  std::optional<FieldJob> field;
+  std::optional<ArrayJob> array;
+  std::optional<BeamReachTable> reach; ///< of an Aperture or Array
+  double largestWeight = 1.0;          ///< bounds over all depths: of |W|, and of its integral across the beam
+  double largestAreaMm2 = 1.0;
 };
 
 /// Where a field matters to bricks of `brickMm`.
@@ -105,7 +127,8 @@ struct PointJob
 /// Traced lines that are not traced by the same job.
 struct GivenTrace
 {
-  std::vector<float> intensity; ///< lines x bins
+  std::vector<float> intensity;           ///< lines x bins
+  std::vector<float> attenuationNpPerMHz; ///< the same; empty: not known
   int binCount = 0;
   float binMm = 0.0f;
   std::vector<std::complex<float>> boundaryEcho; ///< lines x sumCount, on the RF's samples; empty: none
@@ -119,10 +142,11 @@ struct EchoJob
   int sumCount = 0; ///< samples of the sum before the pulse: half a pulse more
   double sampleMm = 0.0;
   double radPerMm = 0.0;
-  std::vector<float> pulseRe;       ///< envelope, from its end to its start
-  std::vector<float> pulseIm;       ///< empty where it would be zero
-  std::vector<float> boundaryLevel; ///< of each sample; empty: 1
-  std::optional<FieldJob> field;
+  std::vector<float> pulseRe;         ///< envelope, from its end to its start
+  std::vector<float> pulseIm;         ///< empty where it would be zero
+  std::optional<Downshift> downshift; ///< nothing where attenuation leaves the frequency alone
+  std::vector<float> boundaryLevel;   ///< of each sample; empty: 1
+  BeamJob beam;
   std::optional<TissueJob> tissues; ///< of Amadou2024
   std::optional<NestedJob> nested;  ///< of Acoustic
   std::optional<PointJob> points;

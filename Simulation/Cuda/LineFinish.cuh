@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Cuda/DeviceEcho.cuh"
+#include "Kernel/Downshift.h"
 
 // From a line's scatterer sum to its IQ and envelope, as LineFinisher on the CPU.
 
@@ -11,6 +12,8 @@ struct FinishLaunch
   const float2* sum; // or null: no scatterers
   TracedOnDevice traced;
   const float* level; // of boundaries at each sample, or null
+  Downshift downshift;
+  const float* turns; // lines x sumCount, of the downshift's phase; null: the frequency stays
   const float2* carrier;
   const float* pulse; // re, then im where it is complex
   int half;
@@ -31,7 +34,76 @@ __device__ inline int padded(int i)
   return i + (i >> 5);
 }
 
-/// The sum at a sample: times the intensity, plus the boundary echoes, demodulated.
+/// Where a sample falls between the centres of the tracer's bins: the first of two, the step to the other, its share.
+struct BinPlace
+{
+  int bin;
+  int step;
+  float share;
+};
+
+__device__ inline BinPlace binPlace(const FinishLaunch& launch, int s)
+{
+  const TracedOnDevice& traced = launch.traced;
+  const double wanted = s * double(launch.sampleMm) / double(traced.binMm) - 0.5;
+  const double position = fmin(fmax(wanted, 0.0), double(traced.binCount - 1));
+  const int bin = min(int(position), max(0, traced.binCount - 2));
+  return { bin, traced.binCount > 1 ? 1 : 0, float(position - bin) };
+}
+
+__device__ inline float valueAt(const float* bins, const BinPlace& p)
+{
+  const float value = bins[p.bin];
+  return value + (bins[p.bin + p.step] - value) * p.share;
+}
+
+/// B of a line at a sample, as far as it lowers the frequency.
+__device__ inline float exponentAt(const FinishLaunch& launch, const float* bins, int s)
+{
+  return shiftingExponent(launch.downshift, valueAt(bins, binPlace(launch, s)));
+}
+
+constexpr int turnThreads = 256;
+
+/// A block adds up the turns of the downshift's phase along a line, whole ones left out; each thread has neighbouring
+/// samples.
+__global__ void __launch_bounds__(turnThreads) sumTurns(FinishLaunch launch, float* turns)
+{
+  __shared__ double sums[turnThreads];
+  const int line = blockIdx.x;
+  const float* bins = launch.traced.attenuation + std::size_t(line) * launch.traced.binCount;
+  const int each = (launch.sumCount + turnThreads - 1) / turnThreads;
+  const int first = min(int(threadIdx.x) * each, launch.sumCount);
+  const int last = min(first + each, launch.sumCount);
+  const auto forTurns = [&](const auto& visit) { // from each sample to the next
+    float here = first < last ? exponentAt(launch, bins, first) : 0.0f;
+    for (int s = first; s < last; ++s)
+    {
+      const float next = s + 1 < launch.sumCount ? exponentAt(launch, bins, s + 1) : here;
+      visit(s, double(downshiftTurns(launch.downshift, 0.5f * (here + next))));
+      here = next;
+    }
+  };
+  double own = 0.0;
+  forTurns([&](int, double step) { own += step; });
+  sums[threadIdx.x] = own;
+  __syncthreads();
+  for (int step = 1; step < turnThreads; step *= 2)
+  {
+    const double before = int(threadIdx.x) >= step ? sums[threadIdx.x - step] : 0.0;
+    __syncthreads();
+    sums[threadIdx.x] += before;
+    __syncthreads();
+  }
+  double sum = sums[threadIdx.x] - own;
+  forTurns([&](int s, double step) {
+    turns[std::size_t(line) * launch.sumCount + s] = float(sum - floor(sum + 0.5));
+    sum += step;
+  });
+}
+
+/// The sum at a sample: times the intensity, plus the boundary echoes, demodulated; where the frequency sinks, as
+/// strong as it then is and turned by the phase.
 __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
 {
   if (s < 0 || s >= launch.sumCount)
@@ -47,13 +119,7 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   const TracedOnDevice& traced = launch.traced;
   if (traced.intensity)
   {
-    // Linear between the centres of the tracer's bins.
-    const float* bins = traced.intensity + std::size_t(line) * traced.binCount;
-    const double wanted = s * double(launch.sampleMm) / double(traced.binMm) - 0.5;
-    const float position = float(fmin(fmax(wanted, 0.0), double(traced.binCount - 1)));
-    const int bin = min(int(position), max(0, traced.binCount - 2));
-    const int next = min(bin + 1, traced.binCount - 1);
-    const float intensity = bins[bin] + (bins[next] - bins[bin]) * (position - float(bin));
+    const float intensity = valueAt(traced.intensity + std::size_t(line) * traced.binCount, binPlace(launch, s));
     v.x *= intensity;
     v.y *= intensity;
   }
@@ -70,7 +136,15 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
     v.y += traced.echo[at].y;
   }
   const float2 c = launch.carrier[s];
-  return { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
+  v = { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
+  if (launch.turns)
+  {
+    const float* bins = traced.attenuation + std::size_t(line) * traced.binCount;
+    const float gain = downshiftGain(launch.downshift, exponentAt(launch, bins, s));
+    const DownshiftAt turned = downshiftRotation(launch.turns[at]);
+    v = { gain * (v.x * turned.re - v.y * turned.im), gain * (v.x * turned.im + v.y * turned.re) };
+  }
+  return v;
 }
 
 /// Convolves a tile of a line with the pulse; each thread keeps the sums of neighbouring samples in registers.
@@ -139,7 +213,13 @@ __global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch laun
       const std::size_t at = std::size_t(line) * launch.sampleCount + s;
       if (launch.iq)
       {
-        launch.iq[at] = { sumRe[j], sumIm[j] };
+        float2 iq{ sumRe[j], sumIm[j] };
+        if (launch.turns)
+        {
+          const DownshiftAt turned = downshiftRotation(launch.turns[std::size_t(line) * launch.sumCount + s]);
+          iq = { iq.x * turned.re + iq.y * turned.im, iq.y * turned.re - iq.x * turned.im };
+        }
+        launch.iq[at] = iq;
       }
       launch.envelope[at] = sqrtf(sumRe[j] * sumRe[j] + sumIm[j] * sumIm[j]);
     }

@@ -2,15 +2,66 @@
 
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
+#include "Echo/Pulse.h"
 #include "Image/LabelSlice.h"
 #include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sono {
 
 namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+BeamJob makeBeam(const EchoSetup& setup)
+{
+  const BeamModel& beams = setup.beams;
+  BeamJob job;
+  job.kind = beams.kind();
+  if (beams.reachTable())
+  {
+    job.reach = *beams.reachTable();
+  }
+  switch (job.kind)
+  {
+    case BeamKind::Field:
+    {
+      const auto& field = setup.settings.field;
+      job.field = FieldJob{ field->view(), SharedVector<float>(field, &field->values()) };
+      job.field->view.values = nullptr;
+      const auto widthMm = [](const BeamFieldAxis& axis) { return 2.0 * double(std::max(-axis.lowMm, axis.highMm)); };
+      job.largestAreaMm2 = widthMm(job.field->view.lateral) * widthMm(job.field->view.elevational);
+      break;
+    }
+    case BeamKind::Array:
+      job.array = ArrayJob{ setup.settings.arrayField, beams.sharedArraySight() };
+      job.largestWeight = double(job.array->sight->largestWeight());
+      job.largestAreaMm2 = double(job.array->sight->largestAreaMm2());
+      break;
+    default:
+      job.largestWeight = 0.0;
+      for (double depthMm = 0.0; depthMm < setup.settings.depthMm + 1.0; depthMm += 1.0)
+      {
+        const BeamWidth width = beams.widthAt(depthMm);
+        const double areaMm2 = 2.0 * pi * width.lateralSigmaMm * width.elevationalSigmaMm * width.amplitude;
+        job.largestWeight = std::max(job.largestWeight, width.amplitude);
+        job.largestAreaMm2 = std::max(job.largestAreaMm2, areaMm2);
+      }
+      break;
+  }
+  return job;
+}
+
+/// Without pointers to the host's tables.
+Beam forDevice(Beam beam)
+{
+  beam.field = nullptr;
+  beam.array = nullptr;
+  return beam;
+}
 
 SightJob makeSight(const FieldSight& sight)
 {
@@ -28,8 +79,7 @@ TissueJob makeTissues(const EchoSetup& setup)
   TissueJob job;
   for (std::size_t l = 0; l < setup.lines.size(); ++l)
   {
-    job.beams.push_back(setup.sceneBeam(int(l)));
-    job.beams.back().field = nullptr;
+    job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
   }
   job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
   job.sceneId = scene.id();
@@ -51,8 +101,7 @@ NestedJob makeNested(const EchoSetup& setup)
   NestedJob job;
   for (std::size_t l = 0; l < setup.lines.size(); ++l)
   {
-    job.beams.push_back(setup.sceneBeam(int(l)));
-    job.beams.back().field = nullptr;
+    job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
   }
   job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
   job.sceneId = scene.id();
@@ -84,8 +133,7 @@ PointJob makePoints(const EchoSetup& setup)
   job.table = setup.sources.points->table();
   for (std::size_t l = 0; l < setup.lines.size(); ++l)
   {
-    job.beams.push_back(setup.pointBeam(int(l)));
-    job.beams.back().field = nullptr;
+    job.beams.push_back(forDevice(setup.pointBeam(int(l))));
   }
   if (setup.pointSight)
   {
@@ -126,12 +174,11 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   job.radPerMm = setup.finisher.radPerMm();
   job.pulseRe = setup.finisher.pulse().re();
   job.pulseIm = setup.finisher.pulse().im();
-  if (setup.settings.field)
+  if (setup.model == InterfaceModel::Acoustic)
   {
-    job.field = FieldJob{ setup.settings.field->view(),
-                          SharedVector<float>(setup.settings.field, &setup.settings.field->values()) };
-    job.field->view.values = nullptr;
+    job.downshift = pulseDownshift(setup.settings);
   }
+  job.beam = makeBeam(setup);
   if (setup.level)
   {
     for (int s = 0; s < job.sumCount; ++s)
@@ -157,9 +204,10 @@ EchoJob makeEchoJob(const EchoSetup& setup)
     const TracedLines& traced = *setup.sources.traced;
     GivenTrace given;
     given.intensity = traced.intensity;
+    given.attenuationNpPerMHz = traced.attenuationNpPerMHz;
     given.binCount = traced.binCount;
     given.binMm = float(traced.binMm);
-    for (int l = 0; l < job.lineCount; ++l)
+    for (int l = 0; l < job.lineCount && traced.echoCount > 0; ++l)
     {
       LineSum sum = setup.finisher.emptySum();
       setup.finisher.addBoundaryEchoes(l, sum);

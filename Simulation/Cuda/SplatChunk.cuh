@@ -1,15 +1,18 @@
 #pragma once
 
-#include "Kernel/BeamDeposit.h"
+#include "Cuda/LineChunk.cuh"
+#include "Kernel/ApertureProfile.h"
+#include "Kernel/ArrayBeam.h"
+#include "Kernel/ArraySightView.h"
 #include "Kernel/BeamField.h"
 #include "Kernel/BeamSight.h"
 #include "Kernel/EchoSplat.h"
 
-#include "Cuda/LineChunk.cuh"
+#include <type_traits>
 
 namespace sono {
 
-/// What both kinds of scatterers share.
+/// What both kinds of scatterers share. Which of the tables are there depends on the kind of the beams.
 struct SplatLaunch
 {
   const Beam* beams;
@@ -17,58 +20,176 @@ struct SplatLaunch
   float sampleMm;
   int sumCount;
   float scale; // of a sum's unit
-  bool hasField;
   BeamFieldView field;
-  bool hasSight;
-  BeamSightView sight;
-  float lateralMm; // half axes of the ellipse around the axis that holds all that the beam sees
-  float elevationalMm;
-  float perLateralSigma;
+  BeamSightView sight; // of the field, for the scatterers' bricks
+  ArrayBeamView array;
+  ArraySightView arraySight;
+  const BeamPiece* pieces; // of each chunk, what a line straight ahead sees
+  float perLateralSigma;   // of a Gaussian
   float perElevationalSigma;
   float2* sum;
-
-  /// Weight of the beam at a place, 0 where it does not see.
-  __device__ float weight(const BeamPlace& p) const
-  {
-    if (!(p.position >= 0.0f && p.position < grid.lastSample))
-    {
-      return 0.0f;
-    }
-    if (hasField)
-    {
-      return beamWeight(field, p.lateral, p.elevational, fminf(p.position * sampleMm, field.depth.highMm));
-    }
-    const float squared = squaredSigmas(p, perLateralSigma, perElevationalSigma);
-    return squared < beamCutSigma * beamCutSigma ? expNegative(-0.5f * squared) : 0.0f;
-  }
-  __device__ bool sightMeets(const Beam& beam, const Vec3f& centre) const
-  {
-    const Vec3f q = centre - beam.origin;
-    return !hasSight || sight.sees(glm::dot(q, beam.lateral), glm::dot(q, beam.elevation), glm::dot(q, beam.axis));
-  }
 };
 
 /// A piece of a line: its samples and the depths that scatterers into them have.
 struct Chunk
 {
   int line;
+  int number;
   int first;
   int count;
   float fromMm;
   float toMm;
 
-  __device__ bool holds(const BeamPlace& p) const
+  __device__ bool holds(float position) const
   {
-    return p.position >= float(first - 1) && p.position < float(first + count);
+    return position >= float(first - 1) && position < float(first + count);
   }
 };
 
+/// The deep ones, where beams are wide, come first.
 inline __device__ Chunk chunkOf(const SplatLaunch& launch)
 {
-  const int first = int(blockIdx.y) * chunkSamples;
+  const int number = int(gridDim.y - 1 - blockIdx.y);
+  const int first = number * chunkSamples;
   const int count = min(chunkSamples, launch.sumCount - first);
-  return { int(blockIdx.x), first, count, float(first - 1) * launch.sampleMm, float(first + count) * launch.sampleMm };
+  return {
+    int(blockIdx.x), number, first, count, float(first - 1) * launch.sampleMm, float(first + count) * launch.sampleMm
+  };
 }
+
+/// What a line of a kind sees of a chunk.
+template<BeamKind kind>
+__device__ BeamPiece pieceOf(const SplatLaunch& launch, const Beam& beam, const Chunk& chunk)
+{
+  BeamPiece piece = launch.pieces[chunk.number];
+  if (kind == BeamKind::Aperture)
+  {
+    piece.lateralMm /= sqrtf(beam.profile.lateral.cosine2);
+    piece.elevationalMm /= sqrtf(beam.profile.elevational.cosine2);
+  }
+  if (kind == BeamKind::Array)
+  {
+    piece.lateralMm /= beam.lateralCosine;
+    piece.elevationalMm /= beam.elevationalCosine;
+  }
+  return piece;
+}
+
+/// The weight of a beam of a kind.
+template<BeamKind kind>
+using KindsWeight = std::conditional_t<kind == BeamKind::Array, ComplexWeight, float>;
+
+__device__ inline float times(float weight, float a)
+{
+  return weight * a;
+}
+__device__ inline ComplexWeight times(const ComplexWeight& weight, float a)
+{
+  return { weight.re * a, weight.im * a };
+}
+__device__ inline bool isZero(float weight)
+{
+  return weight == 0.0f;
+}
+__device__ inline bool isZero(const ComplexWeight& weight)
+{
+  return weight.re == 0.0f && weight.im == 0.0f;
+}
+
+/// What a beam makes of a unit scatterer, and from where on the line it echoes, in samples.
+template<BeamKind kind>
+struct SeenEcho
+{
+  KindsWeight<kind> weight;
+  float position;
+};
+
+/// Of a scatterer at a place; 0 where the beam does not see it or it echoes into another chunk.
+template<BeamKind kind>
+__device__ SeenEcho<kind> seenEcho(const SplatLaunch& launch, const Beam& beam, const Chunk& chunk, const BeamPlace& p)
+{
+  const LineGrid& grid = launch.grid;
+  const auto isOnLine = [&](float position) { return chunk.holds(position) && position < grid.lastSample; };
+  if constexpr (kind == BeamKind::Array)
+  {
+    const float depthMm = p.position * launch.sampleMm;
+    const float rangeMm = sqrtf(depthMm * depthMm + p.lateral * p.lateral + p.elevational * p.elevational);
+    const float position = rangeMm * grid.samplesPerMm;
+    if (!(p.position >= 0.0f && isOnLine(position)))
+    {
+      return { { 0.0f, 0.0f }, position };
+    }
+    const ComplexWeight w =
+      arrayBeamWeight(launch.array, p.lateral * beam.lateralCosine, p.elevational * beam.elevationalCosine, rangeMm);
+    return { times(w, beam.gain), position };
+  }
+  else
+  {
+    if (!(p.position >= 0.0f && isOnLine(p.position)))
+    {
+      return { 0.0f, p.position };
+    }
+    if constexpr (kind == BeamKind::Field)
+    {
+      const float depthMm = fminf(p.position * launch.sampleMm, launch.field.depth.highMm);
+      return { beamWeight(launch.field, p.lateral, p.elevational, depthMm), p.position };
+    }
+    ProfileAt at{ launch.perLateralSigma * launch.perLateralSigma,
+                  launch.perElevationalSigma * launch.perElevationalSigma, 1.0f };
+    if constexpr (kind == BeamKind::Aperture)
+    {
+      at = profileAt(beam.profile, p.position * launch.sampleMm);
+    }
+    const float squared = p.lateral * p.lateral * at.perLateral2 + p.elevational * p.elevational * at.perElevational2;
+    return { squared < beamCutSigma * beamCutSigma ? at.amplitude * expNegative(-0.5f * squared) : 0.0f, p.position };
+  }
+}
+
+/// Which bricks a beam must visit, as on the CPU (see BrickWalk): half a brick's extent along the beam's directions.
+template<BeamKind kind>
+class BrickSight
+{
+public:
+  __device__ BrickSight(const SplatLaunch& launch, const Beam& beam, float edgeMm)
+    : launch_(launch)
+    , beam_(beam)
+    , axial_(halfExtent(beam.axis, edgeMm))
+    , lateral_(halfExtent(beam.lateral, edgeMm))
+    , elevation_(halfExtent(beam.elevation, edgeMm))
+  {
+  }
+
+  __device__ bool meets(const Vec3f& centre) const
+  {
+    if (kind != BeamKind::Field && kind != BeamKind::Array)
+    {
+      return true;
+    }
+    const Vec3f q = centre - beam_.origin;
+    const float r = glm::dot(q, beam_.axis);
+    const float lateral = glm::dot(q, beam_.lateral);
+    const float elevational = glm::dot(q, beam_.elevation);
+    if (kind == BeamKind::Field)
+    {
+      return launch_.sight.sees(lateral, elevational, r);
+    }
+    return launch_.arraySight.sees(fmaxf(0.0f, fabsf(lateral) - lateral_) * beam_.lateralCosine,
+                                   fmaxf(0.0f, fabsf(elevational) - elevation_) * beam_.elevationalCosine, r - axial_,
+                                   r + axial_);
+  }
+
+private:
+  __device__ static float halfExtent(const Vec3f& direction, float edgeMm)
+  {
+    return 0.5f * edgeMm * (fabsf(direction.x) + fabsf(direction.y) + fabsf(direction.z));
+  }
+
+  const SplatLaunch& launch_;
+  const Beam& beam_;
+  float axial_;
+  float lateral_;
+  float elevation_;
+};
 
 /// Writes or adds the chunk's sums.
 template<class Sums>

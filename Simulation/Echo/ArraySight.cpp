@@ -7,8 +7,7 @@ namespace sono {
 
 namespace {
 
-constexpr float stepMm = 1.0f;
-constexpr float faintest = 0.005f; // -46 dB
+constexpr float stepMm = ArraySightView::stepMm;
 
 } // namespace
 
@@ -33,7 +32,8 @@ ArraySight::ArraySight(const ArrayField& field)
   reach_.stepMm = stepMm;
   const auto furthest = [&](const Envelope& envelope, int step) {
     const float* row = envelope.values.data() + std::size_t(step) * std::size_t(envelope.count);
-    const auto places = std::partition_point(row, row + envelope.count, [](float v) { return v > faintest; }) - row;
+    const auto places =
+      std::partition_point(row, row + envelope.count, [](float v) { return v > ArraySightView::faintest; }) - row;
     return float(places) / envelope.perUnit * std::max(float(step + 1) * stepMm, envelope.nearMm);
   };
   for (int n = 0; n < steps_; ++n)
@@ -41,11 +41,16 @@ ArraySight::ArraySight(const ArrayField& field)
     reach_.lateralMm.push_back(furthest(lateral_, n));
     reach_.elevationalMm.push_back(furthest(elevational_, n));
   }
+  for (std::size_t n = 0; n < lateral_.largest.size(); ++n)
+  {
+    largestWeight_ = std::max(largestWeight_, lateral_.largest[n] * elevational_.largest[n]);
+    largestAreaMm2_ = std::max(largestAreaMm2_, lateral_.integral[n] * elevational_.integral[n]);
+  }
 }
 
 ArraySight::Envelope ArraySight::envelopeOf(const ArrayBeamAxis& axis, const ArrayBeamView& view) const
 {
-  Envelope envelope{ axis.count, axis.perUnit, axis.nearMm, {} };
+  Envelope envelope{ axis.count, axis.perUnit, axis.nearMm, {}, {}, {} };
   envelope.values.assign(std::size_t(steps_) * std::size_t(axis.count), 0.0f);
   for (int n = 0; n < view.rangeCount; ++n)
   {
@@ -54,11 +59,16 @@ ArraySight::Envelope ArraySight::envelopeOf(const ArrayBeamAxis& axis, const Arr
     const float* row = axis.values + 2 * std::size_t(n) * std::size_t(axis.count);
     std::vector<float> further(static_cast<std::size_t>(axis.count));
     float largest = 0.0f;
+    float sum = 0.0f;
     for (int i = axis.count - 1; i >= 0; --i)
     {
-      largest = std::max(largest, std::hypot(row[2 * i], row[2 * i + 1]));
+      const float modulus = std::hypot(row[2 * i], row[2 * i + 1]);
+      sum += modulus;
+      largest = std::max(largest, modulus);
       further[std::size_t(i)] = largest;
     }
+    envelope.largest.push_back(largest);
+    envelope.integral.push_back(2.0f * sum / axis.perUnit * std::max(rangeMm, axis.nearMm)); // of both halves
     const int middle = int(rangeMm / stepMm);
     for (int step = std::max(0, middle - 1); step <= std::min(steps_ - 1, middle + 1) && largest > 0.0f; ++step)
     {
@@ -72,23 +82,11 @@ ArraySight::Envelope ArraySight::envelopeOf(const ArrayBeamAxis& axis, const Arr
   return envelope;
 }
 
-float ArraySight::Envelope::at(int step, float mm, float rangeMm) const
+ArraySightView ArraySight::view(const float* lateral, const float* elevational) const
 {
-  const int place = int(mm * perUnit / std::max(rangeMm, nearMm));
-  return place < count ? values[std::size_t(step) * std::size_t(count) + std::size_t(place)] : 0.0f;
-}
-
-bool ArraySight::sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const
-{
-  const int last = std::clamp(int(toMm / stepMm), 0, steps_ - 1);
-  for (int step = std::clamp(int(fromMm / stepMm), 0, steps_ - 1); step <= last; ++step)
-  {
-    if (lateral_.at(step, lateralMm, toMm) * elevational_.at(step, elevationalMm, toMm) > faintest)
-    {
-      return true;
-    }
-  }
-  return false;
+  return { { lateral, lateral_.count, lateral_.perUnit, lateral_.nearMm },
+           { elevational, elevational_.count, elevational_.perUnit, elevational_.nearMm },
+           steps_ };
 }
 
 } // namespace sono

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/ArraySightView.h"
 #include "Kernel/Vec.h"
 #include "Probe/ArrayField.h"
 
@@ -27,19 +28,29 @@ public:
   explicit ArraySight(const ArrayField& field);
 
   /// Whether the beam may count at distances from the axis of at least these, straight ahead, between two ranges.
-  bool sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const;
+  bool sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const
+  {
+    return view().sees(lateralMm, elevationalMm, fromMm, toMm);
+  }
+  /// For lookups while this lives, and the same for copies of its values that lie elsewhere.
+  ArraySightView view() const { return view(lateral_.values.data(), elevational_.values.data()); }
+  ArraySightView view(const float* lateral, const float* elevational) const;
+  const std::vector<float>& lateral() const { return lateral_.values; }
+  const std::vector<float>& elevational() const { return elevational_.values; }
   const BeamReachTable& reach() const { return reach_; }
+  /// Bounds over all ranges: of the weight's modulus, and of its integral over places at one range.
+  float largestWeight() const { return largestWeight_; }
+  float largestAreaMm2() const { return largestAreaMm2_; }
 
 private:
-  /// Of one axis, at each step of range and place: the largest modulus there or further out, over the axis' largest.
   struct Envelope
   {
     int count;
     float perUnit;
     float nearMm;
-    std::vector<float> values;
-
-    float at(int step, float mm, float rangeMm) const;
+    std::vector<float> values;   // see ArrayEnvelope
+    std::vector<float> largest;  // modulus of each range of the table
+    std::vector<float> integral; // of it over the places, mm
   };
   Envelope envelopeOf(const ArrayBeamAxis& axis, const ArrayBeamView& view) const;
 
@@ -47,6 +58,8 @@ private:
   Envelope lateral_;
   Envelope elevational_;
   BeamReachTable reach_;
+  float largestWeight_ = 0.0f;
+  float largestAreaMm2_ = 0.0f;
 };
 
 } // namespace sono

@@ -16,7 +16,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr float reachStepMm = 1.0f;
 constexpr int reachSubsteps = 8; // places at which a step is asked; the beam is smooth
 
-BeamKind kindOf(const EchoSettings& settings, const TracedLines* traced)
+BeamKind kindOf(const EchoSettings& settings, InterfaceModel model)
 {
   if (settings.field)
   {
@@ -26,7 +26,7 @@ BeamKind kindOf(const EchoSettings& settings, const TracedLines* traced)
   {
     return BeamKind::Array;
   }
-  const bool oneWidth = traced && traced->model == InterfaceModel::Amadou2024;
+  const bool oneWidth = model == InterfaceModel::Amadou2024;
   return settings.aperture.isNamed() && !oneWidth ? BeamKind::Aperture : BeamKind::Gaussian;
 }
 
@@ -52,9 +52,9 @@ double sigmaAlong(const FieldAxis& axis, const std::function<double(double)>& we
 
 } // namespace
 
-BeamModel::BeamModel(const EchoSettings& settings, const TracedLines* traced)
+BeamModel::BeamModel(const EchoSettings& settings, InterfaceModel model)
   : settings_(settings)
-  , kind_(kindOf(settings, traced))
+  , kind_(kindOf(settings, model))
 {
   if (kind_ == BeamKind::Aperture)
   {
@@ -73,7 +73,7 @@ BeamModel::BeamModel(const EchoSettings& settings, const TracedLines* traced)
   {
     array_ = settings.arrayField->view();
     focusMm_ = settings.arrayField->focusMm();
-    sight_.emplace(*settings.arrayField);
+    sight_ = std::make_shared<const ArraySight>(*settings.arrayField);
   }
   const BeamWidth focus = widthAt(focusMm_);
   const double sigmasMm2 = focus.lateralSigmaMm * focus.elevationalSigmaMm;

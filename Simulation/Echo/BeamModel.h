@@ -3,8 +3,9 @@
 #include "Echo/BrickWalk.h"
 #include "Echo/EchoSettings.h"
 #include "Kernel/EchoSplat.h"
-#include "Trace/Trace.h"
+#include "Kernel/Interface.h"
 
+#include <memory>
 #include <optional>
 
 namespace sono {
@@ -22,9 +23,9 @@ struct BeamWidth
 class BeamModel
 {
 public:
-  /// `traced` may be null: Acoustic. Amadou2024 has the beam of one width. The settings must outlive this. Throws Error
-  /// when a field is zero on its whole axis.
-  BeamModel(const EchoSettings& settings, const TracedLines* traced);
+  /// `model` is what lines are traced with: Amadou2024 has the beam of one width. The settings must outlive this.
+  /// Throws Error when a field is zero on its whole axis.
+  BeamModel(const EchoSettings& settings, InterfaceModel model);
 
   BeamKind kind() const { return kind_; }
   /// A_b, the integral of |W| across the beam at its focus: a perfect mirror there has the echo 1, a scatterer of
@@ -39,7 +40,9 @@ public:
   BeamWidth focusWidth() const { return widthAt(focusMm_); }
   /// For bricks; null where the kind of beam has none.
   const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }
-  const ArraySight* arraySight() const { return sight_ ? &*sight_ : nullptr; }
+  const ArraySight* arraySight() const { return sight_.get(); }
+  /// The same for whoever keeps it longer.
+  const std::shared_ptr<const ArraySight>& sharedArraySight() const { return sight_; }
 
   /// In coordinates that are turned by `rotation`, from `origin` there. For lookups while this lives.
   Beam beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
@@ -52,8 +55,8 @@ private:
   ApertureProfile straight_{}; // of an Aperture
   std::optional<BeamFieldView> field_;
   std::optional<ArrayBeamView> array_;
-  std::optional<BeamReachTable> reach_; // of an Aperture
-  std::optional<ArraySight> sight_;     // of an Array
+  std::optional<BeamReachTable> reach_;     // of an Aperture
+  std::shared_ptr<const ArraySight> sight_; // of an Array
   double focusMm_ = 0.0;
   double focusAreaMm2_ = 0.0;
   double focusPowerAreaMm2_ = 0.0;

@@ -75,11 +75,12 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   : sources(echoSources)
   , lines(scanLines)
   , settings(checked(echoSources, scanLines, echoSettings))
+  , model(sources.traced ? sources.traced->model : sources.model)
   , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
-  , beams(settings, sources.traced)
+  , beams(settings, model)
   , finisher(settings, sources.traced, level ? &*level : nullptr)
 {
-  const bool isAcoustic = (sources.traced ? sources.traced->model : sources.model) == InterfaceModel::Acoustic;
+  const bool isAcoustic = model == InterfaceModel::Acoustic;
   if (sources.scene && isAcoustic)
   {
     const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;

@@ -32,6 +32,7 @@ struct EchoSetup
   const EchoSources& sources;
   const std::vector<ScanLine>& lines;
   const EchoSettings& settings;
+  InterfaceModel model; ///< that the lines are traced with
   std::optional<FieldLevel> level;
   BeamModel beams;
   LineFinisher finisher;

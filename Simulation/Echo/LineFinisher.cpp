@@ -35,14 +35,9 @@ LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* trac
       binShare_.push_back(float(position - bin));
     }
   }
-  if (traced && traced->model == InterfaceModel::Acoustic && !settings.pulse && !traced->attenuationNpPerMHz.empty())
+  if (traced && traced->model == InterfaceModel::Acoustic && !traced->attenuationNpPerMHz.empty())
   {
-    const double spectrumMHz =
-      assumedSoundSpeedMmPerUs / (4.0 * pi * pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth));
-    const double spectrumMHz2 = spectrumMHz * spectrumMHz;
-    downshift_ =
-      Downshift{ float(spectrumMHz2), float(std::max(0.0, settings.centreFrequencyMHz - spectrumMHz) / spectrumMHz2),
-                 float(2.0 * sampleMm_ / assumedSoundSpeedMmPerUs) };
+    downshift_ = pulseDownshift(settings);
   }
   for (int e = 0; traced && level && e < traced->echoCount; ++e)
   {

@@ -100,6 +100,19 @@ double pulseEnergyMm(const EchoSettings& settings)
   return sum * settings.sampleMm();
 }
 
+std::optional<Downshift> pulseDownshift(const EchoSettings& settings)
+{
+  if (settings.pulse)
+  {
+    return std::nullopt;
+  }
+  const double spectrumMHz =
+    assumedSoundSpeedMmPerUs / (4.0 * pi * pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth));
+  const double spectrumMHz2 = spectrumMHz * spectrumMHz;
+  return Downshift{ float(spectrumMHz2), float(std::max(0.0, settings.centreFrequencyMHz - spectrumMHz) / spectrumMHz2),
+                    float(2.0 * settings.sampleMm() / assumedSoundSpeedMmPerUs) };
+}
+
 PulseKernel::PulseKernel(const EchoSettings& settings)
 {
   const double sampleMm = settings.sampleMm();

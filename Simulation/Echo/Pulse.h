@@ -1,6 +1,9 @@
 #pragma once
 
+#include "Kernel/Downshift.h"
+
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace sono {
@@ -14,6 +17,9 @@ double pulseSigmaMm(double centreFrequencyMHz, double fractionalBandwidth);
 
 /// Integral over depth, mm, of the squared envelope of the settings' pulse. Throws as PulseKernel.
 double pulseEnergyMm(const EchoSettings& settings);
+
+/// How attenuation lowers the frequency of the settings' pulse; nothing for a sampled one, which it leaves alone.
+std::optional<Downshift> pulseDownshift(const EchoSettings& settings);
 
 /// The envelope of the settings' pulse at the RF samples, for amplitudes that were split linearly between two samples:
 /// the loss that the split means on average (for a Gaussian: a variance of sampleMm^2 / 6) is taken off.

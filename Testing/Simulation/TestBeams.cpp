@@ -64,7 +64,7 @@ TEST(Beams, WidthsAreThoseOfTheTable)
 {
   // Section 12.1's table, to its last digit.
   const EchoSettings s = echoOf(p42(), 160.0);
-  const BeamModel model(s, nullptr);
+  const BeamModel model(s, InterfaceModel::Acoustic);
   const std::vector<std::pair<double, double>> table{ { 30, 0.78 }, { 60, 1.22 }, { 90, 2.19 }, { 120, 3.05 } };
   for (const auto& [depthMm, widthMm] : table)
   {
@@ -78,13 +78,13 @@ TEST(Beams, AMirrorsAreaIsThatOfTheFocus)
 {
   const EchoSettings s = echoOf(p42(), 160.0);
   const GaussianBeam exact = beamOf(p42());
-  const BeamModel model(s, nullptr);
+  const BeamModel model(s, InterfaceModel::Acoustic);
   EXPECT_NEAR(model.focusAreaMm2() / (2.0 * M_PI * exact.lateral(65.0) * exact.elevational(65.0)), 1.0, 1e-3);
   EXPECT_NEAR(model.widthAt(65.0).amplitude, 1.0, 1e-5);
   EchoSettings fixed;
   fixed.lateralSigmaMm = 1.5;
   fixed.elevationalSigmaMm = 2.0;
-  EXPECT_NEAR(BeamModel(fixed, nullptr).focusAreaMm2(), 2.0 * M_PI * 3.0, 1e-9);
+  EXPECT_NEAR(BeamModel(fixed, InterfaceModel::Acoustic).focusAreaMm2(), 2.0 * M_PI * 3.0, 1e-9);
 }
 
 TEST(Beams, AgreeWithTheDirectSum)
@@ -142,7 +142,7 @@ TEST(Beams, OfAMatrixFocusesBothWaysAlike)
   preset.geometry.lineCount = 3;
   preset.elevationApertureMm = preset.apertureMm;
   const EchoSettings s = echoOf(preset, 160.0);
-  const BeamModel model(s, nullptr);
+  const BeamModel model(s, InterfaceModel::Acoustic);
   for (const double z : { 5.0, 30.0, 65.0, 120.0 })
   {
     EXPECT_NEAR(model.widthAt(z).elevationalSigmaMm / model.widthAt(z).lateralSigmaMm, 1.0, 1e-6) << z;

@@ -22,7 +22,7 @@ void measureWidths()
   const EchoSettings gaussian = echoOf(p42(), depthMm);
   EchoSettings field = gaussian;
   field.arrayField = std::make_shared<ArrayField>(apertureOf(p42()), depthMm);
-  const BeamModel model(gaussian, nullptr);
+  const BeamModel model(gaussian, InterfaceModel::Acoustic);
   double ofGaussian = 0.0;
   double ofField = 0.0;
   double gaussianToElements = 0.0;
