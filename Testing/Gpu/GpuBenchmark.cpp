@@ -5,6 +5,7 @@
 #include "EchoScenes.h"
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
+#include "Probe/ArrayField.h"
 #include "Simulator.h"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <string>
 
 namespace {
 
@@ -187,6 +189,38 @@ void measureImage(Simulator& simulator, const Ceilings& ceilings)
   printShares(traced, rf.layout(), scatterers, runs.medianOf(computing), ceilings);
 }
 
+/// The stages with the other model, and with beams that widen: medians, and the difference from the CPU.
+void measureKind(Simulator& simulator, const std::string& name, ImageInput input)
+{
+  const auto lines = makeScanLines(input.settings.geometry, input.pose);
+  const RfLines onCpu =
+    formRf(*simulator.scene(), lines, trace(*simulator.scene(), lines, input.settings.tracing), input.settings.echo);
+  print((name + "_cpu_max_rel").c_str(), rfDifference(simulator.rf(input).host().iq, onCpu.iq), "of_peak");
+  Runs runs;
+  for (int i = 0; i < repeats; ++i)
+  {
+    ++input.settings.tracing.seed;
+    simulator.rf(input);
+    runs.times.push_back(DeviceImager::instance().lastTimes());
+  }
+  print((name + "_trace_ms").c_str(), runs.medianOf([](const DeviceTimes& t) { return t.trace; }), "ms");
+  print((name + "_echo_ms").c_str(), runs.medianOf([](const DeviceTimes& t) { return t.echo; }), "ms");
+}
+
+void measureKinds(Simulator& simulator)
+{
+  ImageInput input = a4c();
+  input.settings.tracing.model = InterfaceModel::Amadou2024;
+  measureKind(simulator, "gpu_amadou", input);
+  input = a4c();
+  input.settings.echo.aperture = { 20.455, 14.0, 65.0, 60.0, 0.295, false }; // of a P4-2
+  measureKind(simulator, "gpu_aperture", input);
+  ArrayAperture aperture;
+  aperture.fractionalBandwidth = 0.74;
+  input.settings.echo.arrayField = std::make_shared<const ArrayField>(aperture, input.settings.echo.depthMm);
+  measureKind(simulator, "gpu_array", input);
+}
+
 void measureSweeps(Simulator& simulator)
 {
   const ImageSettings settings = a4c().settings;
@@ -245,6 +279,7 @@ int main()
     print("gpu_tflops", ceilings.teraflops, "TFLOP/s");
     Simulator simulator(makePhantomScene(makeThoraxPhantom(1.0)));
     measureImage(simulator, ceilings);
+    measureKinds(simulator);
     measureSweeps(simulator);
     measureCole();
   }

@@ -2,6 +2,7 @@
 
 #include "Echo/FormRf.h"
 #include "GpuOrSkip.h"
+#include "Probe/ArrayField.h"
 #include "Simulator.h"
 #include "Trace/Trace.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -75,10 +77,26 @@ inline double rfDifference(const RfLines& a, const RfLines& b)
   return peak > 0.0 ? worst / peak : worst;
 }
 
+/// The aperture of a P4-2.
+inline BeamAperture namedAperture()
+{
+  return { 20.455, 14.0, 65.0, 60.0, 0.295, false };
+}
+
+/// Its computed beam.
+inline std::shared_ptr<const ArrayField> computedBeam(double depthMm)
+{
+  ArrayAperture aperture;
+  aperture.fractionalBandwidth = 0.74;
+  return std::make_shared<const ArrayField>(aperture, depthMm);
+}
+
 inline void expectSameRf(const Chain& gpu, const Chain& cpu, const std::string& what)
 {
   ASSERT_EQ(gpu.rf.iq.size(), cpu.rf.iq.size()) << what;
-  EXPECT_LE(rfDifference(gpu.rf, cpu.rf), rfTolerance) << what;
+  const double difference = rfDifference(gpu.rf, cpu.rf);
+  EXPECT_LE(difference, rfTolerance) << what;
+  std::printf("%s: %.2g\n", what.c_str(), difference);
 }
 
 } // namespace sono::test

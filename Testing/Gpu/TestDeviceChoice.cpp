@@ -47,8 +47,7 @@ TEST(DeviceChoice, AutoSaysWhenTheReferenceMarchLeavesAGpuAside)
   s.march = March::NanoVDB;
   const DeviceChoice choice = chooseDevice(s);
   EXPECT_FALSE(choice.cuda);
-  EXPECT_NE(choice.note.find(cudaStatus().usable ? "NanoVDB" : cudaStatus().what), std::string::npos)
-    << choice.note;
+  EXPECT_NE(choice.note.find(cudaStatus().usable ? "NanoVDB" : cudaStatus().what), std::string::npos) << choice.note;
   EXPECT_EQ(choice.note.find('\n'), std::string::npos);
   s.device = Device::Cpu;
   EXPECT_TRUE(chooseDevice(s).note.empty());

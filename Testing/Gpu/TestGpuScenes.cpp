@@ -28,6 +28,8 @@ public:
       tissue.scattererProbability = between(0.0, 1.0);
       tissue.tau = random_() % 3 ? 1.0 : between(0.5, 2.5);
       tissue.gamma = random_() % 3 ? 0.0 : between(-1.0, 1.0);
+      tissue.roughnessMm = random_() % 3 ? between(0.0, 0.3) : 0.0;
+      tissue.correlationMm = between(0.2, 3.0);
       tissues_.push_back(tissue);
     }
     const Vec3i size(12 + int(random_() % 20), 12 + int(random_() % 20), 20 + int(random_() % 20));
@@ -85,6 +87,11 @@ private:
     echo.lateralSigmaMm = between(0.4, 2.0);
     echo.elevationalSigmaMm = between(0.4, 2.0);
     echo.scattererCellMm = between(0.3, 0.8);
+    if (random_() % 2)
+    {
+      echo.aperture = { between(3.0, 25.0), between(3.0, 20.0), random_() % 4 ? between(5.0, 60.0) : 0.0,
+                        between(0.0, 60.0), between(0.1, 0.6),  random_() % 3 == 0 };
+    }
   }
 
   std::mt19937 random_;
@@ -101,7 +108,32 @@ void expectAgreement(const RandomScene& random, unsigned seed)
   expectSameRf(run(Device::Cuda), run(Device::Cpu), "scene " + std::to_string(seed));
 }
 
-/// Small enough for compute-sanitizer (see run-gpu.sh); the two of them run every kernel.
+/// Small enough for compute-sanitizer (see run-gpu.sh); together they run every kernel.
+TEST(GpuSmall, EveryKindOfBeam)
+{
+  SONO_GPU_OR_SKIP();
+  RandomScene random(7);
+  random.tracing.model = InterfaceModel::Acoustic;
+  random.tracing.pathsPerLine = 60;
+  random.tracing.maxCollisions = 4;
+  random.lines.resize(3);
+  const PointScatterers points({ { { 5.0, 5.0, 5.0 }, 1.0f }, { { 6.0, 5.5, 9.0 }, -0.5f } });
+  const EchoSources sources{ random.scene.get(), nullptr, &points };
+  const auto expectSame = [&](const char* what) {
+    expectSameRf(runChain(sources, random.lines, random.tracing, random.echo, Device::Cuda),
+                 runChain(sources, random.lines, random.tracing, random.echo, Device::Cpu), what);
+  };
+  random.echo.aperture = namedAperture();
+  expectSame("aperture");
+  ArrayAperture few;
+  few.elementCount = 8;
+  few.elementHeightMm = 3.0;
+  few.transmitFocusMm = 12.0;
+  few.elevationFocusMm = 12.0;
+  random.echo.arrayField = std::make_shared<const ArrayField>(few, random.echo.depthMm);
+  expectSame("array");
+}
+
 TEST(GpuSmall, UnusualSettings)
 {
   SONO_GPU_OR_SKIP();

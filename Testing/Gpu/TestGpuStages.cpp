@@ -5,6 +5,10 @@
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Probe/PulseFile.h"
+#include "TestScenes.h"
+
+#include <cmath>
+#include <complex>
 
 namespace {
 
@@ -81,7 +85,6 @@ TEST(GpuStages, ManyCollisionsManyPathsFineBins)
 {
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
-  s.tracing.lobeSigmaDeg = 0.1 * 180.0 / M_PI;
   s.tracing.maxCollisions = 40;
   s.tracing.coherenceMm = 20.0;
   s.geometry.lineCount = 4; // few lines: batches are cut into slices
@@ -108,6 +111,138 @@ TEST(GpuStages, TheIntensityAndItsErrorAgree)
     ASSERT_NEAR(gpu.intensity[i], cpu.intensity[i], 2e-3) << i;
     ASSERT_NEAR(gpu.standardError[i], cpu.standardError[i], 2e-3) << i;
   }
+  EXPECT_EQ(gpu.echoCount, 0);
+  EXPECT_TRUE(gpu.boundaryEcho.empty());
+}
+
+TEST(GpuStages, TheAttenuationAgrees)
+{
+  SONO_GPU_OR_SKIP();
+  for (const InterfaceModel model : { InterfaceModel::Acoustic, InterfaceModel::Amadou2024 })
+  {
+    ImageSettings s = thoraxSettings();
+    s.tracing.model = model;
+    const TracedLines gpu = thoraxChain(s, Device::Cuda).traced;
+    const TracedLines cpu = thoraxChain(s, Device::Cpu).traced;
+    ASSERT_EQ(gpu.attenuationNpPerMHz.size(), cpu.attenuationNpPerMHz.size());
+    double squared = 0.0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < cpu.attenuationNpPerMHz.size(); ++i)
+    {
+      const double weight = double(cpu.intensity[i]);
+      squared += weight * std::pow(double(gpu.attenuationNpPerMHz[i]) - cpu.attenuationNpPerMHz[i], 2);
+      sum += weight * std::pow(double(cpu.attenuationNpPerMHz[i]), 2);
+    }
+    ASSERT_GT(sum, 0.0);
+    EXPECT_LT(std::sqrt(squared / sum), 1e-3) << int(model);
+  }
+}
+
+TEST(GpuStages, RoughBoundaries)
+{
+  SONO_GPU_OR_SKIP();
+  // Of the same thorax: all that is rough is rough in the same way, between almost smooth and steeper than any tissue.
+  for (const auto& [heightMm, lengthMm] :
+       std::vector<std::pair<double, double>>{ { 0.02, 1.0 }, { 0.1, 1.0 }, { 0.3, 0.8 } })
+  {
+    std::vector<Tissue> tissues = { makeTissue("a", 1.5, 1540, 0.5), makeTissue("b", 1.7, 1590, 0.7),
+                                    makeTissue("c", 2.9, 2400, 2.0) };
+    for (Tissue& t : tissues)
+    {
+      t.roughnessMm = heightMm;
+      t.correlationMm = lengthMm;
+      t.scattererMean = 1.0;
+      t.scattererProbability = 1.0;
+    }
+    const auto scene = makeScene(Vec3i(60, 60, 80), Vec3d(0.5), tissues, [](const Vec3d& p) {
+      const double ball = glm::length(p - Vec3d(15.0, 15.0, 22.0));
+      return ball < 4.0 ? 2 : (ball < 9.0 ? 1 : 0);
+    });
+    TraceSettings tracing;
+    EchoSettings echo;
+    tracing.depthMm = echo.depthMm = 38.0;
+    tracing.pathsPerLine = 4000;
+    std::vector<ScanLine> lines;
+    for (int l = 0; l < 12; ++l)
+    {
+      lines.push_back(makeLine({ 9.0 + l, 15.0, -1.0 }, { 0.03 * (l - 6), 0.02, 1.0 }));
+    }
+    const EchoSources sources{ scene.get(), nullptr, nullptr };
+    expectSameRf(runChain(sources, lines, tracing, echo, Device::Cuda),
+                 runChain(sources, lines, tracing, echo, Device::Cpu), "rough by " + std::to_string(heightMm));
+  }
+}
+
+TEST(GpuStages, BeamsOfAnApertureAndOfAnArray)
+{
+  SONO_GPU_OR_SKIP();
+  for (const InterfaceModel model : { InterfaceModel::Acoustic, InterfaceModel::Amadou2024 })
+  {
+    ImageSettings s = thoraxSettings();
+    s.tracing.model = model; // in Amadou2024 the beam of one width, whatever the aperture
+    s.tracing.maxCollisions = 4;
+    s.tracing.pathsPerLine = model == InterfaceModel::Amadou2024 ? 8000 : 1000;
+    s.echo.aperture = namedAperture();
+    expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu),
+                 "aperture, model " + std::to_string(int(model)));
+    s.geometry.lineCount = 16;
+    s.echo.arrayField = computedBeam(s.echo.depthMm);
+    expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu),
+                 "array, model " + std::to_string(int(model)));
+  }
+}
+
+TEST(GpuStages, AttenuationLowersTheFrequency)
+{
+  SONO_GPU_OR_SKIP();
+  // A uniform tissue: the mean turn of the phase from sample to sample is that of the frequency that (12.5) says.
+  Tissue tissue = makeTissue("soft", 1.6, 1540.0, 0.5);
+  tissue.scattererMean = 0.0; // a mean would add up to what does not vary, which the low frequencies contain
+  tissue.scattererSigma = 1.0;
+  tissue.scattererProbability = 1.0;
+  const auto scene = makeScene(Vec3i(60, 60, 110), Vec3d(1.0), { tissue }, [](const Vec3d&) { return 0; });
+  TraceSettings tracing;
+  EchoSettings echo;
+  tracing.depthMm = echo.depthMm = 105.0;
+  tracing.frequencyMHz = echo.centreFrequencyMHz = 3.6;
+  echo.fractionalBandwidth = 0.74;
+  tracing.pathsPerLine = 16;
+  std::vector<ScanLine> lines;
+  for (int l = 0; l < 64; ++l)
+  {
+    lines.push_back(makeLine({ 10.0 + 0.6 * l, 30.0, 0.0 }, { 0.0, 0.0, 1.0 }));
+  }
+  const EchoSources sources{ scene.get(), nullptr, nullptr };
+  const Chain gpu = runChain(sources, lines, tracing, echo, Device::Cuda);
+  expectSameRf(gpu, runChain(sources, lines, tracing, echo, Device::Cpu), "downshift");
+  const double depthMm = 90.0;
+  const int middle = int(depthMm / gpu.rf.sampleMm);
+  std::complex<double> turned = 0.0;
+  for (int l = 0; l < gpu.rf.lineCount; ++l)
+  {
+    const auto* iq = gpu.rf.iq.data() + std::size_t(l) * std::size_t(gpu.rf.sampleCount);
+    for (int s = middle - 400; s < middle + 400; ++s)
+    {
+      turned += std::complex<double>(iq[s + 1]) * std::conj(std::complex<double>(iq[s]));
+    }
+  }
+  const double shiftMHz = std::arg(turned) / (2.0 * M_PI) * echo.samplingMHz;
+  const double spectrumMHz = 0.74 * 3.6 / (2.0 * std::sqrt(2.0 * 0.3 * std::log(10.0)));
+  const double exponent = 2.0 * 0.5 * depthMm / 10.0 / (20.0 / std::log(10.0));
+  EXPECT_NEAR(shiftMHz, -exponent * spectrumMHz * spectrumMHz, 0.05);
+}
+
+TEST(GpuStages, TheReferenceLeavesOutTheFirstMillimetres)
+{
+  SONO_GPU_OR_SKIP();
+  ImageInput input{ thoraxPhantomA4C().orthonormalized(), thoraxSettings(), {}, nullptr };
+  const auto reference = [&](Device device) {
+    input.settings.setDevice(device);
+    Simulator simulator(borrowed(&thorax()));
+    return simulator.bmode(input).host().referenceAmplitude;
+  };
+  const double cpu = reference(Device::Cpu);
+  EXPECT_NEAR(reference(Device::Cuda), cpu, 1e-3 * cpu);
 }
 
 TEST(GpuStages, ResultsRepeatToTheBit)
@@ -134,6 +269,13 @@ TEST(GpuStages, ExplicitScatterers)
   const EchoSources sources{ nullptr, nullptr, &points };
   const Chain gpu = runChain(sources, s1.lines, {}, s1.settings, Device::Cuda);
   expectSameRf(gpu, runChain(sources, s1.lines, {}, s1.settings, Device::Cpu), "points");
+  EchoSettings wide = s1.settings;
+  wide.aperture = namedAperture();
+  expectSameRf(runChain(sources, s1.lines, {}, wide, Device::Cuda), runChain(sources, s1.lines, {}, wide, Device::Cpu),
+               "points, aperture");
+  wide.arrayField = computedBeam(wide.depthMm);
+  expectSameRf(runChain(sources, s1.lines, {}, wide, Device::Cuda), runChain(sources, s1.lines, {}, wide, Device::Cpu),
+               "points, array");
   // Against the direct sum, as the CPU is.
   for (const int line : { 5, 77 })
   {
