@@ -61,7 +61,7 @@ SONO_SIMD_CLONES void weighByAperture(const ScattererView v, int first, int coun
     const float squared = p.lateral * p.lateral * at.perLateral2 + p.elevational * p.elevational * at.perElevational2;
     const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
     const float weight = at.amplitude * expNegative(-0.5f * squared);
-    split(seen ? v.amplitude[first + i] * weight : 0.0f, p.position, seen, g, i, out);
+    split(seen ? v.scale * v.amplitude[first + i] * weight : 0.0f, p.position, seen, g, i, out);
   }
 }
 
@@ -159,7 +159,7 @@ SONO_SIMD_CLONES void weighByArray(const ScattererView v, int first, int count, 
     elevationalShare[i] = e.share;
     rangeShare[i] = row - before;
     position[i] = at;
-    amplitude[i] = seen ? b.gain * v.amplitude[first + i] : 0.0f;
+    amplitude[i] = seen ? v.scale * b.gain * v.amplitude[first + i] : 0.0f;
   }
   const int lateralRow = 2 * f.lateral.count;
   const int elevationalRow = 2 * f.elevational.count;
