@@ -55,10 +55,13 @@ struct EchoJobFrom
   EchoSettings settings;
   std::shared_ptr<const PointScatterers> points;
   InterfaceModel model;
+  std::shared_ptr<const std::vector<TargetSurface>> targets;
 
   bool same(const EchoJobFrom& o) const
   {
-    return points == o.points && model == o.model && sono::same(settings, o.settings) && sono::same(lines, o.lines);
+    const bool sameTargets = targets == o.targets || (targets && o.targets && sono::same(*targets, *o.targets));
+    return sameTargets && points == o.points && model == o.model && sono::same(settings, o.settings) &&
+           sono::same(lines, o.lines);
   }
 };
 
@@ -257,9 +260,9 @@ RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResul
                            const std::shared_ptr<const PointScatterers>& points, const Progress& progress)
 {
   const InterfaceModel model = traced ? traced.layout().model : InterfaceModel::Acoustic;
-  const EchoJobFrom from{ lines, settings, points, model };
+  const EchoJobFrom from{ lines, settings, points, model, traced ? traced.layout().targets : nullptr };
   return last_->rf.get({ from, traced }, [&] {
-    EchoSources sources{ scene_.get(), nullptr, points.get(), model };
+    EchoSources sources{ scene_.get(), nullptr, points.get(), model, from.targets.get() };
     const bool onDevice = chooseDevice(settings.device).cuda;
     // Echoes on other samples are brought onto the RF's on the host.
     const bool takesDevices =

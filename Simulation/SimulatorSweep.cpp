@@ -109,7 +109,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     const auto traced = imager.trace(traceJob, range);
     if (!echoJob)
     {
-      const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model };
+      const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
       const EchoSetup setup(sources, lines, settings.echo);
       echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
     }

@@ -100,7 +100,7 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   }
   if (sources.scene && isAcoustic)
   {
-    surfaces.emplace(*sources.scene, sources.traced ? sources.traced->targets.get() : nullptr, settings, beams);
+    surfaces.emplace(*sources.scene, sources.traced ? sources.traced->targets.get() : sources.targets, settings, beams);
   }
   if (settings.field && tissues)
   {

@@ -27,18 +27,6 @@ void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& b
   });
 }
 
-/// The modulus of a beam's weight at a place, relative to that on its axis.
-float relativeWeight(const Beam& b, const Vec3f& fromOrigin, float depthMm)
-{
-  const auto modulus = [&](float lateralMm, float elevationalMm) {
-    const ComplexWeight w = beamEchoAt(b, lateralMm, elevationalMm, std::max(depthMm, 0.0f)).weight;
-    return std::sqrt(w.re * w.re + w.im * w.im);
-  };
-  const float onAxis = modulus(0.0f, 0.0f);
-  const float here = modulus(glm::dot(fromOrigin, b.lateral), glm::dot(fromOrigin, b.elevation));
-  return here < onAxis ? here / onAxis : 1.0f;
-}
-
 /// Bricks of each level, each line those that it takes.
 void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
 {

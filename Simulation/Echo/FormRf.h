@@ -56,8 +56,9 @@ struct EchoSources
 {
   const Scene* scene = nullptr;        ///< procedural, world-locked scatterers of its tissues
   const TracedLines* traced = nullptr; ///< intensity and boundary echoes; null: intensity 1 everywhere, no boundaries
-  const PointScatterers* points = nullptr;         ///< explicit scatterers; their amplitudes are what they echo
-  InterfaceModel model = InterfaceModel::Acoustic; ///< of lines that are traced elsewhere; `traced` has its own
+  const PointScatterers* points = nullptr;             ///< explicit scatterers; their amplitudes are what they echo
+  InterfaceModel model = InterfaceModel::Acoustic;     ///< of lines that are traced elsewhere; `traced` has its own
+  const std::vector<TargetSurface>* targets = nullptr; ///< the same; null: none
 };
 
 /// COLE on the analytic signal (Data/docs/physics.md section 4; Gao 2009, Storve 2017): scatterers weighted by the beam

@@ -30,6 +30,21 @@ public:
   void add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
            std::vector<LineSum>& sums) const;
 
+  // What a device needs to do the same.
+  const SurfacePieces& pieces() const { return pieces_; }
+  const SurfaceRows& rows() const { return *rows_; }
+  const TargetPieces* targets() const { return targets_.get(); }       ///< null: none
+  const FieldSight* pieceSight() const { return pieceSight_.get(); }   ///< null where the beam is no field's
+  const FieldSight* targetSight() const { return targetSight_.get(); } ///< the same
+  const PieceCuts& net() const { return net_; }
+  BrickGrid pieceGrid() const;
+  /// How far outside of its brick a piece may lie.
+  float marginMm() const;
+  /// Beams of the scene as the pieces' bricks meet them.
+  std::vector<BeamReach> seeingPieces(std::vector<BeamReach> beams) const;
+  SurfaceTable pieceTable() const;
+  SurfaceTable targetTable() const { return rows_->view(0.0); }
+
 private:
   void expand(const SurfacePiece& piece, std::vector<SurfacePoint>& points) const;
 
@@ -40,7 +55,7 @@ private:
   std::unique_ptr<TargetPieces> targets_;
   std::unique_ptr<FieldSight> pieceSight_;
   std::unique_ptr<FieldSight> targetSight_;
-  Vec3i cuts_; // points of a voxel along each axis
+  PieceCuts net_{};
 };
 
 } // namespace sono

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "Kernel/Rng.h"
-#include "Kernel/SurfaceEcho.h"
+#include "Kernel/SurfacePiece.h"
 
 #include <array>
 #include <cmath>
@@ -23,14 +22,11 @@ inline const std::array<Vec2f, 256>& unitCircle()
   return circle;
 }
 
-/// The random phase of a point's diffuse echo: a function of the seed and of the place in the world, as scatterers'
-/// amplitudes are. `kind` is the axis of a label's columns, or 3 for targets.
+/// Sets the random phase of a point's diffuse echo (see surfacePhase).
 inline void setPhases(std::uint64_t seed, const Vec3i& cell, std::uint32_t kind, std::uint32_t number,
                       SurfacePoint& point)
 {
-  const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z),
-                               0x5f0ce000u | (kind << 10) | (number >> 4));
-  const Vec2f& at = unitCircle()[(w.v[(number >> 2) & 3u] >> (8u * (number & 3u))) & 255u];
+  const Vec2f& at = unitCircle()[surfacePhase(seed, cell, kind, number)];
   point.phaseRe = at.x;
   point.phaseIm = at.y;
 }

@@ -29,14 +29,13 @@ public:
   SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings, const BeamExtent& beam,
               double blobMm);
 
+  int count() const { return count_; } ///< of the media
   /// From medium a onto b.
-  int row(int a, int b) const
-  {
-    const int low = a < b ? a : b;
-    const int high = a < b ? b : a;
-    return 2 * (low * count_ + high) + (a < b ? 0 : 1);
-  }
+  int row(int a, int b) const { return surfaceRow(count_, a, b); }
   const SurfaceRow& at(int row) const { return rows_[std::size_t(row)]; }
+  const std::vector<SurfaceRow>& all() const { return rows_; }
+  const std::vector<float>& diffuseL() const { return diffuseL_; }
+  const std::vector<float>& diffuseE() const { return diffuseE_; }
   /// For lookups while this lives.
   SurfaceTable view(double slackMm) const;
 

@@ -150,6 +150,18 @@ SONO_HD inline BeamEcho beamEchoAt(const Beam& b, float lateralMm, float elevati
   return { { expNegative(-0.5f * squared), 0.0f }, depthMm };
 }
 
+/// The modulus of a beam's weight at a place, relative to that on its axis.
+SONO_HD inline float relativeWeight(const Beam& b, const Vec3f& fromOrigin, float depthMm)
+{
+  const float depth = larger(depthMm, 0.0f);
+  const ComplexWeight on = beamEchoAt(b, 0.0f, 0.0f, depth).weight;
+  const ComplexWeight off =
+    beamEchoAt(b, glm::dot(fromOrigin, b.lateral), glm::dot(fromOrigin, b.elevation), depth).weight;
+  const float onAxis = sqrtf(on.re * on.re + on.im * on.im);
+  const float here = sqrtf(off.re * off.re + off.im * off.im);
+  return here < onAxis ? here / onAxis : 1.0f;
+}
+
 /// Squared distance from the axis in sigmas.
 SONO_HD inline float squaredSigmas(const BeamPlace& p, float perLateralSigma, float perElevationalSigma)
 {

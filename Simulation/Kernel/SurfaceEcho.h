@@ -42,6 +42,14 @@ struct SurfaceRow
   std::int32_t profile;
 };
 
+/// Number of the row from medium a onto b, of so many media.
+SONO_HD inline int surfaceRow(int media, int a, int b)
+{
+  const int low = a < b ? a : b;
+  const int high = a < b ? b : a;
+  return 2 * (low * media + high) + (a < b ? 0 : 1);
+}
+
 /// What boundaries echo. A profile is the diffuse echo of a roughness with r = 1 by the tangent of the angle between
 /// beam and normal: the log of sqrt(dq/dA) lambda / A_b, `nodes` values at multiples of 1 / perTangent. Trivially
 /// copyable.
@@ -134,9 +142,11 @@ SONO_HD inline BlobWeight blobWeight(const SurfacePoint& p, const Beam& b, const
   return { l2 + e2 < beamCutSigma * beamCutSigma, expNegative(narrower) / sqrtf(leftL * leftE) };
 }
 
-/// Adds what a point echoes to the line's sum, re and im of each sample; intensity included.
+/// Adds what a point echoes to the line's sum; intensity included. sum.add(sample, re, im) takes samples in [sum.first,
+/// sum.last], of which all that the point reaches are offered, and some beyond.
+template<class Sum>
 SONO_HD inline void addSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
-                               const SurfaceIntensity& intensity, float* iq)
+                               const SurfaceIntensity& intensity, Sum& sum)
 {
   // Where the beam sees it, and how steeply.
   BeamPlace place = placeInBeam(p.position.x, p.position.y, p.position.z, b, g);
@@ -220,11 +230,9 @@ SONO_HD inline void addSurface(const SurfacePoint& p, const Beam& b, const LineG
     const float unitIm = isDiffuse ? diffuse * p.phaseIm : 0.0f;
     const float re = w.re * unitRe - w.im * unitIm;
     const float im = w.re * unitIm + w.im * unitRe;
-    float* to = iq + 2 * std::int32_t(split.sample);
-    to[0] += split.added[0] * re - split.added[1] * im;
-    to[1] += split.added[1] * re + split.added[0] * im;
-    to[2] += split.added[2] * re - split.added[3] * im;
-    to[3] += split.added[3] * re + split.added[2] * im;
+    const int sample = int(split.sample);
+    sum.add(sample, split.added[0] * re - split.added[1] * im, split.added[1] * re + split.added[0] * im);
+    sum.add(sample + 1, split.added[2] * re - split.added[3] * im, split.added[3] * re + split.added[2] * im);
   }
   if (isCoherent && !isPoint)
   {
@@ -233,16 +241,36 @@ SONO_HD inline void addSurface(const SurfacePoint& p, const Beam& b, const LineG
     const float perVariance = -0.5f / (deviation * deviation);
     int first = int(place.position - reach) + 1;
     int last = int(place.position + reach);
-    first = first > 0 ? first : 0;
-    last = last < int(g.lastSample) ? last : int(g.lastSample);
+    first = first > sum.first ? first : sum.first;
+    last = last < sum.last ? last : sum.last;
     for (int s = first; s <= last; ++s)
     {
       const float d = float(s) - place.position;
       const float density = peak * expNegative(perVariance * d * d);
-      iq[2 * s] += w.re * density;
-      iq[2 * s + 1] += w.im * density;
+      sum.add(s, w.re * density, w.im * density);
     }
   }
+}
+
+/// The samples of a whole line, re and im of each.
+struct SurfaceSum
+{
+  float* iq;
+  int first;
+  int last;
+
+  SONO_HD void add(int sample, float re, float im)
+  {
+    iq[2 * sample] += re;
+    iq[2 * sample + 1] += im;
+  }
+};
+
+inline void addSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
+                       const SurfaceIntensity& intensity, float* iq)
+{
+  SurfaceSum sum{ iq, 0, int(g.lastSample) };
+  addSurface(p, b, g, table, intensity, sum);
 }
 
 } // namespace sono

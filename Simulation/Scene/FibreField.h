@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/FibreView.h"
 #include "Kernel/Vec.h"
 #include "Labels/LabelVolume.h"
 #include "Scene/VoxelBox.h"
@@ -18,20 +19,9 @@ public:
 
   const VoxelBox& box() const { return box_; }
   /// Unit vector along the grid's axes, of either sense; 0 where there are no fibres, and outside of the box.
-  Vec3f at(const Vec3i& voxel) const
-  {
-    const Vec3i p = voxel - box_.first;
-    const Vec3i size = box_.size();
-    if (unsigned(p.x) >= unsigned(size.x) || unsigned(p.y) >= unsigned(size.y) || unsigned(p.z) >= unsigned(size.z))
-    {
-      return Vec3f(0.0f);
-    }
-    const std::uint32_t w =
-      packed_[std::size_t(p.x) + std::size_t(size.x) * (std::size_t(p.y) + std::size_t(size.y) * std::size_t(p.z))];
-    return w == 0u
-             ? Vec3f(0.0f)
-             : (Vec3f(float(w & 255u), float((w >> 8) & 255u), float((w >> 16) & 255u)) - 128.0f) * (1.0f / 127.0f);
-  }
+  Vec3f at(const Vec3i& voxel) const { return view().at(voxel); }
+  /// For lookups while this lives.
+  FibreView view() const { return { packed_.data(), box_.first, box_.size() }; }
   void set(const Vec3i& voxel, const Vec3d& direction);
   /// One word a voxel, i fastest: 128 + 127 times each component, x in the low byte; 0: none.
   const std::vector<std::uint32_t>& packed() const { return packed_; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/SurfacePiece.h"
 #include "Kernel/Vec.h"
 
 #include <atomic>
@@ -8,25 +9,6 @@
 #include <vector>
 
 namespace sono {
-
-/// The surface between two face-adjacent voxels of different tissues, as a function over the voxels' column: at (u, v)
-/// mm from the column's middle it lies at position[axis] + slopeU u + slopeV v + (bendUU u^2 + bendVV v^2) / 2 +
-/// bendUV u v. u and v run along the axes (axis + 1) % 3 and (axis + 2) % 3.
-struct SurfacePiece
-{
-  Vec3f positionMm; ///< local to the scene
-  float slopeU;
-  float slopeV;
-  float bendUU; ///< 1/mm
-  float bendUV;
-  float bendVV;
-  float share;        ///< of the surface in this column that this piece stands for: columns of other axes stand for the
-                      ///< rest
-  std::uint8_t axis;  ///< 0 to 2
-  std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
-  std::uint8_t above;
-  Vec3i voxel; ///< the one below
-};
 
 /// The boundaries of a label map as smooth pieces. Voxels are a staircase, and its terraces would echo like a grating:
 /// where steps of half a wavelength matter, no smoothing by a voxel or two suffices. So a piece's place comes from the
@@ -50,7 +32,9 @@ public:
   float edgeMm() const { return edgeMm_; }
   const Vec3f& sizeMm() const { return sizeMm_; }
   const Vec3f& spacingMm() const { return spacingMm_; }
-  /// None outside of the volume.
+  /// Bricks of the volume along each axis.
+  const Vec3i& bricks() const { return bricks_; }
+  /// None outside of the volume. Stays where it is while this lives.
   const std::vector<SurfacePiece>& brick(const Vec3i& brick) const;
 
 private:

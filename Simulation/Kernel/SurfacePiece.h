@@ -1,0 +1,99 @@
+#pragma once
+
+#include "Kernel/Rng.h"
+#include "Kernel/SurfaceEcho.h"
+#include "Kernel/Vec.h"
+
+#include <cmath>
+#include <cstdint>
+
+// Pieces of the boundaries between labels, and the points (Gaussian blobs) that a piece is cut into for a wavelength.
+
+namespace sono {
+
+/// The surface between two face-adjacent voxels of different tissues, as a function over the voxels' column: at (u, v)
+/// mm from the column's middle it lies at position[axis] + slopeU u + slopeV v + (bendUU u^2 + bendVV v^2) / 2 +
+/// bendUV u v. u and v run along the axes (axis + 1) % 3 and (axis + 2) % 3.
+struct SurfacePiece
+{
+  Vec3f positionMm; ///< local to the scene
+  float slopeU;
+  float slopeV;
+  float bendUU; ///< 1/mm
+  float bendUV;
+  float bendVV;
+  float share;        ///< of the surface in this column that this piece stands for: columns of other axes stand for the
+                      ///< rest
+  std::uint8_t axis;  ///< 0 to 2
+  std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
+  std::uint8_t above;
+  Vec3i voxel; ///< the one below
+};
+
+/// How pieces are cut: `cuts` points of a voxel along each axis, `stepMm` apart.
+struct PieceCuts
+{
+  Vec3i cuts;
+  Vec3f stepMm;
+
+  SONO_HD int points(int axis) const { return cuts[(axis + 1) % 3] * cuts[(axis + 2) % 3]; }
+};
+
+/// Deviation of a blob on a square net of step 1: the net shows through by exp(-2 pi^2 0.49) = 6e-5.
+constexpr double blobPerStep = 0.7;
+
+/// Which of 256 directions of the unit circle is the random phase of a point's diffuse echo: a function of the seed and
+/// of the place in the world, as scatterers' amplitudes are. `kind` is the axis of a label's columns, or 3 for targets.
+SONO_HD inline std::uint32_t surfacePhase(std::uint64_t seed, const Vec3i& cell, std::uint32_t kind,
+                                          std::uint32_t number)
+{
+  const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z),
+                               0x5f0ce000u | (kind << 10) | (number >> 4));
+  return (w.v[(number >> 2) & 3u] >> (8u * (number & 3u))) & 255u;
+}
+
+/// Whether a beam's axis is steep enough against the boundary for any of the piece's points to count.
+SONO_HD inline bool pieceCounts(const SurfaceTable& table, const SurfacePiece& piece, int row, const Vec3f& beamAxis)
+{
+  Vec3f normal(0.0f);
+  normal[piece.axis] = 1.0f;
+  normal[(piece.axis + 1) % 3] = -piece.slopeU;
+  normal[(piece.axis + 2) % 3] = -piece.slopeV;
+  const float along = glm::dot(normal, beamAxis);
+  // A little more, since its points' normals differ.
+  const float reach = table.rows[along < 0.0f ? row ^ 1 : row].reach + 0.1f;
+  const float squared = along * along;
+  return reach > 0.1f && glm::dot(normal, normal) - squared < reach * reach * squared;
+}
+
+/// Point (i, j) of a piece, all but its row and its phase.
+SONO_HD inline SurfacePoint piecePoint(const SurfacePiece& piece, const PieceCuts& net, int i, int j)
+{
+  const int axis = piece.axis;
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  const float du = (float(i) + 0.5f - 0.5f * float(net.cuts[u])) * net.stepMm[u];
+  const float dv = (float(j) + 0.5f - 0.5f * float(net.cuts[v])) * net.stepMm[v];
+  const float slopeU = piece.slopeU + piece.bendUU * du + piece.bendUV * dv;
+  const float slopeV = piece.slopeV + piece.bendUV * du + piece.bendVV * dv;
+  const float stretch = sqrtf(1.0f + slopeU * slopeU + slopeV * slopeV);
+  SurfacePoint point{};
+  point.position = piece.positionMm;
+  point.position[u] += du;
+  point.position[v] += dv;
+  point.position[axis] += 0.5f * ((piece.slopeU + slopeU) * du + (piece.slopeV + slopeV) * dv);
+  point.normal[axis] = 1.0f / stretch;
+  point.normal[u] = -slopeU / stretch;
+  point.normal[v] = -slopeV / stretch;
+  const float blobU = float(blobPerStep) * net.stepMm[u];
+  const float blobV = float(blobPerStep) * net.stepMm[v];
+  point.tangentU = point.tangentV = Vec3f(0.0f);
+  point.tangentU[u] = blobU;
+  point.tangentU[axis] = blobU * slopeU;
+  point.tangentV[v] = blobV;
+  point.tangentV[axis] = blobV * slopeV;
+  point.areaMm2 = piece.share * stretch * net.stepMm[u] * net.stepMm[v];
+  return point;
+}
+
+} // namespace sono
