@@ -1,7 +1,9 @@
 #include "Cuda/DeviceEcho.cuh"
 
 #include "Cuda/LineFinish.cuh"
+#include "Cuda/NestedSplat.cuh"
 #include "Cuda/SplatKernels.cuh"
+#include "Cuda/SurfaceSplat.cuh"
 
 #include <algorithm>
 #include <cmath>
@@ -141,6 +143,132 @@ void DeviceEcho::uploadSight(const std::optional<SightJob>& job, const std::vect
   sight.pieces.upload(pieces, stream, traffic);
 }
 
+void DeviceEcho::uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
+                              Traffic& traffic)
+{
+  if (sceneId_ != sceneId)
+  {
+    sceneId_ = 0; // stays so when the upload fails
+    voxels_.upload(voxels, stream, traffic);
+    sceneId_ = sceneId;
+  }
+}
+
+void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic)
+{
+  uploadVoxels(*job.voxels, job.sceneId, stream, traffic);
+  if (job.fibres && fibresSceneId_ != job.sceneId)
+  {
+    fibresSceneId_ = 0; // stays so when the upload fails
+    fibreWords_.upload(job.fibres->packed(), stream, traffic);
+    fibresSceneId_ = job.sceneId;
+  }
+  fibres_ = job.fibres ? job.fibres->view() : FibreView{};
+  fibres_.packed = job.fibres ? fibreWords_.data() : nullptr;
+  sceneBeams_.upload(job.beams, stream, traffic);
+  media_.upload(job.media.data(), job.media.size(), stream, traffic);
+  fibreScale_.upload(job.fibreScale.data(), job.fibreScale.size(), stream, traffic);
+  perMm3_.upload(job.perMm3, stream, traffic);
+  coarseEnough_.upload(job.coarseEnough, stream, traffic);
+  density_ = job.density;
+  density_.perMm3 = perMm3_.data();
+  density_.coarseEnough = coarseEnough_.data();
+  nestedRanges_ = job.ranges;
+  nestedSights_.resize(job.ranges.size());
+  for (std::size_t n = 0; n < job.ranges.size(); ++n)
+  {
+    const auto sight = job.sights.empty() ? std::nullopt : std::optional<SightJob>(job.sights[n]);
+    const float brickMm = nestedCellMm(density_.finest + int(n)) * float(nestedBrickCells);
+    uploadSight(sight, job.beams, brickMm, nestedSights_[n], stream, traffic);
+  }
+  size_ = job.size;
+  spacing_ = job.spacing;
+  seed_ = job.seed;
+  float largest = 0.0f;
+  for (const ScatteringMedium& m : job.media)
+  {
+    largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
+  }
+  nestedScale_ =
+    scaleFor(largest * DensityView::amplitudeScale(density_.coarsest, 1) * std::max(1.0f, float(beam.largestWeight)));
+}
+
+/// The pieces of a scene stay, those that are new are added.
+void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  if (piecesSceneId_ != job.sceneId)
+  {
+    pieces_.clear();
+    pieceRanges_.assign(std::size_t(job.bricks.x) * std::size_t(job.bricks.y) * std::size_t(job.bricks.z), { 0, 0 });
+  }
+  const std::size_t kept = pieces_.size();
+  piecesSceneId_ = 0; // stays so when the upload fails
+  for (const SurfaceJob::Brick& brick : job.seen)
+  {
+    BrickRange& range = pieceRanges_[std::size_t(brick.number)];
+    if (range.count == 0)
+    {
+      range = { int(pieces_.size()), int(brick.pieces->size()) };
+      pieces_.insert(pieces_.end(), brick.pieces->begin(), brick.pieces->end());
+    }
+  }
+  if (pieces_.size() > kept || kept == 0)
+  {
+    devicePieces_.extend(pieces_, kept, stream, traffic);
+    devicePieceRanges_.upload(pieceRanges_, stream, traffic);
+  }
+  piecesSceneId_ = job.sceneId;
+}
+
+void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic)
+{
+  uploadPieces(job, stream, traffic);
+  surfaceBeams_.upload(job.beams, stream, traffic);
+  surfaceRows_.upload(job.rows, stream, traffic);
+  diffuseL_.upload(job.diffuseL, stream, traffic);
+  diffuseE_.upload(job.diffuseE, stream, traffic);
+  const auto withTables = [&](SurfaceTable table) {
+    table.rows = surfaceRows_.data();
+    table.diffuseL = diffuseL_.data();
+    table.diffuseE = diffuseE_.data();
+    return table;
+  };
+  pieceSet_.table = withTables(job.pieceTable);
+  pieceSet_.media = job.media;
+  pieceSet_.net = job.net;
+  pieceSet_.seed = job.seed;
+  pieceSet_.firstBrick = Vec3i(0);
+  pieceSet_.bricks = job.bricks;
+  pieceSet_.edgeMm = job.edgeMm;
+  pieceSet_.marginMm = job.marginMm;
+  // Of blobs on slopes of up to two, and where points lie beside their piece's middle.
+  const float step = std::max({ job.net.stepMm.x, job.net.stepMm.y, job.net.stepMm.z });
+  pieceSet_.reachMm = surfaceBlobReach * std::sqrt(10.0f) * float(blobPerStep) * step;
+  pieceSet_.spreadMm = 1.5f * job.marginMm;
+  pieceSet_.pieces = devicePieces_.data();
+  pieceSet_.ranges = devicePieceRanges_.data();
+  uploadSight(job.sight, job.beams, job.edgeMm + 2.0f * job.marginMm, pieceSight_, stream, traffic);
+  targets_ = job.targets.has_value();
+  if (targets_)
+  {
+    targetPoints_.upload(job.targets->points, stream, traffic);
+    targetRanges_.upload(job.targets->ranges, stream, traffic);
+    targetSet_ = pieceSet_;
+    targetSet_.table = withTables(job.targetTable);
+    targetSet_.firstBrick = job.targets->firstBrick;
+    targetSet_.bricks = job.targets->bricks;
+    targetSet_.edgeMm = job.targets->edgeMm;
+    targetSet_.marginMm = 0.0f;
+    targetSet_.reachMm = job.targets->reachMm;
+    targetSet_.spreadMm = 0.0f;
+    targetSet_.points = targetPoints_.data();
+    targetSet_.ranges = targetRanges_.data();
+    uploadSight(job.targets->sight, job.beams, job.targets->edgeMm, targetSight_, stream, traffic);
+  }
+  // A perfect mirror across the whole beam echoes 1; a point of it far less.
+  surfaceScale_ = 536870912.0f / std::max(1.0f, float(beam.largestWeight));
+}
+
 void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
 {
   const double radPerSample = job.radPerMm * job.sampleMm;
@@ -180,12 +308,7 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   if (tissues_)
   {
     const TissueJob& tissues = *job.tissues;
-    if (sceneId_ != tissues.sceneId)
-    {
-      sceneId_ = 0; // stays so when the upload fails
-      voxels_.upload(*tissues.voxels, stream, traffic);
-      sceneId_ = tissues.sceneId;
-    }
+    uploadVoxels(*tissues.voxels, tissues.sceneId, stream, traffic);
     sceneBeams_.upload(tissues.beams, stream, traffic);
     media_.upload(tissues.media.data(), tissues.media.size(), stream, traffic);
     uploadSight(tissues.sight, tissues.beams, tissues.cellMm * brickCells, tissueSight_, stream, traffic);
@@ -203,6 +326,17 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
     const double together =
       64.0 * job.beam.largestWeight + 16.0 * job.beam.largestAreaMm2 * sampleMm_ / std::pow(double(cellMm_), 3);
     tissueScale_ = largest > 0.0f ? float(2147483647.0 / (together * largest)) : 1.0f;
+  }
+
+  nested_ = job.nested.has_value();
+  if (nested_)
+  {
+    uploadNested(*job.nested, job.beam, stream, traffic);
+  }
+  surfaces_ = job.surfaces.has_value();
+  if (surfaces_)
+  {
+    uploadSurfaces(*job.surfaces, job.beam, stream, traffic);
   }
 
   points_ = job.points.has_value();
@@ -295,6 +429,55 @@ void DeviceEcho::splatTissues(int first, int count, const TracedOnDevice& traced
   });
 }
 
+void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
+{
+  NestedLaunch launch{};
+  launch.traced = traced;
+  launch.voxels = voxels_.data();
+  launch.size = size_;
+  launch.perMm = 1.0f / spacing_;
+  launch.extentMm = Vec3f(size_) * spacing_;
+  launch.media = media_.data();
+  launch.fibreScale = fibreScale_.data();
+  launch.fibres = fibres_;
+  launch.density = density_;
+  launch.seed = seed_;
+  sum_.clear(stream);
+  for (std::size_t n = 0; n < nestedRanges_.size(); ++n)
+  {
+    launch.splat = splat(sceneBeams_.data() + first, nestedScale_, nestedSights_[n]);
+    launch.level = density_.finest + int(n);
+    launch.fromMm = nestedRanges_[n].fromMm;
+    launch.toMm = nestedRanges_[n].toMm;
+    if (launch.fromMm < launch.toMm)
+    {
+      withKind(kind_, [&](auto kind) {
+        splatNestedCells<kind.value><<<dim3(count, chunks()), blockThreads, 0, stream>>>(launch);
+      });
+    }
+  }
+}
+
+void DeviceEcho::splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
+{
+  surfaceSum_.resize(std::size_t(count) * sumCount_);
+  surfaceSum_.clear(stream);
+  const auto launchFor = [&](const SurfaceSet& set, const Sight& sight) {
+    SurfaceLaunch launch{ splat(surfaceBeams_.data() + first, surfaceScale_, sight), traced, set };
+    launch.splat.sum = surfaceSum_.data();
+    return launch;
+  };
+  const dim3 grid(count, chunks());
+  withKind(kind_, [&](auto kind) {
+    splatSurfaceBricks<kind.value, SurfacePiece><<<grid, blockThreads, 0, stream>>>(launchFor(pieceSet_, pieceSight_));
+    if (targets_)
+    {
+      splatSurfaceBricks<kind.value, SurfacePoint>
+        <<<grid, blockThreads, 0, stream>>>(launchFor(targetSet_, targetSight_));
+    }
+  });
+}
+
 void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)
 {
   PointLaunch launch{};
@@ -307,7 +490,7 @@ void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)
   launch.firstBrick = table_->firstBrick;
   launch.bricks = table_->bricks;
   launch.edgeMm = table_->edgeMm;
-  launch.add = tissues_;
+  launch.add = tissues_ || nested_;
   withKind(kind_, [&](auto kind) {
     splatPointBricks<kind.value><<<dim3(count, chunks()), blockThreads, 0, stream>>>(launch);
   });
@@ -323,13 +506,22 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
   {
     splatTissues(first, count, traced, stream);
   }
+  if (nested_)
+  {
+    splatNested(first, count, traced, stream);
+  }
   if (points_)
   {
     splatPoints(first, count, stream);
   }
+  if (surfaces_)
+  {
+    splatSurfaces(first, count, traced, stream);
+  }
   const bool sinks = downshift_ && traced.intensity && traced.attenuation;
   turns_.resize(sinks ? lines * sumCount_ : 0);
-  const FinishLaunch launch{ tissues_ || points_ ? sum_.data() : nullptr,
+  const FinishLaunch launch{ tissues_ || nested_ || points_ ? sum_.data() : nullptr,
+                             surfaces_ ? surfaceSum_.data() : nullptr,
                              traced,
                              level_.size() > 0 ? level_.data() : nullptr,
                              downshift_.value_or(Downshift{}),

@@ -23,6 +23,24 @@ struct TracedOnDevice
   const float2* echo = nullptr; ///< or lines x sumCount amplitudes
 };
 
+/// Surfaces in bricks: pieces of boundaries, or points of targets.
+struct SurfaceSet
+{
+  SurfaceTable table;
+  const BrickRange* ranges; ///< of each brick, x fastest
+  const SurfacePiece* pieces;
+  const SurfacePoint* points;
+  Vec3i firstBrick;
+  Vec3i bricks;
+  float edgeMm;
+  float marginMm; ///< how far outside of its brick a piece may lie
+  float spreadMm; ///< and a point of a piece from its middle
+  float reachMm;  ///< no blob lies on the line further from its middle
+  int media;
+  PieceCuts net;
+  std::uint64_t seed; ///< of the points' phases
+};
+
 struct SplatLaunch;
 
 /// Forms RF lines on the device. Kept between jobs: a scene's tissues, explicit scatterers and fields.
@@ -57,6 +75,13 @@ private:
   int chunks() const { return (sumCount_ + chunkSamples - 1) / chunkSamples; }
   void splatTissues(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
   void splatPoints(int first, int count, cudaStream_t stream);
+  void uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
+                    Traffic& traffic);
+  void uploadNested(const NestedJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic);
+  void uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
+  void uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic);
+  void splatNested(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
+  void splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
 
   int sampleCount_ = 0;
   int sumCount_ = 0;
@@ -91,6 +116,35 @@ private:
   float cellMm_ = 1.0f;
   std::uint64_t seed_ = 0;
   float tissueScale_ = 1.0f;
+
+  bool nested_ = false;
+  std::uint64_t fibresSceneId_ = 0;
+  DeviceArray<std::uint32_t> fibreWords_;
+  FibreView fibres_{};
+  DeviceArray<float> fibreScale_, perMm3_;
+  DeviceArray<std::uint8_t> coarseEnough_;
+  DensityView density_;
+  std::vector<ScattererDensity::Range> nestedRanges_; ///< of each level in use
+  std::vector<Sight> nestedSights_;                   ///< the same
+  float nestedScale_ = 1.0f;
+
+  bool surfaces_ = false;
+  std::uint64_t piecesSceneId_ = 0;
+  std::vector<SurfacePiece> pieces_; ///< what the device has of the scene's, brick after brick as they came
+  std::vector<BrickRange> pieceRanges_;
+  DeviceArray<SurfacePiece> devicePieces_;
+  DeviceArray<BrickRange> devicePieceRanges_;
+  DeviceArray<Beam> surfaceBeams_;
+  DeviceArray<SurfaceRow> surfaceRows_;
+  DeviceArray<float> diffuseL_, diffuseE_;
+  SurfaceSet pieceSet_{};
+  SurfaceSet targetSet_{};
+  Sight pieceSight_, targetSight_;
+  bool targets_ = false;
+  DeviceArray<SurfacePoint> targetPoints_;
+  DeviceArray<BrickRange> targetRanges_;
+  float surfaceScale_ = 1.0f;
+  DeviceArray<float2> surfaceSum_; ///< lines x sumCount
 
   bool points_ = false;
   std::shared_ptr<const PointTable> table_;

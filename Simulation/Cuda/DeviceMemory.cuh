@@ -128,6 +128,22 @@ public:
     upload(from.data(), from.size(), stream, traffic);
   }
 
+  /// Makes the contents those of `from`, whose first `kept` values are here already; room for more is taken ahead.
+  void extend(const std::vector<T>& from, std::size_t kept, cudaStream_t stream, Traffic& traffic)
+  {
+    if (from.size() > capacity_)
+    {
+      resize(2 * from.size());
+      kept = 0;
+    }
+    size_ = from.size();
+    if (from.size() > kept)
+    {
+      uploadBytes(data_ + kept, from.data() + kept, (from.size() - kept) * sizeof(T), stream);
+      traffic.up += (from.size() - kept) * sizeof(T);
+    }
+  }
+
   void clear(cudaStream_t stream)
   {
     if (size_ > 0)

@@ -10,6 +10,7 @@
 #include "Kernel/LabelRow.h"
 #include "Kernel/PlaneScan.h"
 #include "Kernel/Scatterer.h"
+#include "Kernel/SurfacePiece.h"
 #include "Kernel/TraceView.h"
 #include "Probe/ArrayField.h"
 #include "Scene/FibreField.h"
@@ -74,6 +75,13 @@ struct BeamJob
   double largestAreaMm2 = 1.0;
 };
 
+/// What lies in a brick, of an array sorted by brick.
+struct BrickRange
+{
+  int first;
+  int count;
+};
+
 /// Where a field matters to bricks of `brickMm`.
 struct SightJob
 {
@@ -116,6 +124,45 @@ struct NestedJob
   std::vector<SightJob> sights;                ///< of each level, where there is a field
 };
 
+/// The surfaces of targets as points, sorted by brick.
+struct TargetPointJob
+{
+  std::vector<SurfacePoint> points;
+  std::vector<BrickRange> ranges; ///< of each brick, x fastest
+  Vec3i firstBrick{ 0 };
+  Vec3i bricks{ 0 };
+  float edgeMm = 1.0f;
+  float reachMm = 0.0f; ///< no blob lies on the line further from its middle
+  std::optional<SightJob> sight;
+};
+
+/// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
+struct SurfaceJob
+{
+  struct Brick
+  {
+    int number;                              ///< x fastest
+    const std::vector<SurfacePiece>* pieces; ///< belong to the scene, which the job must not outlive
+  };
+
+  std::vector<Beam> beams;   ///< local mm of the volume
+  std::vector<Brick> seen;   ///< those with pieces that a beam may see
+  std::uint64_t sceneId = 0; ///< the pieces are kept on the device while it is the same
+  Vec3i bricks{ 0 };         ///< of the volume
+  float edgeMm = 1.0f;
+  float marginMm = 0.0f; ///< how far outside of its brick a piece may lie
+  PieceCuts net{};
+  std::uint64_t seed = 1;
+  int media = 0;
+  SurfaceTable pieceTable; ///< its tables are those below, and those of the targets' are the same
+  SurfaceTable targetTable;
+  std::vector<SurfaceRow> rows;
+  std::vector<float> diffuseL;
+  std::vector<float> diffuseE;
+  std::optional<SightJob> sight; ///< of the pieces' bricks
+  std::optional<TargetPointJob> targets;
+};
+
 /// Explicit scatterers, sorted by brick (see PointScatterers).
 struct PointJob
 {
@@ -147,8 +194,9 @@ struct EchoJob
   std::optional<Downshift> downshift; ///< nothing where attenuation leaves the frequency alone
   std::vector<float> boundaryLevel;   ///< of each sample; empty: 1
   BeamJob beam;
-  std::optional<TissueJob> tissues; ///< of Amadou2024
-  std::optional<NestedJob> nested;  ///< of Acoustic
+  std::optional<TissueJob> tissues;   ///< of Amadou2024
+  std::optional<NestedJob> nested;    ///< of Acoustic
+  std::optional<SurfaceJob> surfaces; ///< the same
   std::optional<PointJob> points;
   std::optional<GivenTrace> given; ///< when the job does not trace; without either, intensity 1 and no boundaries
 };

@@ -9,7 +9,8 @@ namespace sono {
 
 struct FinishLaunch
 {
-  const float2* sum; // or null: no scatterers
+  const float2* sum;      // or null: no scatterers
+  const float2* surfaces; // the same of surfaces, intensity included; or null
   TracedOnDevice traced;
   const float* level; // of boundaries at each sample, or null
   Downshift downshift;
@@ -122,6 +123,11 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
     const float intensity = valueAt(traced.intensity + std::size_t(line) * traced.binCount, binPlace(launch, s));
     v.x *= intensity;
     v.y *= intensity;
+  }
+  if (launch.surfaces)
+  {
+    v.x += launch.surfaces[at].x;
+    v.y += launch.surfaces[at].y;
   }
   const float level = launch.level ? launch.level[s] : 1.0f;
   if (traced.echoSums && s < traced.echoCount)

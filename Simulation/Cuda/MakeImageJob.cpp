@@ -1,5 +1,6 @@
 #include "Cuda/MakeImageJob.h"
 
+#include "Core/ParallelFor.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
@@ -8,6 +9,7 @@
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace sono {
@@ -127,6 +129,112 @@ NestedJob makeNested(const EchoSetup& setup)
   return job;
 }
 
+/// The bricks with pieces that some beam may see. Those that are not yet there are made.
+std::vector<SurfaceJob::Brick> seenPieces(const EchoSetup& setup)
+{
+  constexpr int groupLines = 8;
+  const SurfaceEchoes& surfaces = *setup.surfaces;
+  const Vec3i bricks = surfaces.pieces().bricks();
+  const int lineCount = int(setup.lines.size());
+  std::vector<std::atomic<const std::vector<SurfacePiece>*>> found(std::size_t(bricks.x) * std::size_t(bricks.y) *
+                                                                   std::size_t(bricks.z));
+  parallelFor((lineCount + groupLines - 1) / groupLines, {}, [&](int group) {
+    std::vector<BeamReach> beams;
+    for (int l = group * groupLines; l < std::min((group + 1) * groupLines, lineCount); ++l)
+    {
+      beams.push_back(
+        { setup.sceneBeam(l), setup.finisher.reachMm(l), nullptr, setup.beams.reachTable(), setup.beams.arraySight() });
+    }
+    forSeenBricks(surfaces.pieceGrid(), surfaces.seeingPieces(std::move(beams)),
+                  [&](const Vec3i& brick, const std::vector<std::size_t>&) {
+                    const std::vector<SurfacePiece>& pieces = surfaces.pieces().brick(brick);
+                    if (!pieces.empty())
+                    {
+                      found[std::size_t(brick.x + bricks.x * (brick.y + bricks.y * brick.z))] = &pieces;
+                    }
+                  });
+  });
+  std::vector<SurfaceJob::Brick> seen;
+  for (std::size_t b = 0; b < found.size(); ++b)
+  {
+    if (found[b])
+    {
+      seen.push_back({ int(b), found[b] });
+    }
+  }
+  return seen;
+}
+
+TargetPointJob makeTargetPoints(const TargetPieces& targets)
+{
+  TargetPointJob job;
+  const BrickGrid& grid = targets.grid();
+  job.edgeMm = grid.edgeMm;
+  job.firstBrick = Vec3i(glm::round(grid.lowMm / grid.edgeMm));
+  job.bricks = Vec3i(glm::round(grid.highMm / grid.edgeMm)) - job.firstBrick;
+  for (int k = 0; k < job.bricks.z; ++k)
+  {
+    for (int j = 0; j < job.bricks.y; ++j)
+    {
+      for (int i = 0; i < job.bricks.x; ++i)
+      {
+        const std::vector<SurfacePoint>& points = targets.brick(job.firstBrick + Vec3i(i, j, k));
+        job.ranges.push_back({ int(job.points.size()), int(points.size()) });
+        job.points.insert(job.points.end(), points.begin(), points.end());
+      }
+    }
+  }
+  float largest = 0.0f;
+  for (const SurfacePoint& p : job.points)
+  {
+    largest = std::max(largest, glm::dot(p.tangentU, p.tangentU) + glm::dot(p.tangentV, p.tangentV));
+  }
+  job.reachMm = surfaceBlobReach * std::sqrt(largest);
+  return job;
+}
+
+SurfaceJob makeSurfaces(const EchoSetup& setup)
+{
+  const SurfaceEchoes& surfaces = *setup.surfaces;
+  SurfaceJob job;
+  for (std::size_t l = 0; l < setup.lines.size(); ++l)
+  {
+    job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
+  }
+  job.seen = seenPieces(setup);
+  job.sceneId = setup.sources.scene->id();
+  job.bricks = surfaces.pieces().bricks();
+  job.edgeMm = surfaces.pieces().edgeMm();
+  job.marginMm = surfaces.marginMm();
+  job.net = surfaces.net();
+  job.seed = setup.settings.seed;
+  job.media = surfaces.rows().count();
+  job.pieceTable = surfaces.pieceTable();
+  job.targetTable = surfaces.targetTable();
+  for (SurfaceTable* table : { &job.pieceTable, &job.targetTable })
+  {
+    table->rows = nullptr;
+    table->diffuseL = nullptr;
+    table->diffuseE = nullptr;
+  }
+  job.rows = surfaces.rows().all();
+  job.diffuseL = surfaces.rows().diffuseL();
+  job.diffuseE = surfaces.rows().diffuseE();
+  if (surfaces.pieceSight())
+  {
+    job.sight = makeSight(*surfaces.pieceSight());
+  }
+  if (surfaces.targets() && surfaces.targets()->grid().highMm != surfaces.targets()->grid().lowMm)
+  {
+    job.targets = makeTargetPoints(*surfaces.targets());
+    if (surfaces.targetSight())
+    {
+      job.targets->sight = makeSight(*surfaces.targetSight());
+    }
+  }
+  return job;
+}
+
 PointJob makePoints(const EchoSetup& setup)
 {
   PointJob job;
@@ -194,6 +302,14 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   if (setup.nested && setup.nested->grid(0).highMm.x > 0.0f)
   {
     job.nested = makeNested(setup);
+  }
+  if (setup.surfaces)
+  {
+    job.surfaces = makeSurfaces(setup);
+    if (job.surfaces->seen.empty() && !job.surfaces->targets)
+    {
+      job.surfaces.reset();
+    }
   }
   if (setup.sources.points && setup.sources.points->count() > 0)
   {

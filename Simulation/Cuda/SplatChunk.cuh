@@ -12,7 +12,12 @@
 
 namespace sono {
 
-/// What both kinds of scatterers share. Which of the tables are there depends on the kind of the beams.
+constexpr int warpLanes = 32;
+constexpr unsigned allLanes = 0xffffffffu;
+constexpr int blockThreads = 128;
+constexpr float darkIntensity = 1e-8f; // -160 dB
+
+/// What all kinds of scatterers share. Which of the tables are there depends on the kind of the beams.
 struct SplatLaunch
 {
   const Beam* beams;
@@ -150,15 +155,21 @@ template<BeamKind kind>
 class BrickSight
 {
 public:
-  __device__ BrickSight(const SplatLaunch& launch, const Beam& beam, float edgeMm)
+  /// What a brick holds may lie `marginMm` outside.
+  __device__ BrickSight(const SplatLaunch& launch, const Beam& beam, float edgeMm, float marginMm = 0.0f)
     : launch_(launch)
     , beam_(beam)
-    , axial_(halfExtent(beam.axis, edgeMm))
-    , lateral_(halfExtent(beam.lateral, edgeMm))
-    , elevation_(halfExtent(beam.elevation, edgeMm))
+    , axial_(halfExtent(beam.axis, edgeMm) + marginMm)
+    , lateral_(halfExtent(beam.lateral, edgeMm) + marginMm)
+    , elevation_(halfExtent(beam.elevation, edgeMm) + marginMm)
   {
   }
 
+  /// Whether a brick begins above a depth.
+  __device__ bool isAbove(const Vec3f& centre, float depthMm) const
+  {
+    return glm::dot(centre - beam_.origin, beam_.axis) < depthMm + axial_;
+  }
   __device__ bool meets(const Vec3f& centre) const
   {
     if (kind != BeamKind::Field && kind != BeamKind::Array)
@@ -190,6 +201,70 @@ private:
   float lateral_;
   float elevation_;
 };
+
+/// Tables that a whole beam points to, in a block's shared memory.
+struct BeamTables
+{
+  BeamFieldView field;
+  ArrayBeamView array;
+};
+
+/// A line's beam with its tables, for functions that take any kind. All threads of a block; they must synchronise
+/// before they use it.
+inline __device__ Beam wholeBeam(const SplatLaunch& launch, int line, BeamTables& tables)
+{
+  if (threadIdx.x == 0)
+  {
+    tables.field = launch.field;
+    tables.array = launch.array;
+  }
+  Beam beam = launch.beams[line];
+  beam.field = &tables.field;
+  beam.array = &tables.array;
+  return beam;
+}
+
+/// Depth below which a line sees nothing, as on the CPU (see LineFinisher). All threads of a block.
+inline __device__ float litMm(const float* intensity, int binCount, float binMm, int line, float deepestMm)
+{
+  if (!intensity)
+  {
+    return deepestMm;
+  }
+  __shared__ int lit; // bins up to the last one that is lit
+  if (threadIdx.x == 0)
+  {
+    lit = 0;
+  }
+  __syncthreads();
+  const float* bins = intensity + std::size_t(line) * binCount;
+  int own = 0;
+  for (int b = threadIdx.x; b < binCount; b += blockDim.x)
+  {
+    own = bins[b] > darkIntensity ? b + 1 : own;
+  }
+  atomicMax(&lit, own);
+  __syncthreads();
+  return lit == 0 ? 0.0f : (lit == binCount ? deepestMm : fminf(deepestMm, (float(lit) + 0.5f) * binMm));
+}
+
+/// The block goes through the cells of all rows; lanes of a warp together. visit(exists, cell).
+template<class Visit>
+__device__ void forCells(const CellRows& rows, const Visit& visit)
+{
+  const int rowCount = rows.rowCount();
+  for (int first = int(threadIdx.x) / warpLanes * warpLanes; first < rowCount; first += blockThreads)
+  {
+    const int r = first + int(threadIdx.x) % warpLanes;
+    const CellRows::Row row = r < rowCount ? rows.row(r) : CellRows::Row{ 0, 0, 0, 0 };
+    forItemsOfWarp(row.count, [&](int owner, int place) {
+      const int layer = __shfl_sync(allLanes, row.layer, owner);
+      const int v = __shfl_sync(allLanes, row.v, owner);
+      const int u = __shfl_sync(allLanes, row.first, owner) + place;
+      visit(owner >= 0, rows.cell(layer, v, u));
+    });
+  }
+}
 
 /// Writes or adds the chunk's sums.
 template<class Sums>

@@ -10,11 +10,7 @@
 
 namespace sono {
 
-constexpr int warpLanes = 32;
-constexpr unsigned allLanes = 0xffffffffu;
-constexpr int blockThreads = 128;
-constexpr int brickCells = 4;          // cells along an edge of a brick of procedural scatterers (see TissueScatterers)
-constexpr float darkIntensity = 1e-8f; // -160 dB
+constexpr int brickCells = 4; // cells along an edge of a brick of procedural scatterers (see TissueScatterers)
 
 struct TissueLaunch
 {
@@ -47,24 +43,6 @@ __device__ inline bool isLit(const TissueLaunch& launch, const Chunk& chunk)
     lit |= bins[b] > darkIntensity;
   }
   return __syncthreads_or(lit);
-}
-
-/// The block goes through the cells of all rows; lanes of a warp together. visit(exists, cell).
-template<class Visit>
-__device__ void forCells(const CellRows& rows, const Visit& visit)
-{
-  const int rowCount = rows.rowCount();
-  for (int first = int(threadIdx.x) / warpLanes * warpLanes; first < rowCount; first += blockThreads)
-  {
-    const int r = first + int(threadIdx.x) % warpLanes;
-    const CellRows::Row row = r < rowCount ? rows.row(r) : CellRows::Row{ 0, 0, 0, 0 };
-    forItemsOfWarp(row.count, [&](int owner, int place) {
-      const int layer = __shfl_sync(allLanes, row.layer, owner);
-      const int v = __shfl_sync(allLanes, row.v, owner);
-      const int u = __shfl_sync(allLanes, row.first, owner) + place;
-      visit(owner >= 0, rows.cell(layer, v, u));
-    });
-  }
 }
 
 template<BeamKind kind>

@@ -1,0 +1,133 @@
+#pragma once
+
+#include "Cuda/DeviceEcho.cuh"
+#include "Cuda/SplatChunk.cuh"
+#include "Kernel/FibreView.h"
+#include "Kernel/NestedCells.h"
+#include "Kernel/Scatterer.h"
+
+// Scatterers whose density follows the resolution cell, as NestedScatterers and the walk over its bricks on the CPU.
+
+namespace sono {
+
+struct NestedLaunch
+{
+  SplatLaunch splat;
+  TracedOnDevice traced;
+  const std::uint8_t* voxels;
+  Vec3i size;
+  Vec3f perMm;
+  Vec3f extentMm;
+  const ScatteringMedium* media; // 256
+  const float* fibreScale;       // 256
+  FibreView fibres;
+  DensityView density;
+  std::uint64_t seed;
+  int level;
+  float fromMm; // between which bricks of the level may be taken
+  float toMm;
+};
+
+/// A block adds what the bricks of one level echo into a chunk of a line. Lanes of a warp look at rows of bricks, then
+/// at their bricks, then at the bricks' candidates, each time as many at once as there are.
+template<BeamKind kind>
+__global__ void __launch_bounds__(blockThreads) splatNestedCells(NestedLaunch launch)
+{
+  __shared__ LongSums sums;
+  __shared__ ScatteringMedium media[256];
+  __shared__ float fibreScale[256];
+  __shared__ BeamTables tables;
+  const SplatLaunch& splat = launch.splat;
+  const Chunk chunk = chunkOf(splat);
+  const Beam beam = wholeBeam(splat, chunk.line, tables);
+  const float deepestMm = float(splat.sumCount) * splat.sampleMm;
+  const float litToMm =
+    litMm(launch.traced.intensity, launch.traced.binCount, launch.traced.binMm, chunk.line, deepestMm);
+  BeamPiece piece = pieceOf<kind>(splat, beam, chunk);
+  piece.fromMm = fmaxf(piece.fromMm, launch.fromMm);
+  piece.toMm = fminf(piece.toMm, fminf(launch.toMm, litToMm));
+  if (!(piece.fromMm < piece.toMm))
+  {
+    return; // all of the block
+  }
+  for (int m = threadIdx.x; m < 256; m += blockThreads)
+  {
+    media[m] = launch.media[m];
+    fibreScale[m] = launch.fibreScale[m];
+  }
+  sums.clear();
+  __syncthreads();
+
+  const float brickMm = nestedCellMm(launch.level) * float(nestedBrickCells);
+  const BrickSight<kind> sight(splat, beam, brickMm);
+  const auto ranksOf = [&](const Vec3i& brick) {
+    const Vec3f centre = nestedBrickCentre(brick, launch.level);
+    const Vec3f end = launch.extentMm + 0.5f * brickMm;
+    const bool isInside =
+      brick.x >= 0 && brick.y >= 0 && brick.z >= 0 && centre.x < end.x && centre.y < end.y && centre.z < end.z;
+    if (!isInside || !sight.isAbove(centre, litToMm) || !sight.meets(centre))
+    {
+      return 0;
+    }
+    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, launch.level + 1);
+    const float depthMm = glm::dot(centre - beam.origin, beam.axis);
+    if (!launch.density.takes(launch.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
+    {
+      return 0;
+    }
+    return launch.density.ranks(launch.level, depthMm, relativeWeight(beam, centre - beam.origin, depthMm));
+  };
+  const auto splatCandidate = [&](const Vec3i& brick, int ranks, int number) {
+    const Vec3i parent = nestedChild(brick, std::uint32_t(number & 7));
+    const Vec3i cell =
+      nestedChild(parent, childOfRank(nestedHash(launch.seed, parent, launch.level + 1), std::uint32_t(number >> 3)));
+    const NestedCandidate c = nestedCandidate(launch.seed, finestCell(launch.seed, cell, launch.level));
+    const Vec3f p = c.positionMm;
+    const SeenEcho<kind> echo = seenEcho<kind>(splat, beam, chunk, placeInBeam(p.x, p.y, p.z, beam, splat.grid));
+    if (isZero(echo.weight))
+    {
+      return;
+    }
+    const Vec3i voxel(int(floorf(p.x * launch.perMm.x)), int(floorf(p.y * launch.perMm.y)),
+                      int(floorf(p.z * launch.perMm.z)));
+    if (unsigned(voxel.x) >= unsigned(launch.size.x) || unsigned(voxel.y) >= unsigned(launch.size.y) ||
+        unsigned(voxel.z) >= unsigned(launch.size.z))
+    {
+      return;
+    }
+    const std::size_t at =
+      std::size_t(voxel.x) + std::size_t(launch.size.x) * (std::size_t(voxel.y) + std::size_t(launch.size.y) * voxel.z);
+    const int tissue = launch.voxels[at];
+    float amplitude = c.sign * scattererAmplitude(media[tissue], c.presence, c.deviate) *
+                      DensityView::amplitudeScale(launch.level, ranks);
+    if (amplitude == 0.0f)
+    {
+      return;
+    }
+    if (fibreScale[tissue] > 0.0f)
+    {
+      const float cosine = glm::dot(launch.fibres.at(voxel), beam.axis) * fibreScale[tissue];
+      amplitude *= expNegative(-cosine * cosine);
+    }
+    addScatterer(sums, splitScatterer(times(echo.weight, amplitude), echo.position, splat.grid), chunk.first,
+                 splat.scale);
+  };
+
+  const CellRows bricks(beam, piece, brickMm, Vec3f(0.0f), launch.extentMm);
+  forCells(bricks, [&](bool exists, const Vec3i& own) {
+    const int ownRanks = exists ? ranksOf(own) : 0;
+    forItemsOfWarp(8 * ownRanks, [&](int owner, int number) {
+      const Vec3i brick(__shfl_sync(allLanes, own.x, owner), __shfl_sync(allLanes, own.y, owner),
+                        __shfl_sync(allLanes, own.z, owner));
+      const int ranks = __shfl_sync(allLanes, ownRanks, owner);
+      if (owner >= 0)
+      {
+        splatCandidate(brick, ranks, number);
+      }
+    });
+  });
+  __syncthreads();
+  writeChunk(splat, chunk, sums, true);
+}
+
+} // namespace sono
