@@ -105,6 +105,20 @@ __global__ void __launch_bounds__(blockThreads) splatSurfaceBricks(SurfaceLaunch
       return isNear(set.points[p].position);
     }
   };
+  // Whether a point's blob reaches the chunk: most of those that are near do not.
+  const auto reaches = [&](const SurfacePoint& point) {
+    const BeamPlace place = placeInBeam(point.position.x, point.position.y, point.position.z, beam, splat.grid);
+    float depth = place.position;
+    if (kind == BeamKind::Array)
+    {
+      const float aside = place.lateral * place.lateral + place.elevational * place.elevational;
+      depth = sqrtf(depth * depth + aside * splat.grid.samplesPerMm * splat.grid.samplesPerMm);
+    }
+    const float du = glm::dot(beam.axis, point.tangentU) * splat.grid.samplesPerMm;
+    const float dv = glm::dot(beam.axis, point.tangentV) * splat.grid.samplesPerMm;
+    const float reach = surfaceBlobReach * sqrtf(du * du + dv * dv + 1.0f / 6.0f) + 1.0f;
+    return depth + reach >= float(sum.first) && depth - reach <= float(sum.last);
+  };
   const auto splatItem = [&](int p) {
     if constexpr (arePieces)
     {
@@ -115,6 +129,10 @@ __global__ void __launch_bounds__(blockThreads) splatSurfaceBricks(SurfaceLaunch
       for (int n = 0; n < count; ++n)
       {
         SurfacePoint point = piecePoint(item, set.net, n % cuts, n / cuts);
+        if (!reaches(point))
+        {
+          continue;
+        }
         point.row = row;
         const std::uint32_t phase = surfacePhase(set.seed, item.voxel, item.axis, std::uint32_t(n));
         sincospif(float(phase) * (1.0f / 128.0f), &point.phaseIm, &point.phaseRe);
@@ -123,7 +141,10 @@ __global__ void __launch_bounds__(blockThreads) splatSurfaceBricks(SurfaceLaunch
     }
     else
     {
-      addSurface(set.points[p], beam, splat.grid, set.table, intensity, sum);
+      if (reaches(set.points[p]))
+      {
+        addSurface(set.points[p], beam, splat.grid, set.table, intensity, sum);
+      }
     }
   };
 

@@ -116,6 +116,29 @@ TEST(GpuAcoustic, SurfacesInEveryBeam)
   }
 }
 
+TEST(GpuAcoustic, TheThoraxFromTheSameTracedLines)
+{
+  SONO_GPU_OR_SKIP();
+  // Paths that part on the two devices play no role here.
+  ImageSettings s;
+  s.geometry.lineCount = 64;
+  s.tracing.pathsPerLine = 1000;
+  s.matchStages();
+  s.tracing.device = Device::Cpu;
+  s.echo.aperture = namedAperture();
+  const auto scene = makePhantomScene(makeThoraxPhantom(2.0));
+  const auto lines = makeScanLines(s.geometry, thoraxPhantomA4C().orthonormalized());
+  Simulator simulator(borrowed(scene.get()));
+  const TracedResult traced = simulator.trace(lines, s.tracing);
+  s.echo.device = Device::Cuda;
+  const RfLines gpu = simulator.formRf(lines, traced, s.echo, nullptr).host();
+  s.echo.device = Device::Cpu;
+  const RfLines cpu = simulator.formRf(lines, traced, s.echo, nullptr).host();
+  const double difference = rfDifference(gpu, cpu);
+  EXPECT_LE(difference, rfTolerance);
+  std::printf("thorax from the same traced lines: %.2g\n", difference);
+}
+
 TEST(GpuAcoustic, AFieldsBricks)
 {
   SONO_GPU_OR_SKIP();

@@ -77,7 +77,7 @@ private:
     tracing.model = random_() % 4 ? InterfaceModel::Acoustic : InterfaceModel::Amadou2024;
     tracing.sampling = random_() % 2 ? Sampling::LowDiscrepancy : Sampling::Independent;
     tracing.deterministic = random_() % 6 == 0;
-    tracing.pathsPerLine = 256 + int(random_() % 1000);
+    tracing.pathsPerLine = 8000 + int(random_() % 1000); // so many that none counts alone
     tracing.maxCollisions = int(random_() % 12);
     tracing.coherenceMm = between(0.1, 50.0);
     tracing.lobeSigmaDeg = random_() % 4 ? between(0.01, 1.0) * 180.0 / M_PI : 0.0;
