@@ -1,5 +1,7 @@
 #include "Scene/SurfacePieces.h"
 
+#include "Scene/StepFit.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,58 +10,45 @@ namespace sono {
 
 namespace {
 
+using namespace stepfit;
+
 constexpr int widest = 24; // voxels to each side of a column
-constexpr std::array<int, 9> windows{ 1, 2, 3, 4, 6, 8, 12, 16, widest };
-constexpr float planeResidual = 0.60f; // voxels: half a voxel is a step's rounding
-constexpr float bentResidual = 0.66f;
-constexpr int mostStep = 2;           // voxels from a column's step to its neighbour's
-constexpr float leastFacing = 0.5f;   // of a normal along the column: some axis has 0.577
-constexpr float certainlyNot = 0.25f; // the same of a coarse normal
+constexpr int allColumns = 2 * widest + 1;
+constexpr std::array<int, 7> windows{ 2, 3, 5, 8, 12, 17, widest };
+/// Voxels that a column's step may lie further from a fit than half a voxel, a step's rounding: up to the first a
+/// window counts fully, from the second on not at all.
+constexpr float freeExcess = 0.05f;
+constexpr float mostExcess = 0.15f;
+/// A window needs this share of its columns, and that to count fully.
+constexpr float fewestSeen = 0.5f;
+constexpr float enoughSeen = 0.75f;
+/// An edge between two steps tells the height to within half the slope across it, a step to within half a voxel. By
+/// their variances edges weigh 1 / slope^2: at most as at the first slope, nothing from the second on.
+constexpr float flattestEdge = 0.05f;
+constexpr float steepestEdge = 0.5f;
+constexpr std::int16_t unknown = -32768; // step of a column outside of the volume
+constexpr int mostStep = 2;              // voxels from a column's step to its neighbour's
+constexpr float leastFacing = 0.5f;      // of a normal along the column: some axis has 0.577
+constexpr float certainlyNot = 0.25f;    // the same of a coarse normal
 
-/// A least-squares fit of a quadratic to the heights of a window, every column present: with weights that depend on the
-/// distance alone the normal equations fall apart.
-struct WindowFit
+const Window& windowOf(int radius)
 {
-  std::vector<float> weight; // (2 R + 1)^2, round, smooth to its rim so that a terrace's harmonics are not let through
-  double s0 = 0.0, s2 = 0.0, s4 = 0.0, s22 = 0.0;
-
-  explicit WindowFit(int radius)
-  {
-    for (int j = -radius; j <= radius; ++j)
-    {
-      for (int i = -radius; i <= radius; ++i)
-      {
-        const double q = 1.0 - double(i * i + j * j) / ((radius + 1.0) * (radius + 1.0));
-        const double w = q > 0.0 ? q * q * q * q : 0.0;
-        weight.push_back(float(w));
-        s0 += w;
-        s2 += w * i * i;
-        s4 += w * i * i * i * i;
-        s22 += w * i * i * j * j;
-      }
-    }
-  }
-};
-
-const WindowFit& windowFit(int radius)
-{
-  static const std::vector<WindowFit> fits = [] {
-    std::vector<WindowFit> made;
+  static const std::vector<Window> all = [] {
+    std::vector<Window> made;
     for (int r = 0; r <= widest; ++r)
     {
       made.emplace_back(r);
     }
     return made;
   }();
-  return fits[std::size_t(radius)];
+  return all[std::size_t(radius)];
 }
 
-/// c0 + c1 i + c2 j + c3 i^2 + c4 j^2 + c5 i j, voxels.
-struct Quadratic
+float edgeWeight(float slope)
 {
-  float c0, c1, c2, c3, c4, c5;
-  float at(int i, int j) const { return c0 + c1 * i + c2 * j + c3 * i * i + c4 * j * j + c5 * i * j; }
-};
+  constexpr float least = flattestEdge * flattestEdge;
+  return std::max(0.0f, 1.0f / (slope * slope + least) - 1.0f / (steepestEdge * steepestEdge + least));
+}
 
 /// Steps of the columns around a face, relative to its own: how many voxels along the axis they lie further.
 class StepMap
@@ -78,9 +67,9 @@ public:
     return unsigned(v.x) < unsigned(size_.x) && unsigned(v.y) < unsigned(size_.y) && unsigned(v.z) < unsigned(size_.z);
   }
 
-  /// Fills the rings [first, last] around the face above `voxel`, those before them being filled; whether each column
-  /// has a step from the same tissue to the same other one.
-  bool gather(const Vec3i& voxel, int axis, int first, int last)
+  /// Fills the rings [first, last] around the face above `voxel`, those before them being filled: a column is known
+  /// where it has a step from the same tissue to the same other one, near that of its neighbour further in.
+  void gather(const Vec3i& voxel, int axis, int first, int last)
   {
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
@@ -91,12 +80,14 @@ public:
     const std::ptrdiff_t base = voxel.x + pitch_[1] * voxel.y + pitch_[2] * voxel.z;
     for (int r = first; r <= last; ++r)
     {
-      if (voxel[u] - r < 0 || voxel[u] + r >= size_[u] || voxel[v] - r < 0 || voxel[v] + r >= size_[v])
-      {
-        return false;
-      }
       const auto find = [&](int i, int j) {
+        step(i, j) = unknown;
         const int from = step(i == r ? r - 1 : (i == -r ? 1 - r : i), j == r ? r - 1 : (j == -r ? 1 - r : j));
+        if (from == unknown || unsigned(voxel[u] + i) >= unsigned(size_[u]) ||
+            unsigned(voxel[v] + j) >= unsigned(size_[v]))
+        {
+          return;
+        }
         for (int n = 0; n <= 2 * mostStep; ++n)
         {
           const int h = from + ((n & 1) ? (n + 1) / 2 : -n / 2);
@@ -109,104 +100,58 @@ public:
           if (t[0] == below && t[pitch_[axis]] == above)
           {
             step(i, j) = std::int16_t(h);
-            return true;
+            return;
           }
         }
-        return false;
       };
       for (int n = -r; n <= r; ++n)
       {
-        if (!find(n, -r) || !find(n, r) || (n > -r && n < r && (!find(-r, n) || !find(r, n))))
+        find(n, -r);
+        find(n, r);
+        if (n > -r && n < r)
         {
-          return false;
+          find(-r, n);
+          find(r, n);
         }
       }
     }
-    return true;
   }
 
-  /// The quadratic, and the plane.
-  Quadratic fit(int radius, Quadratic& plane) const
-  {
-    const WindowFit& f = windowFit(radius);
-    double h0 = 0.0, hi = 0.0, hj = 0.0, hii = 0.0, hjj = 0.0, hij = 0.0;
-    const float* w = f.weight.data();
-    for (int j = -radius; j <= radius; ++j)
-    {
-      float r0 = 0.0f, r1 = 0.0f, r2 = 0.0f; // exact sums of a row come first
-      for (int i = -radius; i <= radius; ++i)
-      {
-        const float wh = *w++ * float(step(i, j));
-        r0 += wh;
-        r1 += wh * float(i);
-        r2 += wh * float(i * i);
-      }
-      h0 += r0;
-      hi += r1;
-      hii += r2;
-      hj += r0 * j;
-      hij += r1 * j;
-      hjj += r0 * j * j;
-    }
-    Quadratic q{};
-    plane = { float(h0 / f.s0), float(hi / f.s2), float(hj / f.s2), 0.0f, 0.0f, 0.0f };
-    q.c1 = float(hi / f.s2);
-    q.c2 = float(hj / f.s2);
-    q.c5 = float(hij / f.s22);
-    const double minus = (hii - hjj) / (f.s4 - f.s22);
-    const double both = f.s4 + f.s22;
-    const double plus = ((hii + hjj) * f.s0 - 2.0 * f.s2 * h0) / (both * f.s0 - 2.0 * f.s2 * f.s2);
-    q.c0 = float((h0 - f.s2 * plus) / f.s0);
-    q.c3 = float(0.5 * (plus + minus));
-    q.c4 = float(0.5 * (plus - minus));
-    return q;
-  }
-
-  /// Largest distance from the fit, but for the rim, which hardly counts in it.
-  float residual(const Quadratic& q, int radius) const
-  {
-    float largest = 0.0f;
-    for (int j = -radius; j <= radius; ++j)
-    {
-      for (int i = -radius; i <= radius; ++i)
-      {
-        if (4 * (i * i + j * j) <= 3 * radius * radius)
-        {
-          largest = std::max(largest, std::fabs(float(step(i, j)) - q.at(i, j)));
-        }
-      }
-    }
-    return largest;
-  }
-
-  /// The fit in the widest window that agrees with the labels, a plane where one does; false where none does.
-  bool smoothest(const Vec3i& voxel, int axis, Quadratic& out)
+  /// The smoothest surface that the labels allow; false where they show none.
+  bool smoothest(const Vec3i& voxel, int axis, const Vec3f& spacing, Quadratic& out)
   {
     step(0, 0) = 0;
-    const auto agrees = [&](int radius) {
-      Quadratic plane{};
-      const Quadratic bent = fit(radius, plane);
-      const bool isPlane = residual(plane, radius) <= planeResidual;
-      if (isPlane || residual(bent, radius) <= bentResidual)
+    std::array<Quadratic, windows.size()> fits{};
+    std::array<float, windows.size()> agreement{};
+    std::size_t count = 0;
+    std::size_t slopes = 0;
+    int gathered = 0;
+    for (int misses = 0; count < windows.size() && misses < 2; ++count)
+    {
+      const int radius = windows[count];
+      gather(voxel, axis, gathered + 1, radius);
+      gathered = radius;
+      const float seen = smoothStep(fewestSeen, enoughSeen, knownShare(radius));
+      if (!(seen > 0.0f) ||
+          !smoothest(radius, axis, spacing, count > 0 ? &fits[slopes] : nullptr, fits[count], agreement[count]))
       {
-        out = isPlane ? plane : bent;
-        return true;
+        break;
       }
+      agreement[count] *= seen;
+      misses = agreement[count] > 0.0f ? 0 : misses + (radius < 8 ? 1 : 2);
+      slopes = agreement[count] > 0.0f ? count : slopes;
+    }
+    if (count == 0)
+    {
       return false;
-    };
-    std::size_t w = 0;
-    for (int gathered = 0; w < windows.size() && gather(voxel, axis, gathered + 1, windows[w]); ++w)
-    {
-      gathered = windows[w];
     }
-    while (w > 0)
+    // Each window in front of those within it as far as it agrees: all is continuous along the surface.
+    out = fits[0];
+    for (std::size_t w = 1; w < count; ++w)
     {
-      if (agrees(windows[--w]))
-      {
-        return true;
-      }
+      out = mix(out, fits[w], agreement[w]);
     }
-    return false;
+    return true;
   }
 
   /// From the mean place of the tissue below to that of the one above, in the 5 x 5 x 4 voxels around a face; in
@@ -241,13 +186,206 @@ public:
   }
 
 private:
-  std::int16_t& step(int i, int j) { return steps_[std::size_t(i + widest + (2 * widest + 1) * (j + widest))]; }
-  std::int16_t step(int i, int j) const { return steps_[std::size_t(i + widest + (2 * widest + 1) * (j + widest))]; }
+  /// Of a window's weight.
+  float knownShare(int radius) const
+  {
+    const float* weight = windowOf(radius).weight.data();
+    float known = 0.0f;
+    float all = 0.0f;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      for (int i = -radius; i <= radius; ++i, ++weight)
+      {
+        all += *weight;
+        known += step(i, j) == unknown ? 0.0f : *weight;
+      }
+    }
+    return known / all;
+  }
+
+  /// The smoothest of plane, ball and quadratic; false where there are too few data. `known` tells the slopes, or is
+  /// null.
+  bool smoothest(int radius, int axis, const Vec3f& spacing, const Quadratic* known, Quadratic& out,
+                 float& agreement) const
+  {
+    const NormalEquations equations = equationsOf(radius, known);
+    Shape plane;
+    if (!equations.solve(3, plane.q))
+    {
+      return false;
+    }
+    out = plane.q;
+    agreement = agrees(plane, radius);
+    if (agreement >= 1.0f)
+    {
+      return true;
+    }
+    BallEquations ofBall(spacing[(axis + 1) % 3] / spacing[axis], spacing[(axis + 2) % 3] / spacing[axis]);
+    for (int j = -radius; j <= radius; ++j)
+    {
+      const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
+      const float* weight = windowOf(radius).weight.data() + (2 * radius + 1) * (j + radius);
+      for (int n = 0; n <= 2 * radius; ++n)
+      {
+        if (steps[n] != unknown && weight[n] > 0.0f)
+        {
+          ofBall.add(n - radius, j, steps[n], weight[n]);
+        }
+      }
+      if (known)
+      {
+        forEdges(
+          radius, j, *known, [&](float x, float h, float w) { ofBall.add(x, j, h, w); },
+          [&](float x, float h, float w) { ofBall.add(x, j + 0.5, h, w); });
+      }
+    }
+    Shape ball;
+    const float ballAgrees = ofBall.solve(ball) ? agrees(ball, radius) : 0.0f;
+    if (ballAgrees > 0.0f)
+    {
+      out = agreement > 0.0f ? mix(ball.osculating(), out, agreement) : ball.osculating();
+      agreement = std::max(agreement, ballAgrees);
+    }
+    Shape bent;
+    if (agreement < 1.0f && equations.solve(terms, bent.q))
+    {
+      const float bentAgrees = agrees(bent, radius);
+      out = mix(bent.q, out, agreement);
+      agreement = std::max(agreement, bentAgrees);
+    }
+    return true;
+  }
+
+  /// Of steps, and where the slopes are known of the edges between them.
+  NormalEquations equationsOf(int radius, const Quadratic* known) const
+  {
+    NormalEquations equations;
+    const Window& window = windowOf(radius);
+    const int pitch = 2 * radius + 1;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
+      const float* weight = window.weight.data() + pitch * (j + radius);
+      const bool isFull = std::find(steps, steps + pitch, unknown) == steps + pitch;
+      RowSums columns;
+      if (isFull)
+      {
+        columns = window.rows[std::size_t(j + radius)];
+        for (int n = 0; n < pitch; ++n)
+        {
+          const float x = float(n - radius);
+          const float wh = weight[n] * float(steps[n]);
+          columns.height[0] += wh;
+          columns.height[1] += wh * x;
+          columns.height[2] += wh * x * x;
+        }
+      }
+      else
+      {
+        for (int n = 0; n < pitch; ++n)
+        {
+          if (steps[n] != unknown)
+          {
+            columns.add(n - radius, steps[n], weight[n]);
+          }
+        }
+      }
+      equations.addRow(j, columns.x, columns.height);
+      if (known)
+      {
+        RowSums edges;
+        RowSums next;
+        forEdges(
+          radius, j, *known, [&](float x, float h, float w) { edges.add(x, h, w); },
+          [&](float x, float h, float w) { next.add(x, h, w); });
+        equations.addRow(j, edges.x, edges.height);
+        equations.addRow(j + 0.5, next.x, next.height);
+      }
+    }
+    return equations;
+  }
+
+  /// The edges between the steps of a window: f(x, height, weight) of those within a row, g of those from it to the
+  /// next.
+  template<class F, class G>
+  void forEdges(int radius, int j, const Quadratic& known, const F& f, const G& g) const
+  {
+    const int pitch = 2 * radius + 1;
+    const float* weight = windowOf(radius).weight.data() + pitch * (j + radius);
+    const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
+    for (int n = 0; n + 1 < pitch; ++n)
+    {
+      if (steps[n] != steps[n + 1] && steps[n] != unknown && steps[n + 1] != unknown)
+      {
+        const float i = float(n - radius);
+        const float w = edgeWeight(known.c1 + known.c3 * (2.0f * i + 1.0f) + known.c5 * float(j));
+        if (w > 0.0f)
+        {
+          f(i + 0.5f, 0.5f * float(steps[n] + steps[n + 1]), 0.5f * (weight[n] + weight[n + 1]) * w);
+        }
+      }
+    }
+    const std::int16_t* next = steps + allColumns;
+    for (int n = 0; j < radius && n < pitch; ++n)
+    {
+      if (steps[n] != next[n] && steps[n] != unknown && next[n] != unknown)
+      {
+        const float i = float(n - radius);
+        const float w = edgeWeight(known.c2 + known.c4 * float(2 * j + 1) + known.c5 * i);
+        if (w > 0.0f)
+        {
+          g(i, 0.5f * float(steps[n] + next[n]), 0.5f * (weight[n] + weight[n + pitch]) * w);
+        }
+      }
+    }
+  }
+
+  /// 1 where no column's step lies further from the fit than its rounding, less to 0 where one does; smoothly.
+  float agrees(const Shape& shape, int radius) const
+  {
+    return 1.0f - smoothStep(freeExcess, mostExcess, excess(shape, radius, mostExcess));
+  }
+
+  /// The largest distance from the fit beyond a step's rounding, voxels; not much more is looked at than `enough`.
+  float excess(const Shape& shape, int radius, float enough) const
+  {
+    const int pitch = 2 * radius + 1;
+    float largest = 0.0f;
+    for (int n = 0; n < pitch; ++n)
+    {
+      const int j = (n & 1) ? -(n + 1) / 2 : n / 2; // the middle first, where most misfits show
+      const float* strictness = windowOf(radius).strictness.data() + pitch * (j + radius);
+      const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
+      const float k0 = shape.q.at(0.0f, float(j));
+      const float k1 = shape.q.c1 + shape.q.c5 * float(j);
+      float row[allColumns];
+      for (int m = 0; m < pitch; ++m)
+      {
+        const float i = float(m - radius);
+        const float k = k0 + i * (k1 + i * shape.q.c3);
+        const float z = 2.0f * k / (1.0f + std::sqrt(std::max(0.0f, 1.0f - 4.0f * shape.bulge * k)));
+        const float e = (std::fabs(float(steps[m]) - z) - 0.5f) * strictness[m];
+        row[m] = steps[m] == unknown ? 0.0f : e;
+      }
+      for (int m = 0; m < pitch; ++m)
+      {
+        largest = row[m] > largest ? row[m] : largest;
+      }
+      if (largest >= enough)
+      {
+        break;
+      }
+    }
+    return largest;
+  }
+
+  std::int16_t& step(int i, int j) { return steps_[std::size_t(i + widest + allColumns * (j + widest))]; }
+  std::int16_t step(int i, int j) const { return steps_[std::size_t(i + widest + allColumns * (j + widest))]; }
 
   const std::uint8_t* tissues_;
   Vec3i size_;
   std::ptrdiff_t pitch_[3];
-  std::array<std::int16_t, std::size_t(2 * widest + 1) * (2 * widest + 1)> steps_{};
+  std::array<std::int16_t, std::size_t(allColumns) * allColumns> steps_{};
 };
 
 /// How much of a surface the columns along an axis stand for. Each axis' columns cover all of it, evenly but for a
@@ -274,7 +412,7 @@ bool makePiece(StepMap& map, const Vec3i& voxel, int axis, const Vec3f& spacing,
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   Quadratic q{};
-  if (!map.smoothest(voxel, axis, q) && !isThin)
+  if (!map.smoothest(voxel, axis, spacing, q) && !isThin)
   {
     q.c1 = -coarse[u] / coarse[axis];
     q.c2 = -coarse[v] / coarse[axis];

@@ -12,10 +12,10 @@ namespace sono {
 
 /// The boundaries of a label map as smooth pieces. Voxels are a staircase, and its terraces would echo like a grating:
 /// where steps of half a wavelength matter, no smoothing by a voxel or two suffices. So a piece's place comes from the
-/// smoothest surface that the labels allow: the steps' heights over the columns around are fitted with a plane or
-/// a quadratic in the widest window, up to 24 voxels to each side, in which every column has its step and none lies
-/// further than a step's rounding from the fit. Small windows at rims and thin parts leave those as they are; a lone
-/// voxel keeps its faces.
+/// smoothest surface that the labels allow: a plane, a ball or a quadratic, fitted to the steps of the columns around
+/// and to the edges between them, in the widest window, up to 24 voxels to each side, from which no step lies further
+/// than its rounding. Windows and shapes give way to each other gradually, so that the surface has no steps of its own.
+/// Small windows at rims and thin parts leave those as they are; a lone voxel keeps its faces.
 ///
 /// Made brick by brick when first asked for, and kept. They depend on the labels alone. Several threads may ask.
 class SurfacePieces

@@ -155,9 +155,9 @@ TEST_P(TiltedPlane, OfATarget)
 
 TEST_P(TiltedPlane, OfLabels)
 {
-  if (GetParam() > 0.0)
+  if (GetParam() == 7.0 || GetParam() == 30.0)
   {
-    GTEST_SKIP() << "a smooth plane of tilted labels was seen 2 to 28 dB off: its terraces are not smooth enough yet";
+    GTEST_SKIP() << "slopes near 1/8 and 4/7 voxels: seen 1.1 and 1.8 dB off (physics.md 10.6)";
   }
   EchoSettings s = surfaceSettings();
   s.depthMm = 30.0;
@@ -168,6 +168,10 @@ TEST_P(TiltedPlane, OfLabels)
                                  { surfaceTissue("a", inMedium, 0.0), surfaceTissue("b", behind, roughnessMm, 0.01) },
                                  [&](const Vec3d& p) { return p.z < 18.03 + slope * (p.x - 16.0) ? 0 : 1; });
     const RfLines rf = formRf({ scene.get(), nullptr, nullptr }, { makeLine({ 16.1, 12.2, 0.0 }, { 0, 0, 1 }) }, s);
+    if (roughnessMm > 0.0 && GetParam() > 10.0)
+    {
+      continue; // there the diffuse echo is the stronger one
+    }
     const double exact = planePeak(s, GetParam(), roughnessMm, 18.0);
     EXPECT_NEAR(decibels(peak(rf) / exact), 0.0, 1.0) << roughnessMm << " mm rough, " << decibels(exact) << " dB";
   }
@@ -260,7 +264,10 @@ TEST_P(Ball, OfATarget)
 
 TEST_P(Ball, OfLabels)
 {
-  GTEST_SKIP() << "a smooth ball of labels was seen 1 to 12 dB off: its terraces are not smooth enough yet";
+  if (GetParam() == 5.0)
+  {
+    GTEST_SKIP() << "a ball of 10 voxels' radius was seen up to 1.2 dB off (physics.md 10.6)";
+  }
   EchoSettings s = surfaceSettings();
   const double radius = GetParam();
   s.depthMm = 2.0 * radius + 12.0;
