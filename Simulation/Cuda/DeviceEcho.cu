@@ -193,29 +193,64 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStr
     scaleFor(largest * DensityView::amplitudeScale(density_.coarsest, 1) * std::max(1.0f, float(beam.largestWeight)));
 }
 
+namespace {
+
+/// Adds items [first, end) as groups.
+template<class Item, class Bounds>
+void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t end, const Bounds& ballOf,
+               std::vector<SurfaceGroup>& groups)
+{
+  while (first < end)
+  {
+    const std::size_t last = std::min(end, first + std::size_t(warpLanes));
+    Vec3f low(1e30f);
+    Vec3f high(-1e30f);
+    for (std::size_t n = first; n < last; ++n)
+    {
+      const auto [centre, radius] = ballOf(items[n]);
+      low = glm::min(low, centre - radius);
+      high = glm::max(high, centre + radius);
+    }
+    groups.push_back({ 0.5f * (low + high), 0.5f * glm::length(high - low), int(first), int(last - first) });
+    first = last;
+  }
+}
+
+} // namespace
+
 /// The pieces of a scene stay, those that are new are added.
 void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic)
 {
+  const SurfacePieces& scene = *job.pieces;
   if (piecesSceneId_ != job.sceneId)
   {
     pieces_.clear();
-    pieceRanges_.assign(std::size_t(job.bricks.x) * std::size_t(job.bricks.y) * std::size_t(job.bricks.z), { 0, 0 });
+    pieceGroups_.clear();
+    pieceBlocks_.assign(std::size_t(scene.blockCount()), false);
   }
   const std::size_t kept = pieces_.size();
+  const std::size_t keptGroups = pieceGroups_.size();
+  const bool isFirst = piecesSceneId_ != job.sceneId;
   piecesSceneId_ = 0; // stays so when the upload fails
-  for (const SurfaceJob::Brick& brick : job.seen)
+  const auto ballOf = [&](const SurfacePiece& piece) {
+    return std::pair<Vec3f, float>(piece.positionMm, pieceBounds(piece, job.longestStepMm).radiusMm);
+  };
+  for (const int block : job.blocks)
   {
-    BrickRange& range = pieceRanges_[std::size_t(brick.number)];
-    if (range.count == 0)
+    if (!pieceBlocks_[std::size_t(block)])
     {
-      range = { int(pieces_.size()), int(brick.pieces->size()) };
-      pieces_.insert(pieces_.end(), brick.pieces->begin(), brick.pieces->end());
+      pieceBlocks_[std::size_t(block)] = true;
+      scene.forBricksOf(block, [&](const std::vector<SurfacePiece>& pieces) {
+        const std::size_t first = pieces_.size();
+        pieces_.insert(pieces_.end(), pieces.begin(), pieces.end());
+        addGroups(pieces_, first, pieces_.size(), ballOf, pieceGroups_);
+      });
     }
   }
-  if (pieces_.size() > kept || kept == 0)
+  if (isFirst || pieces_.size() > kept)
   {
     devicePieces_.extend(pieces_, kept, stream, traffic);
-    devicePieceRanges_.upload(pieceRanges_, stream, traffic);
+    devicePieceGroups_.extend(pieceGroups_, keptGroups, stream, traffic);
   }
   piecesSceneId_ = job.sceneId;
 }
@@ -234,36 +269,27 @@ void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cuda
     return table;
   };
   pieceSet_.table = withTables(job.pieceTable);
-  pieceSet_.media = job.media;
-  pieceSet_.net = job.net;
-  pieceSet_.seed = job.seed;
-  pieceSet_.firstBrick = Vec3i(0);
-  pieceSet_.bricks = job.bricks;
-  pieceSet_.edgeMm = job.edgeMm;
-  pieceSet_.marginMm = job.marginMm;
-  // Of blobs on slopes of up to two, and where points lie beside their piece's middle.
-  const float step = std::max({ job.net.stepMm.x, job.net.stepMm.y, job.net.stepMm.z });
-  pieceSet_.reachMm = surfaceBlobReach * std::sqrt(10.0f) * float(blobPerStep) * step;
-  pieceSet_.spreadMm = 1.5f * job.marginMm;
+  pieceSet_.groups = devicePieceGroups_.data();
+  pieceSet_.groupCount = int(pieceGroups_.size());
   pieceSet_.pieces = devicePieces_.data();
-  pieceSet_.ranges = devicePieceRanges_.data();
-  uploadSight(job.sight, job.beams, job.edgeMm + 2.0f * job.marginMm, pieceSight_, stream, traffic);
-  targets_ = job.targets.has_value();
+  pieceSet_.longestStepMm = job.longestStepMm;
+  pieceSet_.media = job.media;
+  pieceSet_.nets = job.nets;
+  pieceSet_.fieldReachMm = job.fieldReachMm;
+  pieceSet_.seed = job.seed;
+  targets_ = !job.targetPoints.empty();
   if (targets_)
   {
-    targetPoints_.upload(job.targets->points, stream, traffic);
-    targetRanges_.upload(job.targets->ranges, stream, traffic);
+    std::vector<SurfaceGroup> groups;
+    const auto ballOf = [](const SurfacePoint& point) { return std::pair<Vec3f, float>(point.position, 0.0f); };
+    addGroups(job.targetPoints, 0, job.targetPoints.size(), ballOf, groups);
+    targetPoints_.upload(job.targetPoints, stream, traffic);
+    targetGroups_.upload(groups, stream, traffic);
     targetSet_ = pieceSet_;
     targetSet_.table = withTables(job.targetTable);
-    targetSet_.firstBrick = job.targets->firstBrick;
-    targetSet_.bricks = job.targets->bricks;
-    targetSet_.edgeMm = job.targets->edgeMm;
-    targetSet_.marginMm = 0.0f;
-    targetSet_.reachMm = job.targets->reachMm;
-    targetSet_.spreadMm = 0.0f;
+    targetSet_.groups = targetGroups_.data();
+    targetSet_.groupCount = int(groups.size());
     targetSet_.points = targetPoints_.data();
-    targetSet_.ranges = targetRanges_.data();
-    uploadSight(job.targets->sight, job.beams, job.targets->edgeMm, targetSight_, stream, traffic);
   }
   // A perfect mirror across the whole beam echoes 1; a point of it far less.
   surfaceScale_ = 536870912.0f / std::max(1.0f, float(beam.largestWeight));
@@ -460,20 +486,21 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
 
 void DeviceEcho::splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
 {
-  surfaceSum_.resize(std::size_t(count) * sumCount_);
+  surfaceSum_.resize(2 * std::size_t(count) * sumCount_);
   surfaceSum_.clear(stream);
-  const auto launchFor = [&](const SurfaceSet& set, const Sight& sight) {
-    SurfaceLaunch launch{ splat(surfaceBeams_.data() + first, surfaceScale_, sight), traced, set };
-    launch.splat.sum = surfaceSum_.data();
-    return launch;
+  const auto launchFor = [&](const SurfaceSet& set) {
+    return SurfaceLaunch{ splat(surfaceBeams_.data() + first, surfaceScale_, {}), traced, set, surfaceSum_.data() };
   };
-  const dim3 grid(count, chunks());
+  const auto gridFor = [&](const SurfaceSet& set) {
+    return dim3(count, std::clamp((set.groupCount + surfaceThreads - 1) / surfaceThreads, 1, surfaceSlices));
+  };
   withKind(kind_, [&](auto kind) {
-    splatSurfaceBricks<kind.value, SurfacePiece><<<grid, blockThreads, 0, stream>>>(launchFor(pieceSet_, pieceSight_));
+    splatSurfaceGroups<kind.value, SurfacePiece>
+      <<<gridFor(pieceSet_), surfaceThreads, 0, stream>>>(launchFor(pieceSet_));
     if (targets_)
     {
-      splatSurfaceBricks<kind.value, SurfacePoint>
-        <<<grid, blockThreads, 0, stream>>>(launchFor(targetSet_, targetSight_));
+      splatSurfaceGroups<kind.value, SurfacePoint>
+        <<<gridFor(targetSet_), surfaceThreads, 0, stream>>>(launchFor(targetSet_));
     }
   });
 }
@@ -522,6 +549,7 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
   turns_.resize(sinks ? lines * sumCount_ : 0);
   const FinishLaunch launch{ tissues_ || nested_ || points_ ? sum_.data() : nullptr,
                              surfaces_ ? surfaceSum_.data() : nullptr,
+                             1.0f / surfaceScale_,
                              traced,
                              level_.size() > 0 ? level_.data() : nullptr,
                              downshift_.value_or(Downshift{}),

@@ -23,21 +23,27 @@ struct TracedOnDevice
   const float2* echo = nullptr; ///< or lines x sumCount amplitudes
 };
 
-/// Surfaces in bricks: pieces of boundaries, or points of targets.
+/// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them.
+struct SurfaceGroup
+{
+  Vec3f centreMm;
+  float radiusMm;
+  int first;
+  int count;
+};
+
+/// Surfaces: pieces of boundaries, or points of targets.
 struct SurfaceSet
 {
   SurfaceTable table;
-  const BrickRange* ranges; ///< of each brick, x fastest
+  const SurfaceGroup* groups;
+  int groupCount;
   const SurfacePiece* pieces;
   const SurfacePoint* points;
-  Vec3i firstBrick;
-  Vec3i bricks;
-  float edgeMm;
-  float marginMm; ///< how far outside of its brick a piece may lie
-  float spreadMm; ///< and a point of a piece from its middle
-  float reachMm;  ///< no blob lies on the line further from its middle
+  float longestStepMm; ///< between voxels
   int media;
-  PieceCuts net;
+  PieceNets nets;
+  Vec2f fieldReachMm; ///< of a Field: how far to the side it counts
   std::uint64_t seed; ///< of the points' phases
 };
 
@@ -130,21 +136,21 @@ private:
 
   bool surfaces_ = false;
   std::uint64_t piecesSceneId_ = 0;
-  std::vector<SurfacePiece> pieces_; ///< what the device has of the scene's, brick after brick as they came
-  std::vector<BrickRange> pieceRanges_;
+  std::vector<bool> pieceBlocks_;    ///< which of the scene's the device has
+  std::vector<SurfacePiece> pieces_; ///< of those, as they came
+  std::vector<SurfaceGroup> pieceGroups_;
   DeviceArray<SurfacePiece> devicePieces_;
-  DeviceArray<BrickRange> devicePieceRanges_;
+  DeviceArray<SurfaceGroup> devicePieceGroups_;
   DeviceArray<Beam> surfaceBeams_;
   DeviceArray<SurfaceRow> surfaceRows_;
   DeviceArray<float> diffuseL_, diffuseE_;
   SurfaceSet pieceSet_{};
   SurfaceSet targetSet_{};
-  Sight pieceSight_, targetSight_;
   bool targets_ = false;
   DeviceArray<SurfacePoint> targetPoints_;
-  DeviceArray<BrickRange> targetRanges_;
+  DeviceArray<SurfaceGroup> targetGroups_;
   float surfaceScale_ = 1.0f;
-  DeviceArray<float2> surfaceSum_; ///< lines x sumCount
+  DeviceArray<EchoSum> surfaceSum_; ///< lines x sumCount x (re, im)
 
   bool points_ = false;
   std::shared_ptr<const PointTable> table_;

@@ -14,6 +14,7 @@
 #include "Kernel/TraceView.h"
 #include "Probe/ArrayField.h"
 #include "Scene/FibreField.h"
+#include "Scene/SurfacePieces.h"
 #include "Scene/TraceRegion.h"
 #include "Trace/TargetBvh.h"
 
@@ -124,34 +125,15 @@ struct NestedJob
   std::vector<SightJob> sights;                ///< of each level, where there is a field
 };
 
-/// The surfaces of targets as points, sorted by brick.
-struct TargetPointJob
-{
-  std::vector<SurfacePoint> points;
-  std::vector<BrickRange> ranges; ///< of each brick, x fastest
-  Vec3i firstBrick{ 0 };
-  Vec3i bricks{ 0 };
-  float edgeMm = 1.0f;
-  float reachMm = 0.0f; ///< no blob lies on the line further from its middle
-  std::optional<SightJob> sight;
-};
-
 /// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
 struct SurfaceJob
 {
-  struct Brick
-  {
-    int number;                              ///< x fastest
-    const std::vector<SurfacePiece>* pieces; ///< belong to the scene, which the job must not outlive
-  };
-
-  std::vector<Beam> beams;   ///< local mm of the volume
-  std::vector<Brick> seen;   ///< those with pieces that a beam may see
-  std::uint64_t sceneId = 0; ///< the pieces are kept on the device while it is the same
-  Vec3i bricks{ 0 };         ///< of the volume
-  float edgeMm = 1.0f;
-  float marginMm = 0.0f; ///< how far outside of its brick a piece may lie
-  PieceCuts net{};
+  std::vector<Beam> beams;               ///< local mm of the volume
+  const SurfacePieces* pieces = nullptr; ///< belong to the scene, which the job must not outlive
+  std::vector<int> blocks;               ///< of theirs, that a beam may see
+  std::uint64_t sceneId = 0;             ///< the pieces are kept on the device while it is the same
+  float longestStepMm = 0.0f;            ///< between voxels
+  PieceNets nets{};
   std::uint64_t seed = 1;
   int media = 0;
   SurfaceTable pieceTable; ///< its tables are those below, and those of the targets' are the same
@@ -159,8 +141,8 @@ struct SurfaceJob
   std::vector<SurfaceRow> rows;
   std::vector<float> diffuseL;
   std::vector<float> diffuseE;
-  std::optional<SightJob> sight; ///< of the pieces' bricks
-  std::optional<TargetPointJob> targets;
+  Vec2f fieldReachMm{ 0.0f };             ///< of a field: how far to the side it counts
+  std::vector<SurfacePoint> targetPoints; ///< of targets, those of a brick together
 };
 
 /// Explicit scatterers, sorted by brick (see PointScatterers).

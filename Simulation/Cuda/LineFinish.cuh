@@ -9,8 +9,9 @@ namespace sono {
 
 struct FinishLaunch
 {
-  const float2* sum;      // or null: no scatterers
-  const float2* surfaces; // the same of surfaces, intensity included; or null
+  const float2* sum;       // or null: no scatterers
+  const EchoSum* surfaces; // (re, im) of surfaces, intensity included; or null
+  float surfacePerUnit;
   TracedOnDevice traced;
   const float* level; // of boundaries at each sample, or null
   Downshift downshift;
@@ -126,8 +127,8 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   }
   if (launch.surfaces)
   {
-    v.x += launch.surfaces[at].x;
-    v.y += launch.surfaces[at].y;
+    v.x += float((long long)(launch.surfaces[2 * at])) * launch.surfacePerUnit;
+    v.y += float((long long)(launch.surfaces[2 * at + 1])) * launch.surfacePerUnit;
   }
   const float level = launch.level ? launch.level[s] : 1.0f;
   if (traced.echoSums && s < traced.echoCount)

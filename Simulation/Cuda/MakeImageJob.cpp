@@ -129,68 +129,102 @@ NestedJob makeNested(const EchoSetup& setup)
   return job;
 }
 
-/// The bricks with pieces that some beam may see. Those that are not yet there are made.
-std::vector<SurfaceJob::Brick> seenPieces(const EchoSetup& setup)
+/// How far apart the ends of every n-th line lie at most.
+float widestGapMm(const std::vector<BeamReach>& beams)
 {
-  constexpr int groupLines = 8;
-  const SurfaceEchoes& surfaces = *setup.surfaces;
-  const Vec3i bricks = surfaces.pieces().bricks();
-  const int lineCount = int(setup.lines.size());
-  std::vector<std::atomic<const std::vector<SurfacePiece>*>> found(std::size_t(bricks.x) * std::size_t(bricks.y) *
-                                                                   std::size_t(bricks.z));
-  parallelFor((lineCount + groupLines - 1) / groupLines, {}, [&](int group) {
-    std::vector<BeamReach> beams;
-    for (int l = group * groupLines; l < std::min((group + 1) * groupLines, lineCount); ++l)
-    {
-      beams.push_back(
-        { setup.sceneBeam(l), setup.finisher.reachMm(l), nullptr, setup.beams.reachTable(), setup.beams.arraySight() });
-    }
-    forSeenBricks(surfaces.pieceGrid(), surfaces.seeingPieces(std::move(beams)),
-                  [&](const Vec3i& brick, const std::vector<std::size_t>&) {
-                    const std::vector<SurfacePiece>& pieces = surfaces.pieces().brick(brick);
-                    if (!pieces.empty())
-                    {
-                      found[std::size_t(brick.x + bricks.x * (brick.y + bricks.y * brick.z))] = &pieces;
-                    }
-                  });
-  });
-  std::vector<SurfaceJob::Brick> seen;
-  for (std::size_t b = 0; b < found.size(); ++b)
+  float widest = 0.0f;
+  for (std::size_t l = 1; l < beams.size(); ++l)
   {
-    if (found[b])
-    {
-      seen.push_back({ int(b), found[b] });
-    }
+    const auto endOf = [](const BeamReach& b) { return b.beam.origin + b.beam.axis * b.depthMm; };
+    widest = std::max({ widest, glm::distance(beams[l].beam.origin, beams[l - 1].beam.origin),
+                        glm::distance(endOf(beams[l]), endOf(beams[l - 1])) });
   }
-  return seen;
+  return widest;
 }
 
-TargetPointJob makeTargetPoints(const TargetPieces& targets)
+/// The blocks of pieces that some beam may see; their pieces are made where they are not there yet. Blocks are much
+/// larger than what lies between neighbouring lines: some of the lines tell.
+std::vector<int> seenBlocks(const EchoSetup& setup)
 {
-  TargetPointJob job;
-  const BrickGrid& grid = targets.grid();
-  job.edgeMm = grid.edgeMm;
-  job.firstBrick = Vec3i(glm::round(grid.lowMm / grid.edgeMm));
-  job.bricks = Vec3i(glm::round(grid.highMm / grid.edgeMm)) - job.firstBrick;
-  for (int k = 0; k < job.bricks.z; ++k)
-  {
-    for (int j = 0; j < job.bricks.y; ++j)
+  constexpr int groupLines = 8;
+  constexpr int every = 4;
+  constexpr float largestGapMm = 10.0f;
+  const SurfaceEchoes& surfaces = *setup.surfaces;
+  const SurfacePieces& pieces = surfaces.pieces();
+  const int lineCount = int(setup.lines.size());
+  const auto beamsOf = [&](int step) {
+    std::vector<BeamReach> beams;
+    const auto add = [&](int l) {
+      beams.push_back(
+        { setup.sceneBeam(l), setup.finisher.reachMm(l), nullptr, setup.beams.reachTable(), setup.beams.arraySight() });
+    };
+    for (int l = 0; l < lineCount - 1; l += step)
     {
-      for (int i = 0; i < job.bricks.x; ++i)
+      add(l);
+    }
+    add(lineCount - 1);
+    return beams;
+  };
+  // A field's sight is made for bricks.
+  const int bricks = surfaces.pieceSight() ? 1 : SurfacePieces::blockBricks;
+  std::vector<BeamReach> beams = beamsOf(every);
+  float gapMm = widestGapMm(beams);
+  if (gapMm > largestGapMm || surfaces.pieceSight())
+  {
+    beams = beamsOf(1);
+    gapMm = 0.0f;
+  }
+  BrickGrid grid = surfaces.pieceGrid();
+  grid.edgeMm *= float(bricks);
+  std::vector<std::atomic<bool>> seen(std::size_t(pieces.blockCount()));
+  const int beamCount = int(beams.size());
+  parallelFor((beamCount + groupLines - 1) / groupLines, {}, [&](int group) {
+    const auto first = beams.begin() + group * groupLines;
+    std::vector<BeamReach> own =
+      surfaces.seeingPieces({ first, first + std::min(groupLines, beamCount - group * groupLines) });
+    for (BeamReach& beam : own)
+    {
+      beam.marginMm += 0.5f * gapMm;
+    }
+    forSeenBricks(grid, own, [&](const Vec3i& brick, const std::vector<std::size_t>&) {
+      const int block = pieces.blockOf(bricks == 1 ? brick : brick * SurfacePieces::blockBricks);
+      if (block >= 0)
       {
-        const std::vector<SurfacePoint>& points = targets.brick(job.firstBrick + Vec3i(i, j, k));
-        job.ranges.push_back({ int(job.points.size()), int(points.size()) });
-        job.points.insert(job.points.end(), points.begin(), points.end());
+        seen[std::size_t(block)].store(true, std::memory_order_relaxed);
+      }
+    });
+  });
+  std::vector<int> blocks;
+  for (std::size_t b = 0; b < seen.size(); ++b)
+  {
+    if (seen[b])
+    {
+      blocks.push_back(int(b));
+    }
+  }
+  parallelFor(int(blocks.size()), {},
+              [&](int b) { pieces.forBricksOf(blocks[std::size_t(b)], [](const std::vector<SurfacePiece>&) {}); });
+  return blocks;
+}
+
+std::vector<SurfacePoint> targetPoints(const TargetPieces& targets)
+{
+  std::vector<SurfacePoint> all;
+  const BrickGrid& grid = targets.grid();
+  const Vec3i first(glm::round(grid.lowMm / grid.edgeMm));
+  const Vec3i end(glm::round(grid.highMm / grid.edgeMm));
+  for (int k = first.z; k < end.z; ++k)
+  {
+    for (int j = first.y; j < end.y; ++j)
+    {
+      for (int i = first.x; i < end.x; ++i)
+      {
+        const std::vector<SurfacePoint>& points = targets.brick(Vec3i(i, j, k));
+        all.insert(all.end(), points.begin(), points.end());
       }
     }
   }
-  float largest = 0.0f;
-  for (const SurfacePoint& p : job.points)
-  {
-    largest = std::max(largest, glm::dot(p.tangentU, p.tangentU) + glm::dot(p.tangentV, p.tangentV));
-  }
-  job.reachMm = surfaceBlobReach * std::sqrt(largest);
-  return job;
+  return all;
 }
 
 SurfaceJob makeSurfaces(const EchoSetup& setup)
@@ -201,12 +235,11 @@ SurfaceJob makeSurfaces(const EchoSetup& setup)
   {
     job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
   }
-  job.seen = seenPieces(setup);
+  job.pieces = &surfaces.pieces();
+  job.blocks = seenBlocks(setup);
   job.sceneId = setup.sources.scene->id();
-  job.bricks = surfaces.pieces().bricks();
-  job.edgeMm = surfaces.pieces().edgeMm();
-  job.marginMm = surfaces.marginMm();
-  job.net = surfaces.net();
+  job.longestStepMm = surfaces.marginMm();
+  job.nets = surfaces.nets();
   job.seed = setup.settings.seed;
   job.media = surfaces.rows().count();
   job.pieceTable = surfaces.pieceTable();
@@ -222,15 +255,12 @@ SurfaceJob makeSurfaces(const EchoSetup& setup)
   job.diffuseE = surfaces.rows().diffuseE();
   if (surfaces.pieceSight())
   {
-    job.sight = makeSight(*surfaces.pieceSight());
+    const SightJob sight = makeSight(*surfaces.pieceSight());
+    job.fieldReachMm = Vec2f(sight.lateralMm, sight.elevationalMm) + surfaces.pieceGrid().edgeMm;
   }
-  if (surfaces.targets() && surfaces.targets()->grid().highMm != surfaces.targets()->grid().lowMm)
+  if (surfaces.targets())
   {
-    job.targets = makeTargetPoints(*surfaces.targets());
-    if (surfaces.targetSight())
-    {
-      job.targets->sight = makeSight(*surfaces.targetSight());
-    }
+    job.targetPoints = targetPoints(*surfaces.targets());
   }
   return job;
 }
@@ -306,7 +336,7 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   if (setup.surfaces)
   {
     job.surfaces = makeSurfaces(setup);
-    if (job.surfaces->seen.empty() && !job.surfaces->targets)
+    if (job.surfaces->blocks.empty() && job.surfaces->targetPoints.empty())
     {
       job.surfaces.reset();
     }

@@ -11,175 +11,186 @@
 
 namespace sono {
 
+constexpr int surfaceThreads = 128;
+constexpr int surfaceSlices = 32; // blocks of a line at most
+
 struct SurfaceLaunch
 {
   SplatLaunch splat;
   TracedOnDevice traced;
   SurfaceSet set;
+  EchoSum* sums; // lines x sumCount x (re, im)
 };
 
-/// The samples of a chunk, for addSurface.
-struct ChunkSurfaceSum
+/// A line's sums in units of 1 / scale: integers, so that their order does not matter.
+struct LineSurfaceSum
 {
-  LongSums* sums;
+  EchoSum* sums;
   float scale;
-  int first;
-  int last;
 
   SONO_HD void add([[maybe_unused]] int sample, [[maybe_unused]] float re, [[maybe_unused]] float im)
   {
 #if defined(__CUDA_ARCH__)
-    const int at = 2 * (sample - first);
-    if (sample >= first && sample <= last)
-    {
-      sums->add(at, re * scale);
-      sums->add(at + 1, im * scale);
-    }
+    atomicAdd(sums + 2 * sample, EchoSum(__float2ll_rn(re * scale)));
+    atomicAdd(sums + 2 * sample + 1, EchoSum(__float2ll_rn(im * scale)));
 #endif
   }
 };
 
-/// A block adds what pieces (or points) of surfaces echo into a chunk of a line. A warp takes a row of bricks, brick by
-/// brick; its lanes look which pieces count and work on those once there are enough.
-template<BeamKind kind, class Item>
-__global__ void __launch_bounds__(blockThreads) splatSurfaceBricks(SurfaceLaunch launch)
+/// Which groups of pieces a line may hear.
+template<BeamKind kind>
+class GroupSight
 {
-  constexpr bool arePieces = std::is_same_v<Item, SurfacePiece>;
-  __shared__ LongSums sums;
-  __shared__ WarpQueue<int> queues[blockThreads / warpLanes];
-  __shared__ BeamTables tables;
-  const SplatLaunch& splat = launch.splat;
-  const SurfaceSet& set = launch.set;
-  const Chunk chunk = chunkOf(splat);
-  const Beam beam = wholeBeam(splat, chunk.line, tables);
-  const TracedOnDevice& traced = launch.traced;
-  const float deepestMm = float(splat.sumCount) * splat.sampleMm;
-  const float litToMm = litMm(traced.intensity, traced.binCount, traced.binMm, chunk.line, deepestMm);
-  // Of what lies beside its brick, and what reaches into the chunk from beside it.
-  const BeamPiece seen = pieceOf<kind>(splat, beam, chunk);
-  const float besideMm = set.marginMm + set.reachMm;
-  BeamPiece piece = seen;
-  const float grown = 1.0f + set.marginMm / fminf(seen.lateralMm, seen.elevationalMm);
-  piece.lateralMm *= grown;
-  piece.elevationalMm *= grown;
-  piece.fromMm -= besideMm;
-  piece.toMm = fminf(piece.toMm + besideMm, litToMm + set.marginMm);
-  if (!(litToMm > 0.0f && piece.fromMm < piece.toMm))
+public:
+  __device__ GroupSight(const SurfaceLaunch& launch, const Beam& beam, float litToMm)
+    : launch_(launch)
+    , beam_(beam)
+    , litToMm_(litToMm)
   {
-    return; // all of the block
   }
-  sums.clear();
-  __syncthreads();
 
-  SurfaceIntensity intensity{};
-  if (traced.intensity)
+  __device__ bool sees(const SurfaceGroup& group) const
   {
-    intensity = { traced.intensity + std::size_t(chunk.line) * traced.binCount, traced.binCount, 1.0f / traced.binMm };
-  }
-  ChunkSurfaceSum sum{ &sums, splat.scale, chunk.first, chunk.first + chunk.count - 1 };
-  // Whether any of a piece's points can reach the chunk.
-  const float aroundMm = set.spreadMm + set.reachMm;
-  // Of a table's beam the ellipse holds the bricks' centres.
-  const bool isTable = kind == BeamKind::Field || kind == BeamKind::Array;
-  const float acrossMm = set.spreadMm + (isTable ? 0.8660254f * set.edgeMm + set.marginMm : 0.0f);
-  const auto isNear = [&](const Vec3f& position) {
-    const BeamPlace place = placeInBeam(position.x, position.y, position.z, beam, splat.grid);
-    const float depthMm = place.position * splat.sampleMm;
-    if (depthMm < seen.fromMm - aroundMm || depthMm > seen.toMm + aroundMm)
+    const Vec3f q = group.centreMm - beam_.origin;
+    const float r = glm::dot(q, beam_.axis);
+    if (r < -group.radiusMm || r > litToMm_ + group.radiusMm)
     {
       return false;
     }
-    const float l = fmaxf(0.0f, fabsf(place.lateral) - acrossMm) / seen.lateralMm;
-    const float e = fmaxf(0.0f, fabsf(place.elevational) - acrossMm) / seen.elevationalMm;
-    return l * l + e * e < 1.0f;
-  };
-  const auto counts = [&](int p) {
+    const float l = fmaxf(0.0f, fabsf(glm::dot(q, beam_.lateral)) - group.radiusMm);
+    const float e = fmaxf(0.0f, fabsf(glm::dot(q, beam_.elevation)) - group.radiusMm);
+    if (kind == BeamKind::Array)
+    {
+      return launch_.splat.arraySight.sees(l * beam_.lateralCosine, e * beam_.elevationalCosine,
+                                           fmaxf(0.0f, r - group.radiusMm),
+                                           sqrtf(r * r + l * l + e * e) + 2.0f * group.radiusMm);
+    }
+    if (kind == BeamKind::Field)
+    {
+      return l < launch_.set.fieldReachMm.x && e < launch_.set.fieldReachMm.y;
+    }
+    // Between two depths a beam is widest at one of them.
+    const ProfileAt near = gaussianAt(beam_, fmaxf(0.0f, r - group.radiusMm));
+    const ProfileAt far = gaussianAt(beam_, fmaxf(0.0f, r + group.radiusMm));
+    return l * l * fminf(near.perLateral2, far.perLateral2) + e * e * fminf(near.perElevational2, far.perElevational2) <
+           1.1f * beamCutSigma * beamCutSigma;
+  }
+
+private:
+  const SurfaceLaunch& launch_;
+  const Beam& beam_;
+  float litToMm_;
+};
+
+/// A piece that a line hears.
+struct HeardPiece
+{
+  int item;
+  float lit;
+};
+
+/// Adds what pieces (or points of targets) echo into a line; the groups are shared out among the line's blocks and
+/// their warps. The lanes of a warp look which groups are near, then at the pieces of one group at a time, and work on
+/// those that are heard once there are enough.
+template<BeamKind kind, class Item>
+__global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaunch launch)
+{
+  constexpr bool arePieces = std::is_same_v<Item, SurfacePiece>;
+  constexpr int warps = surfaceThreads / warpLanes;
+  __shared__ WarpQueue<HeardPiece> diffuseQueues[warps];
+  __shared__ WarpQueue<HeardPiece> coherentQueues[warps];
+  __shared__ BeamTables tables;
+  const SplatLaunch& splat = launch.splat;
+  const SurfaceSet& set = launch.set;
+  const int line = int(blockIdx.x);
+  Beam beam = wholeBeam(splat, line, tables);
+  beam.kind = kind;
+  const TracedOnDevice& traced = launch.traced;
+  const float litToMm =
+    litMm(traced.intensity, traced.binCount, traced.binMm, line, float(splat.sumCount) * splat.sampleMm);
+  if (!(litToMm > 0.0f))
+  {
+    return; // all of the block
+  }
+  SurfaceIntensity intensity{};
+  if (traced.intensity)
+  {
+    intensity = { traced.intensity + std::size_t(line) * traced.binCount, traced.binCount, 1.0f / traced.binMm };
+  }
+  LineSurfaceSum sum{ launch.sums + 2 * std::size_t(line) * splat.sumCount, splat.scale };
+
+  const auto hear = [&](int p) {
     if constexpr (arePieces)
     {
       const SurfacePiece& item = set.pieces[p];
-      const int row = surfaceRow(set.media, item.below, item.above);
-      return isNear(item.positionMm) && pieceCounts(set.table, item, row, beam.axis);
+      const PieceBounds bounds = pieceBounds(item, set.longestStepMm);
+      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, surfaceRow(set.media, item.below, item.above),
+                         beam, splat.grid, set.table, intensity);
     }
     else
     {
-      return isNear(set.points[p].position);
+      const SurfacePoint& item = set.points[p];
+      return hearSurface(item.position, item.normal, 0.0f, item.row, beam, splat.grid, set.table, intensity);
     }
   };
-  // Whether a point's blob reaches the chunk: most of those that are near do not.
-  const auto reaches = [&](const SurfacePoint& point) {
-    const BeamPlace place = placeInBeam(point.position.x, point.position.y, point.position.z, beam, splat.grid);
-    float depth = place.position;
-    if (kind == BeamKind::Array)
-    {
-      const float aside = place.lateral * place.lateral + place.elevational * place.elevational;
-      depth = sqrtf(depth * depth + aside * splat.grid.samplesPerMm * splat.grid.samplesPerMm);
-    }
-    const float du = glm::dot(beam.axis, point.tangentU) * splat.grid.samplesPerMm;
-    const float dv = glm::dot(beam.axis, point.tangentV) * splat.grid.samplesPerMm;
-    const float reach = surfaceBlobReach * sqrtf(du * du + dv * dv + 1.0f / 6.0f) + 1.0f;
-    return depth + reach >= float(sum.first) && depth - reach <= float(sum.last);
-  };
-  const auto splatItem = [&](int p) {
+  const auto addDiffuseOf = [&](const HeardPiece& heard) {
     if constexpr (arePieces)
     {
-      const SurfacePiece item = set.pieces[p];
-      const int cuts = set.net.cuts[(item.axis + 1) % 3];
-      const int count = set.net.points(item.axis);
-      const int row = surfaceRow(set.media, item.below, item.above);
+      const SurfacePiece item = set.pieces[heard.item];
+      const int count = set.nets.diffuse.points(item.axis);
       for (int n = 0; n < count; ++n)
       {
-        SurfacePoint point = piecePoint(item, set.net, n % cuts, n / cuts);
-        if (!reaches(point))
-        {
-          continue;
-        }
-        point.row = row;
+        SurfacePoint point = piecePoint(item, set.nets.diffuse, n);
+        point.row = surfaceRow(set.media, item.below, item.above);
         const std::uint32_t phase = surfacePhase(set.seed, item.voxel, item.axis, std::uint32_t(n));
         sincospif(float(phase) * (1.0f / 128.0f), &point.phaseIm, &point.phaseRe);
-        addSurface(point, beam, splat.grid, set.table, intensity, sum);
+        addDiffuse(point, beam, splat.grid, set.table, heard.lit, sum);
       }
     }
     else
     {
-      if (reaches(set.points[p]))
+      addDiffuse(set.points[heard.item], beam, splat.grid, set.table, heard.lit, sum);
+    }
+  };
+  const auto addCoherentOf = [&](const HeardPiece& heard) {
+    if constexpr (arePieces)
+    {
+      const SurfacePiece item = set.pieces[heard.item];
+      const int count = set.nets.coherent.points(item.axis);
+      for (int n = 0; n < count; ++n)
       {
-        addSurface(set.points[p], beam, splat.grid, set.table, intensity, sum);
+        SurfacePoint point = piecePoint(item, set.nets.coherent, n);
+        point.row = surfaceRow(set.media, item.below, item.above);
+        addCoherent(point, beam, splat.grid, set.table, heard.lit, sum);
       }
+    }
+    else
+    {
+      addCoherent(set.points[heard.item], beam, splat.grid, set.table, heard.lit, sum);
     }
   };
 
-  const Vec3f low = Vec3f(set.firstBrick) * set.edgeMm;
-  const Vec3f high = Vec3f(set.firstBrick + set.bricks) * set.edgeMm;
-  const BrickSight<kind> sight(splat, beam, set.edgeMm, set.marginMm);
-  const CellRows rows(beam, piece, set.edgeMm, low, high);
-  const int rowCount = rows.rowCount();
+  const GroupSight<kind> sight(launch, beam, litToMm);
   const int lane = int(threadIdx.x) % warpLanes;
   const int warp = int(threadIdx.x) / warpLanes;
-  int queued = 0;
-  for (int r = warp; r < rowCount; r += blockThreads / warpLanes)
+  int diffuse = 0;
+  int coherent = 0;
+  for (int base = (int(blockIdx.y) * warps + warp) * warpLanes; base < set.groupCount;
+       base += int(gridDim.y) * warps * warpLanes)
   {
-    const CellRows::Row row = rows.row(r);
-    for (int n = 0; n < row.count; ++n)
+    const int own = base + lane;
+    unsigned near = __ballot_sync(allLanes, own < set.groupCount && sight.sees(set.groups[own]));
+    for (; near; near &= near - 1u)
     {
-      const Vec3i cell = rows.cell(row.layer, row.v, row.first + n);
-      const Vec3i brick = cell - set.firstBrick;
-      const Vec3f centre = (Vec3f(cell) + 0.5f) * set.edgeMm;
-      if (unsigned(brick.x) >= unsigned(set.bricks.x) || unsigned(brick.y) >= unsigned(set.bricks.y) ||
-          unsigned(brick.z) >= unsigned(set.bricks.z) || !sight.isAbove(centre, litToMm) || !sight.meets(centre))
-      {
-        continue;
-      }
-      const BrickRange range = set.ranges[brick.x + set.bricks.x * (brick.y + set.bricks.y * brick.z)];
-      for (int first = 0; first < range.count; first += warpLanes)
-      {
-        const int p = range.first + first + lane;
-        queues[warp].push(first + lane < range.count && counts(p), p, queued, splatItem);
-      }
+      const SurfaceGroup& group = set.groups[base + __ffs(int(near)) - 1];
+      const int p = group.first + lane;
+      const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, false, false };
+      diffuseQueues[warp].push(heard.diffuse, { p, heard.lit }, diffuse, addDiffuseOf);
+      coherentQueues[warp].push(heard.coherent, { p, heard.lit }, coherent, addCoherentOf);
     }
   }
-  queues[warp].finish(queued, splatItem);
-  __syncthreads();
-  writeChunk(splat, chunk, sums, true);
+  diffuseQueues[warp].finish(diffuse, addDiffuseOf);
+  coherentQueues[warp].finish(coherent, addCoherentOf);
 }
 
 } // namespace sono

@@ -41,14 +41,15 @@ Vec3f seenRadius(const BeamReach& reach, float edge, float fromMm, float toMm)
   const Beam& b = reach.beam;
   if (reach.table)
   {
-    const Vec2f seen = reach.table->widest(fromMm, toMm) * wideningOf(reach);
+    const Vec2f seen = reach.table->widest(fromMm, toMm) * wideningOf(reach) * reach.share;
     return glm::abs(b.lateral) * seen.x + glm::abs(b.elevation) * seen.y + 0.5f * edge * std::sqrt(3.0f);
   }
   if (reach.sight)
   {
     return glm::abs(b.lateral) * reach.sight->lateralMm() + glm::abs(b.elevation) * reach.sight->elevationalMm();
   }
-  return Vec3f(beamCutSigma * std::max(b.lateralSigmaMm, b.elevationalSigmaMm) + 0.5f * edge * std::sqrt(3.0f));
+  return Vec3f(beamCutSigma * reach.share * std::max(b.lateralSigmaMm, b.elevationalSigmaMm) +
+               0.5f * edge * std::sqrt(3.0f));
 }
 
 std::vector<BeamCulling> makeBeamCulling(const std::vector<BeamReach>& group, float edge)
@@ -94,11 +95,12 @@ bool sees(const BeamCulling& s, const Vec3f& centre)
     const Vec2f seen = s.reach.table->widest(r - s.axial, r + s.axial) * s.widening;
     const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / seen.x;
     const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / seen.y;
-    return dl * dl + de * de < 1.0f;
+    return dl * dl + de * de < s.reach.share * s.reach.share;
   }
   const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / b.lateralSigmaMm;
   const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / b.elevationalSigmaMm;
-  return dl * dl + de * de < beamCutSigma * beamCutSigma;
+  const float cut = beamCutSigma * s.reach.share;
+  return dl * dl + de * de < cut * cut;
 }
 
 /// The axis that the beams follow most.

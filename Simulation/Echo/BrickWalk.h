@@ -21,6 +21,7 @@ struct BeamReach
   const ArraySight* array = nullptr;     ///< of the beam's array; null when it has none
   float fromMm = 0.0f;
   float marginMm = 0.0f; ///< how far outside of its brick a scatterer may lie
+  float share = 1.0f;    ///< of a Gaussian's or an aperture's reach to the side, the part that is needed
 };
 
 /// Cubic bricks of edge `edgeMm`: brick b fills [b, b + 1) * edgeMm. Those between low and high hold scatterers.

@@ -47,6 +47,7 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
     reaching = beams;
     for (BeamReach& beam : reaching)
     {
+      beam.share = isGaussian(beam.beam) ? nestedReach : 1.0f;
       beam.fromMm = range.fromMm;
       beam.depthMm = std::min(beam.depthMm, range.toMm);
       beam.sight = setup.nestedSight.empty() ? nullptr : &setup.nestedSight[std::size_t(level - density.finest)];

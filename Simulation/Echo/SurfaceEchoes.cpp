@@ -1,5 +1,6 @@
 #include "Echo/SurfaceEchoes.h"
 
+#include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/SurfacePhase.h"
 
@@ -17,6 +18,8 @@ constexpr double blobPerLambda = 0.3;
 constexpr double blobPerSigma = 0.5;
 /// A triangle's longest edge for such a blob, three times as wide as the triangle.
 constexpr double edgePerBlob = 1.6;
+/// Diffuse echoes need no more points than speckle does.
+constexpr double diffuseStepPerLambda = 1.2;
 
 double blobMm(const EchoSettings& s, const BeamExtent& beam)
 {
@@ -34,6 +37,41 @@ std::vector<Tissue> mediaOf(const Scene& scene, const std::vector<TargetSurface>
   return media;
 }
 
+PieceCuts cutsFor(const Vec3f& spacingMm, double stepMm)
+{
+  const Vec3i cuts = glm::max(Vec3i(glm::ceil(spacingMm / float(stepMm))), Vec3i(1));
+  return { cuts, spacingMm / Vec3f(cuts) };
+}
+
+/// What one line hears of a piece.
+struct Listener
+{
+  std::size_t line;
+  SurfaceHearing hearing;
+};
+
+SONO_SIMD_CLONES __attribute__((flatten)) void addDiffusePoints(const SurfacePoint* points, int count, const Beam& beam,
+                                                                const LineGrid& grid, const SurfaceTable& table,
+                                                                float lit, float* iq)
+{
+  SurfaceSum sum{ iq };
+  for (int n = 0; n < count; ++n)
+  {
+    addDiffuse(points[n], beam, grid, table, lit, sum);
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void addCoherentPoints(const SurfacePoint* points, int count,
+                                                                 const Beam& beam, const LineGrid& grid,
+                                                                 const SurfaceTable& table, float lit, float* iq)
+{
+  SurfaceSum sum{ iq };
+  for (int n = 0; n < count; ++n)
+  {
+    addCoherent(points[n], beam, grid, table, lit, sum);
+  }
+}
+
 } // namespace
 
 SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets,
@@ -44,8 +82,9 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   const BeamExtent beam = beamExtent(beams);
   blobMm_ = sono::blobMm(settings, beam);
   rows_ = std::make_unique<SurfaceRows>(mediaOf(scene, targets), scene.outsideIndex(), settings, beam, blobMm_);
-  net_.cuts = glm::max(Vec3i(glm::ceil(pieces_.spacingMm() * float(blobPerStep / blobMm_))), Vec3i(1));
-  net_.stepMm = pieces_.spacingMm() / Vec3f(net_.cuts);
+  const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
+  nets_.coherent = cutsFor(pieces_.spacingMm(), blobMm_ / blobPerStep);
+  nets_.diffuse = cutsFor(pieces_.spacingMm(), diffuseStepPerLambda * lambdaMm);
   if (targets && !targets->empty())
   {
     targets_ = std::make_unique<TargetPieces>(scene, *targets, *rows_, edgePerBlob * blobMm_, seed_);
@@ -57,21 +96,23 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   }
 }
 
-void SurfaceEchoes::expand(const SurfacePiece& piece, std::vector<SurfacePoint>& points) const
+int SurfaceEchoes::expand(const SurfacePiece& piece, bool coherent, std::vector<SurfacePoint>& points) const
 {
   points.clear();
   const int row = rows_->row(piece.below, piece.above);
-  std::uint32_t number = 0;
-  for (int j = 0; j < net_.cuts[(piece.axis + 2) % 3]; ++j)
+  const int diffuse = nets_.diffuse.points(piece.axis);
+  for (int n = 0; n < diffuse; ++n)
   {
-    for (int i = 0; i < net_.cuts[(piece.axis + 1) % 3]; ++i)
-    {
-      SurfacePoint point = piecePoint(piece, net_, i, j);
-      point.row = row;
-      setPhases(seed_, piece.voxel, piece.axis, number++, point);
-      points.push_back(point);
-    }
+    points.push_back(piecePoint(piece, nets_.diffuse, n));
+    points.back().row = row;
+    setPhases(seed_, piece.voxel, piece.axis, std::uint32_t(n), points.back());
   }
+  for (int n = 0; coherent && n < nets_.coherent.points(piece.axis); ++n)
+  {
+    points.push_back(piecePoint(piece, nets_.coherent, n));
+    points.back().row = row;
+  }
+  return diffuse;
 }
 
 BrickGrid SurfaceEchoes::pieceGrid() const
@@ -123,36 +164,54 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
       {
         for (const std::size_t i : seeing)
         {
-          addSurface(point, exact[i].beam, grids[i], table, intensities[i], sums[i].iq.data());
+          const Beam& beam = exact[i].beam;
+          const SurfaceHearing heard =
+            hearSurface(point.position, point.normal, 0.0f, point.row, beam, grids[i], table, intensities[i]);
+          float* iq = sums[i].iq.data();
+          addDiffusePoints(&point, heard.diffuse ? 1 : 0, beam, grids[i], table, heard.lit, iq);
+          addCoherentPoints(&point, heard.coherent ? 1 : 0, beam, grids[i], table, heard.lit, iq);
         }
       }
     });
   }
   beams = seeingPieces(std::move(beams));
   const SurfaceTable table = pieceTable();
-  std::vector<std::size_t> hearing;
+  const float longestMm = marginMm();
+  std::vector<Listener> listeners;
   forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
     for (const SurfacePiece& piece : pieces_.brick(brick))
     {
       const int row = rows_->row(piece.below, piece.above);
-      hearing.clear();
+      if (!table.counts(row))
+      {
+        continue;
+      }
+      const PieceBounds bounds = pieceBounds(piece, longestMm);
+      listeners.clear();
+      bool isCoherent = false;
       for (const std::size_t i : seeing)
       {
-        if (pieceCounts(table, piece, row, exact[i].beam.axis))
+        const SurfaceHearing heard = hearSurface(piece.positionMm, bounds.normal, bounds.radiusMm, row, exact[i].beam,
+                                                 grids[i], table, intensities[i]);
+        if (heard.lit > 0.0f)
         {
-          hearing.push_back(i);
+          listeners.push_back({ i, heard });
+          isCoherent |= heard.coherent;
         }
       }
-      if (!hearing.empty())
+      if (listeners.empty())
       {
-        expand(piece, points);
-        for (const std::size_t i : hearing)
-        {
-          for (const SurfacePoint& point : points)
-          {
-            addSurface(point, exact[i].beam, grids[i], table, intensities[i], sums[i].iq.data());
-          }
-        }
+        continue;
+      }
+      const int diffuse = expand(piece, isCoherent, points);
+      for (const Listener& l : listeners)
+      {
+        const Beam& beam = exact[l.line].beam;
+        float* iq = sums[l.line].iq.data();
+        const float lit = l.hearing.lit;
+        addDiffusePoints(points.data(), l.hearing.diffuse ? diffuse : 0, beam, grids[l.line], table, lit, iq);
+        addCoherentPoints(points.data() + diffuse, l.hearing.coherent ? int(points.size()) - diffuse : 0, beam,
+                          grids[l.line], table, lit, iq);
       }
     }
   });

@@ -36,7 +36,7 @@ public:
   const TargetPieces* targets() const { return targets_.get(); }       ///< null: none
   const FieldSight* pieceSight() const { return pieceSight_.get(); }   ///< null where the beam is no field's
   const FieldSight* targetSight() const { return targetSight_.get(); } ///< the same
-  const PieceCuts& net() const { return net_; }
+  const PieceNets& nets() const { return nets_; }
   BrickGrid pieceGrid() const;
   /// How far outside of its brick a piece may lie.
   float marginMm() const;
@@ -46,7 +46,8 @@ public:
   SurfaceTable targetTable() const { return rows_->view(0.0); }
 
 private:
-  void expand(const SurfacePiece& piece, std::vector<SurfacePoint>& points) const;
+  /// Points of a piece that are heard: as many diffuse ones as are returned, then the coherent ones, if wanted.
+  int expand(const SurfacePiece& piece, bool coherent, std::vector<SurfacePoint>& points) const;
 
   const SurfacePieces& pieces_;
   std::uint64_t seed_;
@@ -55,7 +56,7 @@ private:
   std::unique_ptr<TargetPieces> targets_;
   std::unique_ptr<FieldSight> pieceSight_;
   std::unique_ptr<FieldSight> targetSight_;
-  PieceCuts net_{};
+  PieceNets nets_{};
 };
 
 } // namespace sono

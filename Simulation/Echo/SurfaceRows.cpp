@@ -123,6 +123,7 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
       SurfaceRow& out = rows_[std::size_t(row(a, b))];
       out = {};
       out.reach = -1.0f;
+      out.coherentReach = -1.0f;
       if (a == b || a == coupling)
       {
         continue;
@@ -154,12 +155,18 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
         const double coherent =
           std::abs(surfaceReflection(out, float(cosine))) * cosine *
           std::exp(-out.roughness * cosine * cosine - 0.5 * radPerMm * radPerMm * spread * pulse / (pulse + spread));
-        if (diffuse * std::sqrt(areaMm2) > surfaceFaintest || coherent * areaMm2 * perBeamArea_ > surfaceFaintest)
+        if (diffuse * std::sqrt(areaMm2) > surfaceFaintest)
         {
           out.reach = float((n + 1) / perTangent);
         }
+        if (coherent * areaMm2 * perBeamArea_ > surfaceFaintest)
+        {
+          out.coherentReach = float((n + 1) / perTangent);
+        }
       }
-      out.reach = std::min(out.reach, float((nodes - 1) / perTangent));
+      const float furthest = float((nodes - 1.5) / perTangent);
+      out.reach = std::min(out.reach, furthest);
+      out.coherentReach = std::min(out.coherentReach, furthest);
     }
   }
 }

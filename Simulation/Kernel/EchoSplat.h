@@ -114,6 +114,19 @@ SONO_HD inline ScattererSplit splitScatterer(const ComplexWeight& a, float posit
              (re * g.halfTurnRe - im * g.halfTurnIm) * fraction, (im * g.halfTurnRe + re * g.halfTurnIm) * fraction } };
 }
 
+SONO_HD inline bool isGaussian(const Beam& b)
+{
+  return b.kind == BeamKind::Aperture || b.kind == BeamKind::Gaussian;
+}
+
+/// The weight of a Gaussian beam at a depth >= 0.
+SONO_HD inline ProfileAt gaussianAt(const Beam& b, float depthMm)
+{
+  return b.kind == BeamKind::Aperture ? profileAt(b.profile, depthMm)
+                                      : ProfileAt{ 1.0f / (b.lateralSigmaMm * b.lateralSigmaMm),
+                                                   1.0f / (b.elevationalSigmaMm * b.elevationalSigmaMm), 1.0f };
+}
+
 /// What a beam makes of a unit scatterer: its complex weight, and the depth from which it echoes.
 struct BeamEcho
 {
@@ -154,6 +167,13 @@ SONO_HD inline BeamEcho beamEchoAt(const Beam& b, float lateralMm, float elevati
 SONO_HD inline float relativeWeight(const Beam& b, const Vec3f& fromOrigin, float depthMm)
 {
   const float depth = larger(depthMm, 0.0f);
+  if (isGaussian(b))
+  {
+    const ProfileAt at = gaussianAt(b, depth);
+    const float l = glm::dot(fromOrigin, b.lateral);
+    const float e = glm::dot(fromOrigin, b.elevation);
+    return expNegative(-0.5f * (l * l * at.perLateral2 + e * e * at.perElevational2));
+  }
   const ComplexWeight on = beamEchoAt(b, 0.0f, 0.0f, depth).weight;
   const ComplexWeight off =
     beamEchoAt(b, glm::dot(fromOrigin, b.lateral), glm::dot(fromOrigin, b.elevation), depth).weight;

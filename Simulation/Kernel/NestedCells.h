@@ -17,7 +17,10 @@ namespace sono {
 constexpr float nestedFinestMm = 1.0f / 32.0f; ///< edge of a cell of level 0
 constexpr int nestedLevels = 8;                ///< up to cells of 4 mm
 constexpr float nestedFullWeight = 9.0f;       ///< 1 / the weight from which on all candidates count (2.1 sigma)
-constexpr int nestedBrickCells = 4;            ///< cells along an edge of a brick, on every level
+/// Of a Gaussian beam's reach (beamCutSigma) the part in which a brick counts: beyond 3.4 sigma it would add 1e-5 of
+/// the power.
+constexpr float nestedReach = 0.85f;
+constexpr int nestedBrickCells = 4; ///< cells along an edge of a brick, on every level
 
 SONO_HD inline float nestedCellMm(int level)
 {

@@ -15,7 +15,8 @@
 
 namespace sono {
 
-/// A blob: `tangentU` and `tangentV` span its covariance, mm. The normal points from medium A into medium B.
+/// A blob: `tangentU` and `tangentV` span its covariance, mm. The normal points from medium A into medium B. Points of
+/// coherent echoes have no phase, those of diffuse ones no tangents; a triangle of a target is both.
 struct SurfacePoint
 {
   Vec3f position;
@@ -38,7 +39,8 @@ struct SurfaceRow
   float roughness;  ///< 2 (k h)^2
   float tau;        ///< of the tissue behind: exponents of the intensity and of cos t
   float gamma;
-  float reach; ///< tangent beyond which its echo does not count; < 0: it never does
+  float reach;         ///< tangent beyond which its diffuse echo does not count; < 0: it never does
+  float coherentReach; ///< the same of its coherent echo
   std::int32_t profile;
 };
 
@@ -48,6 +50,11 @@ SONO_HD inline int surfaceRow(int media, int a, int b)
   const int low = a < b ? a : b;
   const int high = a < b ? b : a;
   return 2 * (low * media + high) + (a < b ? 0 : 1);
+}
+
+SONO_HD inline bool echoes(const SurfaceRow& row)
+{
+  return row.reach >= 0.0f || row.coherentReach >= 0.0f;
 }
 
 /// What boundaries echo. A profile is the diffuse echo of a roughness with r = 1 by the tangent of the angle between
@@ -63,6 +70,9 @@ struct SurfaceTable
   float perBeamArea = 1.0f;  ///< 1 / A_b, 1/mm^2
   float slackMm = 0.0f;      ///< how far in front of a surface the tracer may have met it
   float pulseSigmaMm = 0.0f; ///< of a Gaussian pulse of the same bandwidth
+
+  /// Whether a boundary echoes to either side.
+  SONO_HD bool counts(int row) const { return echoes(rows[row]) || echoes(rows[row ^ 1]); }
 };
 
 /// r of a plane wave, with its sign; 1 beyond the critical angle.
@@ -83,172 +93,272 @@ struct SurfaceIntensity
   float perMm = 0.0f;
 };
 
-/// The largest intensity from a bin in front of `frontMm` to `depthMm`.
-SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float frontMm, float depthMm)
+/// The intensity of the last bin that lies whole in front of a depth.
+SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float frontMm)
 {
   if (!intensity.bins)
   {
     return 1.0f;
   }
-  const int end = intensity.count - 1;
-  int last = int(depthMm * intensity.perMm);
-  int first = int(frontMm * intensity.perMm) - 1;
-  last = last < end ? last : end;
-  first = first < 0 ? 0 : (first < last ? first : last);
-  float largest = intensity.bins[first];
-  for (int b = first + 1; b <= last; ++b)
-  {
-    largest = intensity.bins[b] > largest ? intensity.bins[b] : largest;
-  }
-  return largest;
+  const int bin = int(larger(frontMm, 0.0f) * intensity.perMm) - 1;
+  return intensity.bins[bin < 0 ? 0 : (bin < intensity.count ? bin : intensity.count - 1)];
 }
 
 constexpr float surfaceFaintest = 1e-6f;    ///< echoes fainter than this against a perfect mirror are left out
+constexpr float surfaceFaintestLit = 1e-9f; ///< the same with the intensity that reaches them; many may be in phase
 constexpr float surfaceCrossingMm = 4.0f;   ///< the axis' own crossing of the surface is looked for no further in front
 constexpr float surfaceBlobReach = 5.0f;    ///< deviations of a blob that are laid on the line
 constexpr float surfaceWidthShare = 0.25f;  ///< of a beam's variance are left at least when a blob's is taken off
 constexpr float surfaceShortestBlob = 0.7f; ///< samples: a Gaussian of less is no density on them
+constexpr float surfaceTangentSlack = 0.1f; ///< by so much the slope of a point may differ from its piece's
 
-/// What a Gaussian beam's weight has to be multiplied by, so that a blob smooths it to the beam's own.
-struct BlobWeight
+/// What a line hears of a piece of a surface. Nothing where the intensity is 0.
+struct SurfaceHearing
 {
-  bool isSeen;
-  float share;
+  float lit; ///< intensity in front of it, shaped by the tissue behind (section 1.3)
+  bool diffuse;
+  bool coherent;
 };
 
-SONO_HD inline BlobWeight blobWeight(const SurfacePoint& p, const Beam& b, const BeamPlace& place, float depthMm)
+/// Whether a tangent, given by the squares of cosine and sine, counts for some point of a piece.
+SONO_HD inline bool withinTangent(float reach, float cosSquared, float sinSquared)
 {
-  float perLateral2 = 1.0f / (b.lateralSigmaMm * b.lateralSigmaMm);
-  float perElevational2 = 1.0f / (b.elevationalSigmaMm * b.elevationalSigmaMm);
-  if (b.kind == BeamKind::Aperture)
-  {
-    const ProfileAt at = profileAt(b.profile, depthMm);
-    perLateral2 = at.perLateral2;
-    perElevational2 = at.perElevational2;
-  }
-  else if (b.kind != BeamKind::Gaussian)
-  {
-    return { true, 1.0f }; // a table's beam is wide against a blob
-  }
-  const float l2 = place.lateral * place.lateral * perLateral2;
-  const float e2 = place.elevational * place.elevational * perElevational2;
-  const float lu = glm::dot(b.lateral, p.tangentU);
-  const float lv = glm::dot(b.lateral, p.tangentV);
-  const float eu = glm::dot(b.elevation, p.tangentU);
-  const float ev = glm::dot(b.elevation, p.tangentV);
-  const float leftL = larger(surfaceWidthShare, 1.0f - (lu * lu + lv * lv) * perLateral2);
-  const float leftE = larger(surfaceWidthShare, 1.0f - (eu * eu + ev * ev) * perElevational2);
-  const float narrower = -0.5f * (l2 / leftL - l2 + e2 / leftE - e2);
-  return { l2 + e2 < beamCutSigma * beamCutSigma, expNegative(narrower) / sqrtf(leftL * leftE) };
+  const float wider = reach + surfaceTangentSlack;
+  return reach >= 0.0f && sinSquared < wider * wider * cosSquared;
 }
 
-/// Adds what a point echoes to the line's sum; intensity included. sum.add(sample, re, im) takes samples in [sum.first,
-/// sum.last], of which all that the point reaches are offered, and some beyond.
-template<class Sum>
-SONO_HD inline void addSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
-                               const SurfaceIntensity& intensity, Sum& sum)
+/// For a piece all of whose points lie within `radiusMm` of a position. The intensity is that in front of where the
+/// line's own axis meets the piece's plane: behind that it has fallen already.
+SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& normal, float radiusMm, int rowFromA,
+                                          const Beam& b, const LineGrid& g, const SurfaceTable& table,
+                                          const SurfaceIntensity& intensity)
 {
-  // Where the beam sees it, and how steeply.
-  BeamPlace place = placeInBeam(p.position.x, p.position.y, p.position.z, b, g);
-  if (!(place.position >= 0.0f && place.position < g.lastSample))
+  const SurfaceHearing nothing{ 0.0f, false, false };
+  const float along = glm::dot(normal, b.axis);
+  const float cosSquared = along * along;
+  const float sinSquared = larger(0.0f, 1.0f - cosSquared);
+  const SurfaceRow& row = table.rows[along < 0.0f ? rowFromA ^ 1 : rowFromA];
+  const bool diffuse = withinTangent(row.reach, cosSquared, sinSquared);
+  const bool coherent = withinTangent(row.coherentReach, cosSquared, sinSquared);
+  if (!diffuse && !coherent)
   {
-    return;
+    return nothing;
   }
-  const float signedCosine = glm::dot(p.normal, b.axis);
-  const float cosine = fabsf(signedCosine);
-  const SurfaceRow& row = table.rows[signedCosine < 0.0f ? p.row ^ 1 : p.row];
-  const float sine = sqrtf(larger(0.0f, 1.0f - cosine * cosine));
-  if (!(sine < row.reach * cosine))
+  const BeamPlace place = placeInBeam(position.x, position.y, position.z, b, g);
+  float depthMm = place.position / g.samplesPerMm;
+  if (depthMm + radiusMm < 0.0f || place.position - radiusMm * g.samplesPerMm > g.lastSample)
   {
-    return;
+    return nothing;
   }
-  const float mmPerSample = 1.0f / g.samplesPerMm;
-
-  // The beam's weight at the point, and that which, smoothed by the blob, is the beam's.
-  const BeamEcho echo = beamEchoAt(b, place.lateral, place.elevational, place.position * mmPerSample);
-  const float depthMm = echo.depthMm;
-  place.position = depthMm * g.samplesPerMm;
-  if (!(place.position < g.lastSample))
+  if (isGaussian(b))
   {
-    return;
+    const ProfileAt at = gaussianAt(b, larger(depthMm, 0.0f));
+    const float l = larger(0.0f, fabsf(place.lateral) - radiusMm);
+    const float e = larger(0.0f, fabsf(place.elevational) - radiusMm);
+    // The beam may be a little wider at the piece's other end.
+    if (l * l * at.perLateral2 + e * e * at.perElevational2 > 1.1f * beamCutSigma * beamCutSigma)
+    {
+      return nothing;
+    }
   }
-  const BlobWeight blob = blobWeight(p, b, place, depthMm);
-  if (!blob.isSeen)
+  else if (b.kind == BeamKind::Array)
   {
-    return;
+    depthMm = quickSqrt(depthMm * depthMm + place.lateral * place.lateral + place.elevational * place.elevational);
   }
-
-  // The intensity in front of where the line's own axis meets the surface: behind that it has fallen already.
-  const float normalL = glm::dot(p.normal, b.lateral);
-  const float normalE = glm::dot(p.normal, b.elevation);
-  const float ahead = (normalL * place.lateral + normalE * place.elevational) / signedCosine;
+  const float ahead =
+    (glm::dot(normal, b.lateral) * place.lateral + glm::dot(normal, b.elevation) * place.elevational) / along;
   const float front = depthMm + larger(-surfaceCrossingMm, smaller(0.0f, ahead)) - table.slackMm;
-  float shaped = intensityInFront(intensity, front, depthMm);
+  float lit = intensityInFront(intensity, front);
   if (row.tau != 1.0f)
   {
-    shaped = powf(shaped, row.tau);
+    lit = powf(lit, row.tau);
   }
   if (row.gamma != 0.0f)
   {
-    shaped *= powf(cosine, row.gamma);
+    lit *= powf(fabsf(along), row.gamma);
   }
+  return lit > surfaceFaintestLit ? SurfaceHearing{ lit, diffuse, coherent } : nothing;
+}
 
-  // Diffuse: a scatterer of random phase.
-  const float node = sine / cosine * table.perTangent;
+/// How a beam meets a point of a surface.
+struct SurfaceMeeting
+{
+  BeamPlace place;
+  float signedCosine;
+  float cosSquared;
+  float sinSquared;
+  const SurfaceRow* row;
+  ComplexWeight weight;
+  ProfileAt at; ///< of a Gaussian
+};
+
+/// False where the beam does not see the point.
+SONO_HD inline bool meetSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
+                                SurfaceMeeting& m)
+{
+  m.place = placeInBeam(p.position.x, p.position.y, p.position.z, b, g);
+  if (!(m.place.position >= 0.0f && m.place.position < g.lastSample))
+  {
+    return false;
+  }
+  m.signedCosine = glm::dot(p.normal, b.axis);
+  m.cosSquared = m.signedCosine * m.signedCosine;
+  m.sinSquared = larger(0.0f, 1.0f - m.cosSquared);
+  m.row = &table.rows[m.signedCosine < 0.0f ? p.row ^ 1 : p.row];
+  const float alongMm = m.place.position / g.samplesPerMm;
+  if (!isGaussian(b))
+  {
+    const BeamEcho echo = beamEchoAt(b, m.place.lateral, m.place.elevational, alongMm);
+    m.weight = echo.weight;
+    m.place.position = echo.depthMm * g.samplesPerMm;
+    return m.place.position < g.lastSample;
+  }
+  m.at = gaussianAt(b, alongMm);
+  const float squared = m.place.lateral * m.place.lateral * m.at.perLateral2 +
+                        m.place.elevational * m.place.elevational * m.at.perElevational2;
+  m.weight = { m.at.amplitude * expNegative(-0.5f * squared), 0.0f };
+  return squared < beamCutSigma * beamCutSigma;
+}
+
+/// What is too faint where so much light falls.
+SONO_HD inline float faintestAt(float lit)
+{
+  return larger(surfaceFaintest, surfaceFaintestLit / lit);
+}
+
+/// An amplitude at a place between two samples.
+template<class Sum>
+SONO_HD inline void addBetween(const ComplexWeight& w, const ComplexWeight& a, float lit, float position,
+                               const LineGrid& g, Sum& sum)
+{
+  const ScattererSplit split = splitScatterer(lit, position, g);
+  const float re = w.re * a.re - w.im * a.im;
+  const float im = w.re * a.im + w.im * a.re;
+  const int sample = int(split.sample);
+  sum.add(sample, split.added[0] * re - split.added[1] * im, split.added[1] * re + split.added[0] * im);
+  sum.add(sample + 1, split.added[2] * re - split.added[3] * im, split.added[3] * re + split.added[2] * im);
+}
+
+/// Adds the diffuse echo of a point, a scatterer of random phase, to the line's sum. sum.add(sample, re, im).
+template<class Sum>
+SONO_HD inline void addDiffuse(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
+                               float lit, Sum& sum)
+{
+  SurfaceMeeting m;
+  if (!meetSurface(p, b, g, table, m))
+  {
+    return;
+  }
+  const SurfaceRow& row = *m.row;
+  if (!(row.reach >= 0.0f && m.sinSquared < row.reach * row.reach * m.cosSquared))
+  {
+    return;
+  }
+  const float normalL = glm::dot(p.normal, b.lateral);
+  const float normalE = glm::dot(p.normal, b.elevation);
+  const float node = quickSqrt(m.sinSquared) / fabsf(m.signedCosine) * table.perTangent;
   const int before = int(node);
   const float share = node - float(before);
-  const int at = row.profile * table.nodes + before;
-  const float logL = table.diffuseL[at] + share * (table.diffuseL[at + 1] - table.diffuseL[at]);
-  const float logE = table.diffuseE[at] + share * (table.diffuseE[at + 1] - table.diffuseE[at]);
+  const int n = row.profile * table.nodes + before;
+  const float logL = table.diffuseL[n] + share * (table.diffuseL[n + 1] - table.diffuseL[n]);
+  const float logE = table.diffuseE[n] + share * (table.diffuseE[n + 1] - table.diffuseE[n]);
   const float across = normalL * normalL + normalE * normalE;
   const float lateralShare = across > 1e-12f ? normalL * normalL / across : 0.5f;
   const float diffuse =
-    expNegative(smaller(0.0f, row.logDiffuse + logE + lateralShare * (logL - logE))) * sqrtf(p.areaMm2);
-  const ComplexWeight w = echo.weight;
-  const float modulus = larger(fabsf(w.re), fabsf(w.im));
-  const bool isDiffuse = diffuse * modulus > surfaceFaintest;
-  const float coherent = surfaceReflection(row, cosine) * cosine * expNegative(-row.roughness * cosine * cosine) *
-                         p.areaMm2 * table.perBeamArea * blob.share;
+    expNegative(smaller(0.0f, row.logDiffuse + logE + lateralShare * (logL - logE))) * quickSqrt(p.areaMm2);
+  if (diffuse * larger(fabsf(m.weight.re), fabsf(m.weight.im)) > faintestAt(lit))
+  {
+    addBetween(m.weight, { diffuse * p.phaseRe, diffuse * p.phaseIm }, lit, m.place.position, g, sum);
+  }
+}
 
-  // Coherent: a Gaussian of this deviation in depth. Splitting a point between two samples widens by a sixth of a
-  // sample's square, which the pulse takes off again: so does the density.
+/// Adds a Gaussian density of this sum and deviation, in samples, to a line. Its values follow from each other: the
+/// quotients of neighbouring ones are a geometric series.
+template<class Sum>
+SONO_HD inline void addDensity(float total, const ComplexWeight& w, float position, float deviation, const LineGrid& g,
+                               Sum& sum)
+{
+  const float a = 0.5f / (deviation * deviation);
+  const float peak = total * 0.39894228f / deviation;
+  const float quotient = expNegative(-2.0f * a);
+  const float reach = surfaceBlobReach * deviation;
+  const int middle = int(position);
+  const float before = position - float(middle);
+  const float behind = 1.0f - before;
+  int last = int(position + reach);
+  const int first = int(larger(position - reach, -1.0f) + 1.0f);
+  last = last < int(g.lastSample) ? last : int(g.lastSample);
+  float value = peak * expNegative(-a * behind * behind);
+  float step = expNegative(-a * (2.0f * behind + 1.0f));
+  for (int s = middle + 1; s <= last; ++s)
+  {
+    sum.add(s, w.re * value, w.im * value);
+    value *= step;
+    step *= quotient;
+  }
+  value = peak * expNegative(-a * before * before);
+  step = expNegative(-a * (2.0f * before + 1.0f));
+  for (int s = middle; s >= first; --s)
+  {
+    sum.add(s, w.re * value, w.im * value);
+    value *= step;
+    step *= quotient;
+  }
+}
+
+/// Adds the coherent echo of a point: a Gaussian of its blob's deviation in depth.
+template<class Sum>
+SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
+                                float lit, Sum& sum)
+{
+  SurfaceMeeting m;
+  if (!meetSurface(p, b, g, table, m))
+  {
+    return;
+  }
+  const SurfaceRow& row = *m.row;
+  if (!(row.coherentReach >= 0.0f && m.sinSquared < row.coherentReach * row.coherentReach * m.cosSquared))
+  {
+    return;
+  }
+  const float cosine = fabsf(m.signedCosine);
+  const float coherent = surfaceReflection(row, cosine) * cosine * expNegative(-row.roughness * m.cosSquared) *
+                         p.areaMm2 * table.perBeamArea;
+  ComplexWeight w = m.weight;
+  if (isGaussian(b))
+  {
+    // Smoothed by the blob, the beam's weight is to be the beam's own. A table's beam is wide against a blob.
+    const float lu = glm::dot(b.lateral, p.tangentU);
+    const float lv = glm::dot(b.lateral, p.tangentV);
+    const float eu = glm::dot(b.elevation, p.tangentU);
+    const float ev = glm::dot(b.elevation, p.tangentV);
+    const float leftL = larger(surfaceWidthShare, 1.0f - (lu * lu + lv * lv) * m.at.perLateral2);
+    const float leftE = larger(surfaceWidthShare, 1.0f - (eu * eu + ev * ev) * m.at.perElevational2);
+    const float squared = m.place.lateral * m.place.lateral * m.at.perLateral2 / leftL +
+                          m.place.elevational * m.place.elevational * m.at.perElevational2 / leftE;
+    w.re = m.at.amplitude * expNegative(-0.5f * squared) / quickSqrt(leftL * leftE);
+  }
+  // Splitting a point between two samples widens by a sixth of a sample's square, which the pulse takes off again: so
+  // does the density.
   const float du = glm::dot(b.axis, p.tangentU) * g.samplesPerMm;
   const float dv = glm::dot(b.axis, p.tangentV) * g.samplesPerMm;
   const float spread = du * du + dv * dv;
   const float phaseSquared = spread * g.radPerSample * g.radPerSample;
-  const float deviation = sqrtf(spread + 1.0f / 6.0f);
-  const bool isPoint = deviation < surfaceShortestBlob;
   // What the pulse's band leaves of it (eq. 10.6).
   const float pulse = table.pulseSigmaMm * g.samplesPerMm;
   const float left = expNegative(-0.5f * phaseSquared * pulse * pulse / (pulse * pulse + spread));
-  const bool isCoherent = fabsf(coherent) * modulus * left > surfaceFaintest;
-  if (isDiffuse || (isCoherent && isPoint))
+  if (!(fabsf(coherent) * larger(fabsf(w.re), fabsf(w.im)) * left > faintestAt(lit)))
   {
-    const ScattererSplit split = splitScatterer(shaped, place.position, g);
-    const float point = isCoherent && isPoint ? coherent * expNegative(-0.5f * phaseSquared) : 0.0f;
-    const float unitRe = point + (isDiffuse ? diffuse * p.phaseRe : 0.0f);
-    const float unitIm = isDiffuse ? diffuse * p.phaseIm : 0.0f;
-    const float re = w.re * unitRe - w.im * unitIm;
-    const float im = w.re * unitIm + w.im * unitRe;
-    const int sample = int(split.sample);
-    sum.add(sample, split.added[0] * re - split.added[1] * im, split.added[1] * re + split.added[0] * im);
-    sum.add(sample + 1, split.added[2] * re - split.added[3] * im, split.added[3] * re + split.added[2] * im);
+    return;
   }
-  if (isCoherent && !isPoint)
+  const float deviation = quickSqrt(spread + 1.0f / 6.0f);
+  if (deviation < surfaceShortestBlob)
   {
-    const float reach = surfaceBlobReach * deviation;
-    const float peak = coherent * shaped * 0.39894228f / deviation;
-    const float perVariance = -0.5f / (deviation * deviation);
-    int first = int(place.position - reach) + 1;
-    int last = int(place.position + reach);
-    first = first > sum.first ? first : sum.first;
-    last = last < sum.last ? last : sum.last;
-    for (int s = first; s <= last; ++s)
-    {
-      const float d = float(s) - place.position;
-      const float density = peak * expNegative(perVariance * d * d);
-      sum.add(s, w.re * density, w.im * density);
-    }
+    addBetween(w, { coherent * expNegative(-0.5f * phaseSquared), 0.0f }, lit, m.place.position, g, sum);
+  }
+  else
+  {
+    addDensity(coherent * lit, w, m.place.position, deviation, g, sum);
   }
 }
 
@@ -256,8 +366,6 @@ SONO_HD inline void addSurface(const SurfacePoint& p, const Beam& b, const LineG
 struct SurfaceSum
 {
   float* iq;
-  int first;
-  int last;
 
   SONO_HD void add(int sample, float re, float im)
   {
@@ -265,12 +373,5 @@ struct SurfaceSum
     iq[2 * sample + 1] += im;
   }
 };
-
-inline void addSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
-                       const SurfaceIntensity& intensity, float* iq)
-{
-  SurfaceSum sum{ iq, 0, int(g.lastSample) };
-  addSurface(p, b, g, table, intensity, sum);
-}
 
 } // namespace sono

@@ -39,6 +39,13 @@ struct PieceCuts
   SONO_HD int points(int axis) const { return cuts[(axis + 1) % 3] * cuts[(axis + 2) % 3]; }
 };
 
+/// Coherent echoes want points close together. Diffuse ones have random phases: fewer do.
+struct PieceNets
+{
+  PieceCuts coherent;
+  PieceCuts diffuse;
+};
+
 /// Deviation of a blob on a square net of step 1: the net shows through by exp(-2 pi^2 0.49) = 6e-5.
 constexpr double blobPerStep = 0.7;
 
@@ -52,26 +59,31 @@ SONO_HD inline std::uint32_t surfacePhase(std::uint64_t seed, const Vec3i& cell,
   return (w.v[(number >> 2) & 3u] >> (8u * (number & 3u))) & 255u;
 }
 
-/// Whether a beam's axis is steep enough against the boundary for any of the piece's points to count.
-SONO_HD inline bool pieceCounts(const SurfaceTable& table, const SurfacePiece& piece, int row, const Vec3f& beamAxis)
+/// Unit normal of a piece in its middle, and how far its points may lie from there.
+struct PieceBounds
+{
+  Vec3f normal;
+  float radiusMm;
+};
+
+SONO_HD inline PieceBounds pieceBounds(const SurfacePiece& piece, float longestStepMm)
 {
   Vec3f normal(0.0f);
   normal[piece.axis] = 1.0f;
   normal[(piece.axis + 1) % 3] = -piece.slopeU;
   normal[(piece.axis + 2) % 3] = -piece.slopeV;
-  const float along = glm::dot(normal, beamAxis);
-  // A little more, since its points' normals differ.
-  const float reach = table.rows[along < 0.0f ? row ^ 1 : row].reach + 0.1f;
-  const float squared = along * along;
-  return reach > 0.1f && glm::dot(normal, normal) - squared < reach * reach * squared;
+  const float stretch = sqrtf(glm::dot(normal, normal));
+  return { normal / stretch, 0.70710678f * longestStepMm * stretch };
 }
 
-/// Point (i, j) of a piece, all but its row and its phase.
-SONO_HD inline SurfacePoint piecePoint(const SurfacePiece& piece, const PieceCuts& net, int i, int j)
+/// Point `number` of a piece, all but its row and its phase.
+SONO_HD inline SurfacePoint piecePoint(const SurfacePiece& piece, const PieceCuts& net, int number)
 {
   const int axis = piece.axis;
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
+  const int i = number % net.cuts[u];
+  const int j = number / net.cuts[u];
   const float du = (float(i) + 0.5f - 0.5f * float(net.cuts[u])) * net.stepMm[u];
   const float dv = (float(j) + 0.5f - 0.5f * float(net.cuts[v])) * net.stepMm[v];
   const float slopeU = piece.slopeU + piece.bendUU * du + piece.bendUV * dv;

@@ -451,6 +451,7 @@ SurfacePieces::SurfacePieces(const std::uint8_t* tissues, const Vec3i& size, con
   , sizeMm_(Vec3d(size) * spacingMm)
   , edgeMm_(float(6.0 * std::max({ spacingMm.x, spacingMm.y, spacingMm.z })))
   , bricks_(Vec3i(glm::floor(sizeMm_ / edgeMm_)) + 1)
+  , blocks_((bricks_ - 1) / blockBricks + 1)
   , made_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z))
 {
 }
@@ -483,6 +484,31 @@ const std::vector<SurfacePiece>& SurfacePieces::brick(const Vec3i& brick) const
     }
   }
   return *there;
+}
+
+int SurfacePieces::blockOf(const Vec3i& brick) const
+{
+  if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))
+  {
+    return -1;
+  }
+  const Vec3i block = brick / blockBricks;
+  return block.x + blocks_.x * (block.y + blocks_.y * block.z);
+}
+
+void SurfacePieces::forBricksOf(int block, const std::function<void(const std::vector<SurfacePiece>&)>& visit) const
+{
+  const Vec3i first =
+    blockBricks * Vec3i(block % blocks_.x, block / blocks_.x % blocks_.y, block / blocks_.x / blocks_.y);
+  for (int n = 0; n < blockBricks * blockBricks * blockBricks; ++n)
+  {
+    const Vec3i within(n % blockBricks, n / blockBricks % blockBricks, n / blockBricks / blockBricks);
+    const std::vector<SurfacePiece>& pieces = brick(first + within);
+    if (!pieces.empty())
+    {
+      visit(pieces);
+    }
+  }
 }
 
 std::vector<SurfacePiece> SurfacePieces::make(const Vec3i& brick) const

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,13 @@ public:
   const Vec3f& spacingMm() const { return spacingMm_; }
   /// Bricks of the volume along each axis.
   const Vec3i& bricks() const { return bricks_; }
+  /// Blocks of bricks, for whoever takes many at once.
+  static constexpr int blockBricks = 4; ///< along an edge
+  int blockCount() const { return blocks_.x * blocks_.y * blocks_.z; }
+  /// The block of a brick; -1: outside of the volume.
+  int blockOf(const Vec3i& brick) const;
+  /// Visits the pieces of a block, brick by brick, those bricks that have any.
+  void forBricksOf(int block, const std::function<void(const std::vector<SurfacePiece>&)>& visit) const;
   /// None outside of the volume. Stays where it is while this lives.
   const std::vector<SurfacePiece>& brick(const Vec3i& brick) const;
 
@@ -48,6 +56,7 @@ private:
   Vec3f sizeMm_;
   float edgeMm_;
   Vec3i bricks_;
+  Vec3i blocks_;
   mutable Bricks made_;
 };
 
