@@ -101,17 +101,23 @@ void DeviceEcho::uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& tr
   }
 }
 
-/// Of each chunk the ellipse around the axis that holds all that a beam straight ahead sees.
-void DeviceEcho::uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm,
-                             Sight& sight, cudaStream_t stream, Traffic& traffic)
+void DeviceEcho::uploadFieldSight(const std::optional<SightJob>& job, Sight& sight, cudaStream_t stream,
+                                  Traffic& traffic)
 {
-  sigmas_ = Vec2f(beams.front().lateralSigmaMm, beams.front().elevationalSigmaMm);
   if (job)
   {
     sight.seen.upload(job->seen, stream, traffic);
     sight.view = job->view;
     sight.view.seen = sight.seen.data();
   }
+}
+
+/// Of each chunk the ellipse around the axis that holds all that a beam straight ahead sees.
+void DeviceEcho::uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm,
+                             Sight& sight, cudaStream_t stream, Traffic& traffic)
+{
+  sigmas_ = Vec2f(beams.front().lateralSigmaMm, beams.front().elevationalSigmaMm);
+  uploadFieldSight(job, sight, stream, traffic);
   Vec2f widening(1.0f);
   for (const Beam& beam : beams)
   {
@@ -189,16 +195,17 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStr
   {
     largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
   }
-  nestedScale_ =
-    scaleFor(largest * DensityView::amplitudeScale(density_.coarsest, 1) * std::max(1.0f, float(beam.largestWeight)));
+  // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
+  largest *= DensityView::amplitudeScale(density_.coarsest, 1) * std::max(1.0f, float(beam.largestWeight));
+  nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
 }
 
 namespace {
 
-/// Adds items [first, end) as groups.
+/// Adds items [first, end), all of a brick, as groups.
 template<class Item, class Bounds>
-void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t end, const Bounds& ballOf,
-               std::vector<SurfaceGroup>& groups)
+void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t end, const Vec3f& brickMm,
+               const Bounds& ballOf, std::vector<SurfaceGroup>& groups)
 {
   while (first < end)
   {
@@ -211,7 +218,7 @@ void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t en
       low = glm::min(low, centre - radius);
       high = glm::max(high, centre + radius);
     }
-    groups.push_back({ 0.5f * (low + high), 0.5f * glm::length(high - low), int(first), int(last - first) });
+    groups.push_back({ brickMm, 0.5f * (low + high), 0.5f * glm::length(high - low), int(first), int(last - first) });
     first = last;
   }
 }
@@ -240,10 +247,10 @@ void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffi
     if (!pieceBlocks_[std::size_t(block)])
     {
       pieceBlocks_[std::size_t(block)] = true;
-      scene.forBricksOf(block, [&](const std::vector<SurfacePiece>& pieces) {
+      scene.forBricksOf(block, [&](const Vec3i& brick, const std::vector<SurfacePiece>& pieces) {
         const std::size_t first = pieces_.size();
         pieces_.insert(pieces_.end(), pieces.begin(), pieces.end());
-        addGroups(pieces_, first, pieces_.size(), ballOf, pieceGroups_);
+        addGroups(pieces_, first, pieces_.size(), (Vec3f(brick) + 0.5f) * scene.edgeMm(), ballOf, pieceGroups_);
       });
     }
   }
@@ -275,21 +282,30 @@ void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cuda
   pieceSet_.longestStepMm = job.longestStepMm;
   pieceSet_.media = job.media;
   pieceSet_.nets = job.nets;
-  pieceSet_.fieldReachMm = job.fieldReachMm;
+  pieceSet_.edgeMm = job.pieces->edgeMm();
+  pieceSet_.marginMm = job.longestStepMm;
   pieceSet_.seed = job.seed;
-  targets_ = !job.targetPoints.empty();
+  uploadFieldSight(job.sight, pieceSight_, stream, traffic);
+  targets_ = job.targets.has_value();
   if (targets_)
   {
+    const TargetPointJob& targets = *job.targets;
     std::vector<SurfaceGroup> groups;
     const auto ballOf = [](const SurfacePoint& point) { return std::pair<Vec3f, float>(point.position, 0.0f); };
-    addGroups(job.targetPoints, 0, job.targetPoints.size(), ballOf, groups);
-    targetPoints_.upload(job.targetPoints, stream, traffic);
+    for (const TargetPointJob::Brick& brick : targets.bricks)
+    {
+      addGroups(targets.points, std::size_t(brick.first), std::size_t(brick.end), brick.centreMm, ballOf, groups);
+    }
+    targetPoints_.upload(targets.points, stream, traffic);
     targetGroups_.upload(groups, stream, traffic);
     targetSet_ = pieceSet_;
     targetSet_.table = withTables(job.targetTable);
     targetSet_.groups = targetGroups_.data();
     targetSet_.groupCount = int(groups.size());
     targetSet_.points = targetPoints_.data();
+    targetSet_.edgeMm = targets.edgeMm;
+    targetSet_.marginMm = 0.0f;
+    uploadFieldSight(targets.sight, targetSight_, stream, traffic);
   }
   // A perfect mirror across the whole beam echoes 1; a point of it far less.
   surfaceScale_ = 536870912.0f / std::max(1.0f, float(beam.largestWeight));
@@ -488,19 +504,19 @@ void DeviceEcho::splatSurfaces(int first, int count, const TracedOnDevice& trace
 {
   surfaceSum_.resize(2 * std::size_t(count) * sumCount_);
   surfaceSum_.clear(stream);
-  const auto launchFor = [&](const SurfaceSet& set) {
-    return SurfaceLaunch{ splat(surfaceBeams_.data() + first, surfaceScale_, {}), traced, set, surfaceSum_.data() };
+  const auto launchFor = [&](const SurfaceSet& set, const Sight& sight) {
+    return SurfaceLaunch{ splat(surfaceBeams_.data() + first, surfaceScale_, sight), traced, set, surfaceSum_.data() };
   };
   const auto gridFor = [&](const SurfaceSet& set) {
     return dim3(count, std::clamp((set.groupCount + surfaceThreads - 1) / surfaceThreads, 1, surfaceSlices));
   };
   withKind(kind_, [&](auto kind) {
     splatSurfaceGroups<kind.value, SurfacePiece>
-      <<<gridFor(pieceSet_), surfaceThreads, 0, stream>>>(launchFor(pieceSet_));
+      <<<gridFor(pieceSet_), surfaceThreads, 0, stream>>>(launchFor(pieceSet_, pieceSight_));
     if (targets_)
     {
       splatSurfaceGroups<kind.value, SurfacePoint>
-        <<<gridFor(targetSet_), surfaceThreads, 0, stream>>>(launchFor(targetSet_));
+        <<<gridFor(targetSet_), surfaceThreads, 0, stream>>>(launchFor(targetSet_, targetSight_));
     }
   });
 }

@@ -23,9 +23,11 @@ struct TracedOnDevice
   const float2* echo = nullptr; ///< or lines x sumCount amplitudes
 };
 
-/// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them.
+/// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them. They lie in a
+/// brick.
 struct SurfaceGroup
 {
+  Vec3f brickMm; ///< its centre
   Vec3f centreMm;
   float radiusMm;
   int first;
@@ -41,9 +43,10 @@ struct SurfaceSet
   const SurfacePiece* pieces;
   const SurfacePoint* points;
   float longestStepMm; ///< between voxels
+  float edgeMm;        ///< of a brick
+  float marginMm;      ///< how far outside of its brick a piece may lie
   int media;
   PieceNets nets;
-  Vec2f fieldReachMm; ///< of a Field: how far to the side it counts
   std::uint64_t seed; ///< of the points' phases
 };
 
@@ -74,6 +77,7 @@ private:
   };
   void uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& traffic);
+  static void uploadFieldSight(const std::optional<SightJob>& job, Sight& sight, cudaStream_t stream, Traffic& traffic);
   void uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm, Sight& sight,
                    cudaStream_t stream, Traffic& traffic);
   /// What a launch for these beams holds.
@@ -149,6 +153,7 @@ private:
   bool targets_ = false;
   DeviceArray<SurfacePoint> targetPoints_;
   DeviceArray<SurfaceGroup> targetGroups_;
+  Sight pieceSight_, targetSight_; ///< of a field
   float surfaceScale_ = 1.0f;
   DeviceArray<EchoSum> surfaceSum_; ///< lines x sumCount x (re, im)
 

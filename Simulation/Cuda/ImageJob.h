@@ -125,6 +125,23 @@ struct NestedJob
   std::vector<SightJob> sights;                ///< of each level, where there is a field
 };
 
+/// The surfaces of targets as points, sorted by brick.
+struct TargetPointJob
+{
+  /// Points [first, end).
+  struct Brick
+  {
+    Vec3f centreMm;
+    int first;
+    int end;
+  };
+
+  std::vector<SurfacePoint> points;
+  std::vector<Brick> bricks; ///< those with points
+  float edgeMm = 1.0f;
+  std::optional<SightJob> sight;
+};
+
 /// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
 struct SurfaceJob
 {
@@ -141,8 +158,8 @@ struct SurfaceJob
   std::vector<SurfaceRow> rows;
   std::vector<float> diffuseL;
   std::vector<float> diffuseE;
-  Vec2f fieldReachMm{ 0.0f };             ///< of a field: how far to the side it counts
-  std::vector<SurfacePoint> targetPoints; ///< of targets, those of a brick together
+  std::optional<SightJob> sight; ///< of the pieces' bricks
+  std::optional<TargetPointJob> targets;
 };
 
 /// Explicit scatterers, sorted by brick (see PointScatterers).

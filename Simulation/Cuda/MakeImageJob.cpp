@@ -202,15 +202,15 @@ std::vector<int> seenBlocks(const EchoSetup& setup)
       blocks.push_back(int(b));
     }
   }
-  parallelFor(int(blocks.size()), {},
-              [&](int b) { pieces.forBricksOf(blocks[std::size_t(b)], [](const std::vector<SurfacePiece>&) {}); });
+  parallelFor(int(blocks.size()), {}, [&](int b) { pieces.makeBlock(blocks[std::size_t(b)]); });
   return blocks;
 }
 
-std::vector<SurfacePoint> targetPoints(const TargetPieces& targets)
+TargetPointJob makeTargetPoints(const TargetPieces& targets)
 {
-  std::vector<SurfacePoint> all;
+  TargetPointJob job;
   const BrickGrid& grid = targets.grid();
+  job.edgeMm = grid.edgeMm;
   const Vec3i first(glm::round(grid.lowMm / grid.edgeMm));
   const Vec3i end(glm::round(grid.highMm / grid.edgeMm));
   for (int k = first.z; k < end.z; ++k)
@@ -220,11 +220,16 @@ std::vector<SurfacePoint> targetPoints(const TargetPieces& targets)
       for (int i = first.x; i < end.x; ++i)
       {
         const std::vector<SurfacePoint>& points = targets.brick(Vec3i(i, j, k));
-        all.insert(all.end(), points.begin(), points.end());
+        if (!points.empty())
+        {
+          const int before = int(job.points.size());
+          job.points.insert(job.points.end(), points.begin(), points.end());
+          job.bricks.push_back({ (Vec3f(i, j, k) + 0.5f) * grid.edgeMm, before, int(job.points.size()) });
+        }
       }
     }
   }
-  return all;
+  return job;
 }
 
 SurfaceJob makeSurfaces(const EchoSetup& setup)
@@ -255,12 +260,15 @@ SurfaceJob makeSurfaces(const EchoSetup& setup)
   job.diffuseE = surfaces.rows().diffuseE();
   if (surfaces.pieceSight())
   {
-    const SightJob sight = makeSight(*surfaces.pieceSight());
-    job.fieldReachMm = Vec2f(sight.lateralMm, sight.elevationalMm) + surfaces.pieceGrid().edgeMm;
+    job.sight = makeSight(*surfaces.pieceSight());
   }
-  if (surfaces.targets())
+  if (surfaces.targets() && surfaces.targets()->grid().highMm != surfaces.targets()->grid().lowMm)
   {
-    job.targetPoints = targetPoints(*surfaces.targets());
+    job.targets = makeTargetPoints(*surfaces.targets());
+    if (surfaces.targetSight())
+    {
+      job.targets->sight = makeSight(*surfaces.targetSight());
+    }
   }
   return job;
 }
@@ -336,7 +344,7 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   if (setup.surfaces)
   {
     job.surfaces = makeSurfaces(setup);
-    if (job.surfaces->blocks.empty() && job.surfaces->targetPoints.empty())
+    if (job.surfaces->blocks.empty() && !job.surfaces->targets)
     {
       job.surfaces.reset();
     }

@@ -31,9 +31,9 @@ struct NestedLaunch
 /// A block adds what the bricks of one level echo into a chunk of a line. Lanes of a warp look at rows of bricks, then
 /// at their bricks, then at the bricks' candidates, each time as many at once as there are.
 template<BeamKind kind>
-__global__ void __launch_bounds__(blockThreads) splatNestedCells(NestedLaunch launch)
+__global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch launch)
 {
-  __shared__ LongSums sums;
+  __shared__ ShortSums sums;
   __shared__ ScatteringMedium media[256];
   __shared__ float fibreScale[256];
   __shared__ BeamTables tables;
@@ -44,6 +44,11 @@ __global__ void __launch_bounds__(blockThreads) splatNestedCells(NestedLaunch la
   const float litToMm =
     litMm(launch.traced.intensity, launch.traced.binCount, launch.traced.binMm, chunk.line, deepestMm);
   BeamPiece piece = pieceOf<kind>(splat, beam, chunk);
+  if (kind == BeamKind::Gaussian || kind == BeamKind::Aperture)
+  {
+    piece.lateralMm *= nestedReach;
+    piece.elevationalMm *= nestedReach;
+  }
   piece.fromMm = fmaxf(piece.fromMm, launch.fromMm);
   piece.toMm = fminf(piece.toMm, fminf(launch.toMm, litToMm));
   if (!(piece.fromMm < piece.toMm))

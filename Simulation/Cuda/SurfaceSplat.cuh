@@ -43,8 +43,8 @@ class GroupSight
 {
 public:
   __device__ GroupSight(const SurfaceLaunch& launch, const Beam& beam, float litToMm)
-    : launch_(launch)
-    , beam_(beam)
+    : beam_(beam)
+    , bricks_(launch.splat, beam, launch.set.edgeMm, launch.set.marginMm)
     , litToMm_(litToMm)
   {
   }
@@ -59,15 +59,9 @@ public:
     }
     const float l = fmaxf(0.0f, fabsf(glm::dot(q, beam_.lateral)) - group.radiusMm);
     const float e = fmaxf(0.0f, fabsf(glm::dot(q, beam_.elevation)) - group.radiusMm);
-    if (kind == BeamKind::Array)
+    if (kind == BeamKind::Array || kind == BeamKind::Field)
     {
-      return launch_.splat.arraySight.sees(l * beam_.lateralCosine, e * beam_.elevationalCosine,
-                                           fmaxf(0.0f, r - group.radiusMm),
-                                           sqrtf(r * r + l * l + e * e) + 2.0f * group.radiusMm);
-    }
-    if (kind == BeamKind::Field)
-    {
-      return l < launch_.set.fieldReachMm.x && e < launch_.set.fieldReachMm.y;
+      return bricks_.meets(group.brickMm);
     }
     // Between two depths a beam is widest at one of them.
     const ProfileAt near = gaussianAt(beam_, fmaxf(0.0f, r - group.radiusMm));
@@ -77,8 +71,8 @@ public:
   }
 
 private:
-  const SurfaceLaunch& launch_;
   const Beam& beam_;
+  BrickSight<kind> bricks_;
   float litToMm_;
 };
 
@@ -124,13 +118,14 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
     {
       const SurfacePiece& item = set.pieces[p];
       const PieceBounds bounds = pieceBounds(item, set.longestStepMm);
-      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, surfaceRow(set.media, item.below, item.above),
-                         beam, splat.grid, set.table, intensity);
+      const bool isCoarse = set.nets.isCoarsest(set.nets.coherent(item));
+      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse,
+                         surfaceRow(set.media, item.below, item.above), beam, splat.grid, set.table, intensity);
     }
     else
     {
       const SurfacePoint& item = set.points[p];
-      return hearSurface(item.position, item.normal, 0.0f, item.row, beam, splat.grid, set.table, intensity);
+      return hearSurface(item.position, item.normal, 0.0f, false, item.row, beam, splat.grid, set.table, intensity);
     }
   };
   const auto addDiffuseOf = [&](const HeardPiece& heard) {
@@ -156,10 +151,11 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
     if constexpr (arePieces)
     {
       const SurfacePiece item = set.pieces[heard.item];
-      const int count = set.nets.coherent.points(item.axis);
+      const PieceCuts net = set.nets.coherent(item);
+      const int count = net.points(item.axis);
       for (int n = 0; n < count; ++n)
       {
-        SurfacePoint point = piecePoint(item, set.nets.coherent, n);
+        SurfacePoint point = piecePoint(item, net, n);
         point.row = surfaceRow(set.media, item.below, item.above);
         addCoherent(point, beam, splat.grid, set.table, heard.lit, sum);
       }
@@ -175,14 +171,15 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
   const int warp = int(threadIdx.x) / warpLanes;
   int diffuse = 0;
   int coherent = 0;
-  for (int base = (int(blockIdx.y) * warps + warp) * warpLanes; base < set.groupCount;
-       base += int(gridDim.y) * warps * warpLanes)
+  // Neighbouring groups go to different warps: lines hear them together.
+  const int stride = int(gridDim.y) * warps;
+  for (int base = int(blockIdx.y) * warps + warp; base < set.groupCount; base += stride * warpLanes)
   {
-    const int own = base + lane;
+    const int own = base + lane * stride;
     unsigned near = __ballot_sync(allLanes, own < set.groupCount && sight.sees(set.groups[own]));
     for (; near; near &= near - 1u)
     {
-      const SurfaceGroup& group = set.groups[base + __ffs(int(near)) - 1];
+      const SurfaceGroup& group = set.groups[base + (__ffs(int(near)) - 1) * stride];
       const int p = group.first + lane;
       const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, false, false };
       diffuseQueues[warp].push(heard.diffuse, { p, heard.lit }, diffuse, addDiffuseOf);

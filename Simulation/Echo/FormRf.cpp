@@ -63,8 +63,12 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
         const float depthMm = glm::dot(centre - b.origin, b.axis);
         if (density.takes(level, depthMm, glm::dot(parent - b.origin, b.axis)))
         {
-          taken.push_back({ i, density.ranks(level, depthMm, relativeWeight(b, centre - b.origin, depthMm)) });
-          most = std::max(most, taken.back().ranks);
+          const int ranks = density.ranks(level, depthMm, relativeWeight(b, centre - b.origin, depthMm));
+          if (ranks > 0)
+          {
+            taken.push_back({ i, ranks });
+            most = std::max(most, ranks);
+          }
         }
       }
       if (taken.empty())

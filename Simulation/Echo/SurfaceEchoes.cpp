@@ -12,10 +12,14 @@ namespace sono {
 
 namespace {
 
-/// Blobs are flat; this much of a wavelength keeps a sphere of 5 mm within 0.2 dB. Of the beam's deviation half, since
+constexpr double pi = 3.14159265358979323846;
+/// Blobs are flat: of a wavelength this much, however bent the surface is, keeps a sphere of 5 mm within 0.2 dB; the
+/// bending of a wider one may turn the phase by so much over its deviation. Of the beam's deviation half to all, since
 /// blobs are taken off its width.
 constexpr double blobPerLambda = 0.3;
+constexpr double mostTurnRad = 0.12;
 constexpr double blobPerSigma = 0.5;
+constexpr double widestPerSigma = 0.7;
 /// A triangle's longest edge for such a blob, three times as wide as the triangle.
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.
@@ -81,10 +85,20 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
 {
   const BeamExtent beam = beamExtent(beams);
   blobMm_ = sono::blobMm(settings, beam);
-  rows_ = std::make_unique<SurfaceRows>(mediaOf(scene, targets), scene.outsideIndex(), settings, beam, blobMm_);
   const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
-  nets_.coherent = cutsFor(pieces_.spacingMm(), blobMm_ / blobPerStep);
-  nets_.diffuse = cutsFor(pieces_.spacingMm(), diffuseStepPerLambda * lambdaMm);
+  const Vec3f spacing = pieces_.spacingMm();
+  nets_.spacingMm = spacing;
+  nets_.diffuse = cutsFor(spacing, diffuseStepPerLambda * lambdaMm);
+  nets_.most = cutsFor(spacing, blobMm_ / blobPerStep).cuts;
+  nets_.fewest = glm::min(
+    nets_.most,
+    cutsFor(spacing, widestPerSigma / blobPerStep * std::min(beam.lateralSigmaMm, beam.elevationalSigmaMm)).cuts);
+  nets_.cutsPerMm = float(blobPerStep * std::sqrt(2.0 * pi / lambdaMm / mostTurnRad));
+  const float widestMm =
+    float(blobPerStep) * std::max({ spacing.x / float(nets_.fewest.x), spacing.y / float(nets_.fewest.y),
+                                    spacing.z / float(nets_.fewest.z) });
+  rows_ =
+    std::make_unique<SurfaceRows>(mediaOf(scene, targets), scene.outsideIndex(), settings, beam, blobMm_, widestMm);
   if (targets && !targets->empty())
   {
     targets_ = std::make_unique<TargetPieces>(scene, *targets, *rows_, edgePerBlob * blobMm_, seed_);
@@ -107,9 +121,10 @@ int SurfaceEchoes::expand(const SurfacePiece& piece, bool coherent, std::vector<
     points.back().row = row;
     setPhases(seed_, piece.voxel, piece.axis, std::uint32_t(n), points.back());
   }
-  for (int n = 0; coherent && n < nets_.coherent.points(piece.axis); ++n)
+  const PieceCuts net = nets_.coherent(piece);
+  for (int n = 0; coherent && n < net.points(piece.axis); ++n)
   {
-    points.push_back(piecePoint(piece, nets_.coherent, n));
+    points.push_back(piecePoint(piece, net, n));
     points.back().row = row;
   }
   return diffuse;
@@ -166,7 +181,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
         {
           const Beam& beam = exact[i].beam;
           const SurfaceHearing heard =
-            hearSurface(point.position, point.normal, 0.0f, point.row, beam, grids[i], table, intensities[i]);
+            hearSurface(point.position, point.normal, 0.0f, false, point.row, beam, grids[i], table, intensities[i]);
           float* iq = sums[i].iq.data();
           addDiffusePoints(&point, heard.diffuse ? 1 : 0, beam, grids[i], table, heard.lit, iq);
           addCoherentPoints(&point, heard.coherent ? 1 : 0, beam, grids[i], table, heard.lit, iq);
@@ -179,20 +194,33 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
   const float longestMm = marginMm();
   std::vector<Listener> listeners;
   forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
-    for (const SurfacePiece& piece : pieces_.brick(brick))
+    const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
+    for (std::size_t f = 0; f < faces.size(); ++f)
     {
-      const int row = rows_->row(piece.below, piece.above);
-      if (!table.counts(row))
+      const SurfacePieces::Face& face = faces[f];
+      const int row = rows_->row(face.below, face.above);
+      const Vec3f middle = pieces_.middleMm(face);
+      const auto mayHear = [&](std::size_t i) {
+        return mayHearSurface(middle, face.roughNormal, 2.0f * longestMm, row, exact[i].beam, grids[i], table);
+      };
+      if (!table.counts(row) || std::none_of(seeing.begin(), seeing.end(), mayHear))
       {
         continue;
       }
+      const SurfacePiece* there = pieces_.piece(brick, f);
+      if (!there)
+      {
+        continue;
+      }
+      const SurfacePiece& piece = *there;
       const PieceBounds bounds = pieceBounds(piece, longestMm);
+      const bool isCoarse = nets_.isCoarsest(nets_.coherent(piece));
       listeners.clear();
       bool isCoherent = false;
       for (const std::size_t i : seeing)
       {
-        const SurfaceHearing heard = hearSurface(piece.positionMm, bounds.normal, bounds.radiusMm, row, exact[i].beam,
-                                                 grids[i], table, intensities[i]);
+        const SurfaceHearing heard = hearSurface(piece.positionMm, bounds.normal, bounds.radiusMm, isCoarse, row,
+                                                 exact[i].beam, grids[i], table, intensities[i]);
         if (heard.lit > 0.0f)
         {
           listeners.push_back({ i, heard });

@@ -2,6 +2,7 @@
 
 #include "Core/SoundSpeed.h"
 #include "Echo/Pulse.h"
+#include "Scene/SurfacePieces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,8 @@ constexpr double pi = 3.14159265358979323846;
 constexpr int nodes = 162;
 constexpr double perTangent = 32.0; // up to 78.7 degrees
 constexpr double mixtureUpTo = 10.0;
-constexpr double nothing = -80.0; // log of an amplitude
+constexpr double nothing = -80.0;   // log of an amplitude
+constexpr double largePiece = 16.0; // squares of its blob
 
 /// The surface that counts of two, the rougher.
 const Tissue& rougher(const Tissue& a, const Tissue& b)
@@ -86,7 +88,7 @@ BeamExtent beamExtent(const BeamModel& beams)
 }
 
 SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings,
-                         const BeamExtent& beam, double blobMm)
+                         const BeamExtent& beam, double finestMm, double widestMm)
   : count_(int(media.size()))
   , perBeamArea_(1.0 / beam.areaMm2)
   , pulseSigmaMm_(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth))
@@ -124,6 +126,8 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
       out = {};
       out.reach = -1.0f;
       out.coherentReach = -1.0f;
+      out.finestReach = -1.0f;
+      out.roughCosine = 2.0f;
       if (a == b || a == coupling)
       {
         continue;
@@ -143,30 +147,28 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
       out.gamma = float(behind.gamma);
       out.profile = profileOf[std::size_t(ownsRoughness ? a : b)];
       // Up to where a large piece, seen on the axis, still counts.
-      const double areaMm2 = 16.0 * blobMm * blobMm;
-      for (int n = 0; n < nodes - 1; ++n)
-      {
-        const double tangent = n / perTangent;
+      const auto counts = [&](double blobMm, double tangent) {
         const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
-        const std::size_t at = std::size_t(out.profile) * nodes + std::size_t(n);
-        const double diffuse = std::exp(double(out.logDiffuse) + std::max(diffuseL_[at], diffuseE_[at]));
         const double spread = std::pow(blobMm * tangent * cosine, 2);
         const double pulse = pulseSigmaMm_ * pulseSigmaMm_;
         const double coherent =
           std::abs(surfaceReflection(out, float(cosine))) * cosine *
           std::exp(-out.roughness * cosine * cosine - 0.5 * radPerMm * radPerMm * spread * pulse / (pulse + spread));
-        if (diffuse * std::sqrt(areaMm2) > surfaceFaintest)
-        {
-          out.reach = float((n + 1) / perTangent);
-        }
-        if (coherent * areaMm2 * perBeamArea_ > surfaceFaintest)
-        {
-          out.coherentReach = float((n + 1) / perTangent);
-        }
+        return coherent * largePiece * blobMm * blobMm * perBeamArea_ > surfaceFaintest;
+      };
+      for (int n = 0; n < nodes - 1; ++n)
+      {
+        const double tangent = n / perTangent;
+        const std::size_t at = std::size_t(out.profile) * nodes + std::size_t(n);
+        const double diffuse = std::exp(double(out.logDiffuse) + std::max(diffuseL_[at], diffuseE_[at]));
+        const float next = float(std::min(n + 1.0, nodes - 1.5) / perTangent);
+        out.reach = diffuse * std::sqrt(largePiece) * widestMm > surfaceFaintest ? next : out.reach;
+        out.coherentReach = counts(widestMm, tangent) ? next : out.coherentReach;
+        out.finestReach = counts(finestMm, tangent) ? next : out.finestReach;
       }
-      const float furthest = float((nodes - 1.5) / perTangent);
-      out.reach = std::min(out.reach, furthest);
-      out.coherentReach = std::min(out.coherentReach, furthest);
+      out.finestReach = std::max(out.finestReach, out.coherentReach);
+      const double steepest = std::max(out.reach, out.finestReach) + surfaceTangentSlack;
+      out.roughCosine = float(std::cos(std::min(0.5 * pi, std::atan(steepest) + SurfacePieces::roughNormalRad)));
     }
   }
 }

@@ -24,10 +24,10 @@ BeamExtent beamExtent(const BeamModel& beams);
 class SurfaceRows
 {
 public:
-  /// Beyond `coupling`, the index of a medium, nothing echoes as seen from there; -1: none. Pieces have blobs of about
-  /// `blobMm` and areas of its square at least.
+  /// Beyond `coupling`, the index of a medium, nothing echoes as seen from there; -1: none. Pieces have blobs of
+  /// `finestMm` to `widestMm`, and areas of about their squares.
   SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings, const BeamExtent& beam,
-              double blobMm);
+              double finestMm, double widestMm);
 
   int count() const { return count_; } ///< of the media
   /// From medium a onto b.

@@ -17,10 +17,9 @@ namespace sono {
 constexpr float nestedFinestMm = 1.0f / 32.0f; ///< edge of a cell of level 0
 constexpr int nestedLevels = 8;                ///< up to cells of 4 mm
 constexpr float nestedFullWeight = 9.0f;       ///< 1 / the weight from which on all candidates count (2.1 sigma)
-/// Of a Gaussian beam's reach (beamCutSigma) the part in which a brick counts: beyond 3.4 sigma it would add 1e-5 of
-/// the power.
-constexpr float nestedReach = 0.85f;
-constexpr int nestedBrickCells = 4; ///< cells along an edge of a brick, on every level
+constexpr float nestedLeastWeight = 0.003f;    ///< bricks of less are left out: 3.4 sigma, 1e-5 of the power
+constexpr float nestedReach = 0.87f; ///< that in shares of a Gaussian beam's reach, beamCutSigma, and a little more
+constexpr int nestedBrickCells = 4;  ///< cells along an edge of a brick, on every level
 
 SONO_HD inline float nestedCellMm(int level)
 {
@@ -126,9 +125,13 @@ struct DensityView
   }
   /// Eighths of the candidates of this level that do at this depth and at this weight of the beam, which is 1 on its
   /// axis: 1 to 8. Far from the axis fewer and stronger ones do: what they add to the envelope's moments goes with the
-  /// fourth power of the weight.
+  /// fourth power of the weight. Still further out none do: 0.
   SONO_HD int ranks(int level, float depthMm, float weight) const
   {
+    if (weight < nestedLeastWeight)
+    {
+      return 0;
+    }
     const float edge = nestedCellMm(level);
     const float share = weight * nestedFullWeight;
     const float needed = perMm3[at(depthMm)] * (share < 1.0f ? share : 1.0f);

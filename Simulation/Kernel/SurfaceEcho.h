@@ -40,7 +40,9 @@ struct SurfaceRow
   float tau;        ///< of the tissue behind: exponents of the intensity and of cos t
   float gamma;
   float reach;         ///< tangent beyond which its diffuse echo does not count; < 0: it never does
-  float coherentReach; ///< the same of its coherent echo
+  float coherentReach; ///< the same of its coherent echo, for the coarsest blobs
+  float finestReach;   ///< and for the finest
+  float roughCosine;   ///< below it, that of a rough normal, nothing counts
   std::int32_t profile;
 };
 
@@ -54,7 +56,7 @@ SONO_HD inline int surfaceRow(int media, int a, int b)
 
 SONO_HD inline bool echoes(const SurfaceRow& row)
 {
-  return row.reach >= 0.0f || row.coherentReach >= 0.0f;
+  return row.reach >= 0.0f || row.finestReach >= 0.0f;
 }
 
 /// What boundaries echo. A profile is the diffuse echo of a roughness with r = 1 by the tangent of the angle between
@@ -93,15 +95,17 @@ struct SurfaceIntensity
   float perMm = 0.0f;
 };
 
-/// The intensity of the last bin that lies whole in front of a depth.
+/// The intensity in front of a depth, by bins that lie whole in front of it; continuous.
 SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float frontMm)
 {
   if (!intensity.bins)
   {
     return 1.0f;
   }
-  const int bin = int(larger(frontMm, 0.0f) * intensity.perMm) - 1;
-  return intensity.bins[bin < 0 ? 0 : (bin < intensity.count ? bin : intensity.count - 1)];
+  const float last = larger(0.0f, smaller(frontMm * intensity.perMm, float(intensity.count)) - 1.0f);
+  const int bin = int(last);
+  const float before = intensity.bins[bin > 0 ? bin - 1 : 0];
+  return before + (last - float(bin)) * (intensity.bins[bin] - before);
 }
 
 constexpr float surfaceFaintest = 1e-6f;    ///< echoes fainter than this against a perfect mirror are left out
@@ -127,10 +131,30 @@ SONO_HD inline bool withinTangent(float reach, float cosSquared, float sinSquare
   return reach >= 0.0f && sinSquared < wider * wider * cosSquared;
 }
 
-/// For a piece all of whose points lie within `radiusMm` of a position. The intensity is that in front of where the
-/// line's own axis meets the piece's plane: behind that it has fallen already.
-SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& normal, float radiusMm, int rowFromA,
-                                          const Beam& b, const LineGrid& g, const SurfaceTable& table,
+/// Whether a beam may see anything within `radiusMm` of a place.
+SONO_HD inline bool isNearBeam(const Vec3f& position, float radiusMm, const Beam& b, const LineGrid& g)
+{
+  const BeamPlace place = placeInBeam(position.x, position.y, position.z, b, g);
+  const float depthMm = place.position / g.samplesPerMm;
+  if (depthMm + radiusMm < 0.0f || place.position - radiusMm * g.samplesPerMm > g.lastSample)
+  {
+    return false;
+  }
+  if (!isGaussian(b))
+  {
+    return true;
+  }
+  const ProfileAt at = gaussianAt(b, larger(depthMm, 0.0f));
+  const float l = larger(0.0f, fabsf(place.lateral) - radiusMm);
+  const float e = larger(0.0f, fabsf(place.elevational) - radiusMm);
+  // The beam may be a little wider at the piece's other end.
+  return l * l * at.perLateral2 + e * e * at.perElevational2 <= 1.1f * beamCutSigma * beamCutSigma;
+}
+
+/// For a piece all of whose points lie within `radiusMm` of a position, cut as coarsely as pieces are or not. The
+/// intensity is that in front of where the line's own axis meets the piece's plane: behind that it has fallen already.
+SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& normal, float radiusMm, bool isCoarse,
+                                          int rowFromA, const Beam& b, const LineGrid& g, const SurfaceTable& table,
                                           const SurfaceIntensity& intensity)
 {
   const SurfaceHearing nothing{ 0.0f, false, false };
@@ -139,29 +163,18 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
   const float sinSquared = larger(0.0f, 1.0f - cosSquared);
   const SurfaceRow& row = table.rows[along < 0.0f ? rowFromA ^ 1 : rowFromA];
   const bool diffuse = withinTangent(row.reach, cosSquared, sinSquared);
-  const bool coherent = withinTangent(row.coherentReach, cosSquared, sinSquared);
+  const bool coherent = withinTangent(isCoarse ? row.coherentReach : row.finestReach, cosSquared, sinSquared);
   if (!diffuse && !coherent)
+  {
+    return nothing;
+  }
+  if (!isNearBeam(position, radiusMm, b, g))
   {
     return nothing;
   }
   const BeamPlace place = placeInBeam(position.x, position.y, position.z, b, g);
   float depthMm = place.position / g.samplesPerMm;
-  if (depthMm + radiusMm < 0.0f || place.position - radiusMm * g.samplesPerMm > g.lastSample)
-  {
-    return nothing;
-  }
-  if (isGaussian(b))
-  {
-    const ProfileAt at = gaussianAt(b, larger(depthMm, 0.0f));
-    const float l = larger(0.0f, fabsf(place.lateral) - radiusMm);
-    const float e = larger(0.0f, fabsf(place.elevational) - radiusMm);
-    // The beam may be a little wider at the piece's other end.
-    if (l * l * at.perLateral2 + e * e * at.perElevational2 > 1.1f * beamCutSigma * beamCutSigma)
-    {
-      return nothing;
-    }
-  }
-  else if (b.kind == BeamKind::Array)
+  if (b.kind == BeamKind::Array)
   {
     depthMm = quickSqrt(depthMm * depthMm + place.lateral * place.lateral + place.elevational * place.elevational);
   }
@@ -178,6 +191,19 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
     lit *= powf(fabsf(along), row.gamma);
   }
   return lit > surfaceFaintestLit ? SurfaceHearing{ lit, diffuse, coherent } : nothing;
+}
+
+/// Whether a line may hear a piece of which only a rough normal is known (0: none), from either side.
+SONO_HD inline bool mayHearSurface(const Vec3f& position, const Vec3f& roughNormal, float radiusMm, int row,
+                                   const Beam& b, const LineGrid& g, const SurfaceTable& table)
+{
+  const float along = glm::dot(roughNormal, b.axis);
+  const SurfaceRow& met = table.rows[along < 0.0f ? row ^ 1 : row];
+  if (fabsf(along) < met.roughCosine && glm::dot(roughNormal, roughNormal) > 0.0f)
+  {
+    return false;
+  }
+  return isNearBeam(position, radiusMm, b, g);
 }
 
 /// How a beam meets a point of a surface.
@@ -317,7 +343,7 @@ SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const Line
     return;
   }
   const SurfaceRow& row = *m.row;
-  if (!(row.coherentReach >= 0.0f && m.sinSquared < row.coherentReach * row.coherentReach * m.cosSquared))
+  if (!(row.finestReach >= 0.0f && m.sinSquared < row.finestReach * row.finestReach * m.cosSquared))
   {
     return;
   }

@@ -39,11 +39,29 @@ struct PieceCuts
   SONO_HD int points(int axis) const { return cuts[(axis + 1) % 3] * cuts[(axis + 2) % 3]; }
 };
 
-/// Coherent echoes want points close together. Diffuse ones have random phases: fewer do.
+/// How many points a piece is cut into. A blob's own place and tilt count exactly, its curvature does not: the points
+/// of coherent echoes lie as close together as the piece is bent. Diffuse echoes have random phases; a few points do.
 struct PieceNets
 {
-  PieceCuts coherent;
   PieceCuts diffuse;
+  Vec3f spacingMm; ///< between voxels
+  Vec3i fewest;
+  Vec3i most;
+  float cutsPerMm; ///< per root of the curvature, 1/mm^1/2
+
+  SONO_HD PieceCuts coherent(const SurfacePiece& piece) const
+  {
+    const float bend = larger(fabsf(piece.bendUU), fabsf(piece.bendVV)) + fabsf(piece.bendUV);
+    const Vec3f wanted = spacingMm * (cutsPerMm * sqrtf(bend));
+    Vec3i cuts;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int n = wanted[a] < float(most[a]) ? int(ceilf(wanted[a])) : most[a];
+      cuts[a] = n > fewest[a] ? n : fewest[a];
+    }
+    return { cuts, spacingMm / Vec3f(cuts) };
+  }
+  SONO_HD bool isCoarsest(const PieceCuts& net) const { return net.cuts == fewest; }
 };
 
 /// Deviation of a blob on a square net of step 1: the net shows through by exp(-2 pi^2 0.49) = 6e-5.

@@ -1,5 +1,6 @@
 #include "Scene/SurfacePieces.h"
 
+#include "Core/Simd.h"
 #include "Scene/StepFit.h"
 
 #include <algorithm>
@@ -30,6 +31,7 @@ constexpr std::int16_t unknown = -32768; // step of a column outside of the volu
 constexpr int mostStep = 2;              // voxels from a column's step to its neighbour's
 constexpr float leastFacing = 0.5f;      // of a normal along the column: some axis has 0.577
 constexpr float certainlyNot = 0.25f;    // the same of a coarse normal
+const SurfacePiece noPiece{};            // stands where columns of another axis do
 
 const Window& windowOf(int radius)
 {
@@ -385,7 +387,7 @@ private:
   const std::uint8_t* tissues_;
   Vec3i size_;
   std::ptrdiff_t pitch_[3];
-  std::array<std::int16_t, std::size_t(allColumns) * allColumns> steps_{};
+  std::array<std::int16_t, std::size_t(allColumns) * allColumns> steps_; // what is not gathered is not read
 };
 
 /// How much of a surface the columns along an axis stand for. Each axis' columns cover all of it, evenly but for a
@@ -400,22 +402,21 @@ float shareOf(const Vec3f& normal, int axis)
 }
 
 /// False where another axis' columns stand for all of the surface.
-bool makePiece(StepMap& map, const Vec3i& voxel, int axis, const Vec3f& spacing, SurfacePiece& piece)
+SONO_SIMD_CLONES __attribute__((flatten)) bool makePiece(const std::uint8_t* tissues, const Vec3i& size,
+                                                         const Vec3f& spacing, const SurfacePieces::Face& face,
+                                                         SurfacePiece& piece)
 {
-  const Vec3f coarse = map.coarseNormal(voxel, axis);
-  const float length = glm::length(coarse);
-  const bool isThin = !(length > 1e-3f) || coarse[axis] <= 0.0f;
-  if (!isThin && coarse[axis] < certainlyNot * length)
-  {
-    return false;
-  }
+  StepMap map(tissues, size);
+  const Vec3i& voxel = face.voxel;
+  const int axis = face.axis;
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   Quadratic q{};
-  if (!map.smoothest(voxel, axis, spacing, q) && !isThin)
+  if (!map.smoothest(voxel, axis, spacing, q) && face.roughNormal != Vec3f(0.0f))
   {
-    q.c1 = -coarse[u] / coarse[axis];
-    q.c2 = -coarse[v] / coarse[axis];
+    // In voxels.
+    q.c1 = -face.roughNormal[u] * spacing[u] / (face.roughNormal[axis] * spacing[axis]);
+    q.c2 = -face.roughNormal[v] * spacing[v] / (face.roughNormal[axis] * spacing[axis]);
   }
   Vec3f normal(0.0f); // in voxels, where columns are what covers the surface
   normal[axis] = 1.0f;
@@ -434,10 +435,8 @@ bool makePiece(StepMap& map, const Vec3i& voxel, int axis, const Vec3f& spacing,
   piece.bendUV = q.c5 * spacing[axis] / (spacing[u] * spacing[v]);
   piece.bendVV = 2.0f * q.c4 * spacing[axis] / (spacing[v] * spacing[v]);
   piece.axis = std::uint8_t(axis);
-  piece.below = map.at(voxel);
-  Vec3i next = voxel;
-  ++next[axis];
-  piece.above = map.at(next);
+  piece.below = face.below;
+  piece.above = face.above;
   piece.voxel = voxel;
   return true;
 }
@@ -453,6 +452,7 @@ SurfacePieces::SurfacePieces(const std::uint8_t* tissues, const Vec3i& size, con
   , bricks_(Vec3i(glm::floor(sizeMm_ / edgeMm_)) + 1)
   , blocks_((bricks_ - 1) / blockBricks + 1)
   , made_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z))
+  , whole_(std::size_t(blockCount()))
 {
 }
 
@@ -464,26 +464,71 @@ SurfacePieces::~SurfacePieces()
   }
 }
 
-const std::vector<SurfacePiece>& SurfacePieces::brick(const Vec3i& brick) const
+SurfacePieces::Brick::~Brick()
 {
-  static const std::vector<SurfacePiece> none;
+  for (std::size_t n = 0; n < faces.size(); ++n)
+  {
+    const SurfacePiece* piece = pieces[n].load();
+    if (piece != &noPiece)
+    {
+      delete piece;
+    }
+  }
+}
+
+const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
+{
   if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))
   {
-    return none;
+    return nullptr;
   }
   auto& place = made_[std::size_t(brick.x) +
                       std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z))];
-  const std::vector<SurfacePiece>* there = place.load(std::memory_order_acquire);
+  const Brick* there = place.load(std::memory_order_acquire);
   if (!there)
   {
     // Of two threads that make the same brick one is too late.
-    auto mine = std::make_unique<const std::vector<SurfacePiece>>(make(brick));
+    auto mine = std::make_unique<Brick>();
+    mine->faces = findFaces(brick);
+    mine->pieces = std::make_unique<std::atomic<const SurfacePiece*>[]>(mine->faces.size());
     if (place.compare_exchange_strong(there, mine.get(), std::memory_order_acq_rel))
     {
       there = mine.release();
     }
   }
-  return *there;
+  return there;
+}
+
+const std::vector<SurfacePieces::Face>& SurfacePieces::faces(const Vec3i& brick) const
+{
+  static const std::vector<Face> none;
+  const Brick* there = at(brick);
+  return there ? there->faces : none;
+}
+
+const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) const
+{
+  const Brick& there = *at(brick);
+  auto& place = there.pieces[face];
+  const SurfacePiece* piece = place.load(std::memory_order_acquire);
+  if (!piece)
+  {
+    auto mine = std::make_unique<SurfacePiece>();
+    const bool counts = makePiece(tissues_, size_, spacingMm_, there.faces[face], *mine);
+    const SurfacePiece* made = counts ? mine.get() : &noPiece;
+    if (place.compare_exchange_strong(piece, made, std::memory_order_acq_rel))
+    {
+      piece = counts ? mine.release() : &noPiece;
+    }
+  }
+  return piece == &noPiece ? nullptr : piece;
+}
+
+Vec3f SurfacePieces::middleMm(const Face& face) const
+{
+  Vec3f middle = (Vec3f(face.voxel) + 0.5f) * spacingMm_;
+  middle[face.axis] += 0.5f * spacingMm_[face.axis];
+  return middle;
 }
 
 int SurfacePieces::blockOf(const Vec3i& brick) const
@@ -496,25 +541,44 @@ int SurfacePieces::blockOf(const Vec3i& brick) const
   return block.x + blocks_.x * (block.y + blocks_.y * block.z);
 }
 
-void SurfacePieces::forBricksOf(int block, const std::function<void(const std::vector<SurfacePiece>&)>& visit) const
+void SurfacePieces::forBricksOf(
+  int block, const std::function<void(const Vec3i& brick, const std::vector<SurfacePiece>&)>& visit) const
 {
   const Vec3i first =
     blockBricks * Vec3i(block % blocks_.x, block / blocks_.x % blocks_.y, block / blocks_.x / blocks_.y);
+  std::vector<SurfacePiece> pieces;
   for (int n = 0; n < blockBricks * blockBricks * blockBricks; ++n)
   {
-    const Vec3i within(n % blockBricks, n / blockBricks % blockBricks, n / blockBricks / blockBricks);
-    const std::vector<SurfacePiece>& pieces = brick(first + within);
+    const Vec3i brick = first + Vec3i(n % blockBricks, n / blockBricks % blockBricks, n / blockBricks / blockBricks);
+    pieces.clear();
+    for (std::size_t face = 0; face < faces(brick).size(); ++face)
+    {
+      if (const SurfacePiece* piece = this->piece(brick, face))
+      {
+        pieces.push_back(*piece);
+      }
+    }
     if (!pieces.empty())
     {
-      visit(pieces);
+      visit(brick, pieces);
     }
   }
 }
 
-std::vector<SurfacePiece> SurfacePieces::make(const Vec3i& brick) const
+void SurfacePieces::makeBlock(int block) const
 {
-  std::vector<SurfacePiece> pieces;
-  StepMap map(tissues_, size_);
+  std::atomic<bool>& isWhole = whole_[std::size_t(block)];
+  if (!isWhole.load(std::memory_order_relaxed))
+  {
+    forBricksOf(block, [](const Vec3i&, const std::vector<SurfacePiece>&) {});
+    isWhole.store(true, std::memory_order_relaxed);
+  }
+}
+
+std::vector<SurfacePieces::Face> SurfacePieces::findFaces(const Vec3i& brick) const
+{
+  std::vector<Face> faces;
+  const StepMap map(tissues_, size_);
   const Vec3f low = Vec3f(brick) * edgeMm_ / spacingMm_ - 0.5f;
   const Vec3f high = Vec3f(brick + 1) * edgeMm_ / spacingMm_ - 0.5f;
   const Vec3i first = glm::max(Vec3i(glm::ceil(low)), Vec3i(0));
@@ -530,18 +594,24 @@ std::vector<SurfacePiece> SurfacePieces::make(const Vec3i& brick) const
         {
           Vec3i next = voxel;
           ++next[axis];
-          SurfacePiece piece{};
-          if (next[axis] < size_[axis] && map.at(voxel) != map.at(next) &&
-              makePiece(map, voxel, axis, spacingMm_, piece))
+          if (next[axis] >= size_[axis] || map.at(voxel) == map.at(next))
           {
-            pieces.push_back(piece);
+            continue;
+          }
+          const Vec3f coarse = map.coarseNormal(voxel, axis);
+          const float length = glm::length(coarse);
+          const bool isThin = !(length > 1e-3f) || coarse[axis] <= 0.0f;
+          if (isThin || coarse[axis] >= certainlyNot * length)
+          {
+            faces.push_back({ voxel, isThin ? Vec3f(0.0f) : glm::normalize(coarse / spacingMm_), std::uint8_t(axis),
+                              map.at(voxel), map.at(next) });
           }
         }
       }
     }
   }
-  pieces.shrink_to_fit();
-  return pieces;
+  faces.shrink_to_fit();
+  return faces;
 }
 
 } // namespace sono

@@ -18,7 +18,9 @@ namespace sono {
 /// than its rounding. Windows and shapes give way to each other gradually, so that the surface has no steps of its own.
 /// Small windows at rims and thin parts leave those as they are; a lone voxel keeps its faces.
 ///
-/// Made brick by brick when first asked for, and kept. They depend on the labels alone. Several threads may ask.
+/// Faces between voxels of different tissues are looked up brick by brick, pieces are fitted one by one, when first
+/// asked for, and kept: most surfaces are seen too slantingly to echo. They depend on the labels alone. Several threads
+/// may ask.
 class SurfacePieces
 {
 public:
@@ -28,7 +30,18 @@ public:
   SurfacePieces(const SurfacePieces&) = delete;
   SurfacePieces& operator=(const SurfacePieces&) = delete;
 
-  /// Brick b holds the pieces of the voxels whose middle lies in [b, b + 1) * edgeMm; a piece is never more than a
+  /// Where two voxels part.
+  struct Face
+  {
+    Vec3i voxel;        ///< the one below
+    Vec3f roughNormal;  ///< within roughNormalRad of the piece's, from below to above; 0 where it is not known
+    std::uint8_t axis;  ///< 0 to 2
+    std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
+    std::uint8_t above;
+  };
+  static constexpr float roughNormalRad = 0.4f;
+
+  /// Brick b holds the faces of the voxels whose middle lies in [b, b + 1) * edgeMm; their pieces are never more than a
   /// voxel outside.
   float edgeMm() const { return edgeMm_; }
   const Vec3f& sizeMm() const { return sizeMm_; }
@@ -40,15 +53,28 @@ public:
   int blockCount() const { return blocks_.x * blocks_.y * blocks_.z; }
   /// The block of a brick; -1: outside of the volume.
   int blockOf(const Vec3i& brick) const;
+  /// Makes all pieces of a block.
+  void makeBlock(int block) const;
   /// Visits the pieces of a block, brick by brick, those bricks that have any.
-  void forBricksOf(int block, const std::function<void(const std::vector<SurfacePiece>&)>& visit) const;
+  void forBricksOf(int block,
+                   const std::function<void(const Vec3i& brick, const std::vector<SurfacePiece>&)>& visit) const;
   /// None outside of the volume. Stays where it is while this lives.
-  const std::vector<SurfacePiece>& brick(const Vec3i& brick) const;
+  const std::vector<Face>& faces(const Vec3i& brick) const;
+  /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
+  const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
+  Vec3f middleMm(const Face& face) const;
 
 private:
-  using Bricks = std::vector<std::atomic<const std::vector<SurfacePiece>*>>;
+  struct Brick
+  {
+    std::vector<Face> faces;
+    std::unique_ptr<std::atomic<const SurfacePiece*>[]> pieces; ///< parallel to the faces; null: not yet made
 
-  std::vector<SurfacePiece> make(const Vec3i& brick) const;
+    ~Brick();
+  };
+
+  const Brick* at(const Vec3i& brick) const;
+  std::vector<Face> findFaces(const Vec3i& brick) const;
 
   const std::uint8_t* tissues_;
   Vec3i size_;
@@ -57,7 +83,8 @@ private:
   float edgeMm_;
   Vec3i bricks_;
   Vec3i blocks_;
-  mutable Bricks made_;
+  mutable std::vector<std::atomic<const Brick*>> made_;
+  mutable std::vector<std::atomic<bool>> whole_; ///< blocks of which all pieces are there
 };
 
 } // namespace sono
