@@ -144,6 +144,8 @@ struct BeamAperture
 
   /// Whether it says how wide the beam is.
   bool isNamed() const { return apertureMm > 0.0 && elevationApertureMm > 0.0; }
+  /// Focus across the plane when transmitting.
+  double focusAcrossMm() const { return elevationIsArray ? transmitFocusMm : elevationFocusMm; }
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
