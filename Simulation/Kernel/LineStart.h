@@ -127,7 +127,7 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
 }
 
 /// The line of a path that starts apart: from its place on the aperture to the focus, in each axis its own
-/// (Data/docs/physics.md (3.2), (3.3)). Whatever the path leaves is seen from there: a path that nothing turns away
+/// (Data/docs/physics.md (3.5), (3.6)). Whatever the path leaves is seen from there: a path that nothing turns away
 /// leaves what one along the beam's axis would.
 SONO_HD inline TraceLine pathLine(const TraceView& view, const TraceLine& line, const PathKey& key)
 {

@@ -16,12 +16,13 @@
 //       |         :         |           |
 //       |         :         |           '-- another attenuation, the same impedance and speed: no echo, no bend
 //       |         :         |
-//       '---- startLine ----'---- tracePath: step by step; a step is a piece and what is at its end ---'
-//       :  once a line, all
-//       :  its paths share it: one main beam along the axis
-//       :         :
-//       'startPath'---- the same steps, from the body on: where the probe names its aperture, each path starts at a
-//          once a path       place of its own there (pathLine) and aims at the focus
+//       |'startPath'------- tracePath: step by step; a step is a piece and what is at its end ----------'
+//       |                   |
+//       '---- startLine ----'---------- the same steps, but those up to here once a line, for all its paths
+//
+// Where the probe names its aperture, each path starts at a place of its own there and aims at the focus: pathLine,
+// then startPath. Elsewhere all paths of a line start along its axis and share the way to the first boundary:
+// startLine.
 //
 //   stepPath                           done by                 tells the sink
 //     walkPiece                        (PathPiece.h)
