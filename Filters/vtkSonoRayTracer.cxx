@@ -86,6 +86,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.pathsPerLine = probe.preview ? sono::interactivePaths(settings.pathsPerLine) : settings.pathsPerLine;
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
+  settings.aperture = probe.aperture();
   settings.depthMm = probe.geometry.depthMm;
   settings.echoSampleMm = rfGrid(this->RfSamplingMHz(probe), settings.depthMm).sampleMm();
   settings.validate();

@@ -29,6 +29,7 @@ void ImageSettings::matchStages()
   tracing.depthMm = geometry.depthMm;
   echo.depthMm = geometry.depthMm;
   tracing.frequencyMHz = echo.centreFrequencyMHz;
+  tracing.aperture = echo.aperture;
   tracing.echoSampleMm = echo.sampleMm();
 }
 
@@ -36,6 +37,7 @@ void ImageSettings::requireMatch() const
 {
   requireAlike(agree(tracing.depthMm, geometry.depthMm) && agree(echo.depthMm, geometry.depthMm), "the depth");
   requireAlike(agree(tracing.frequencyMHz, echo.centreFrequencyMHz), "the frequency");
+  requireAlike(tracing.aperture == echo.aperture, "the aperture");
   requireAlike(agree(tracing.echoSampleMm, echo.sampleMm()), "the sampling of echoes");
 }
 

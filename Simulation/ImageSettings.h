@@ -12,7 +12,7 @@ namespace sono {
 bool agree(double a, double b);
 
 /// Every stage's settings. Depth and frequency of tracing and image formation must agree with the geometry's depth and
-/// with each other, and the tracer's echo samples with the RF's: see matchStages.
+/// with each other, the apertures and the tracer's echo samples with the RF's: see matchStages.
 struct ImageSettings
 {
   ScanGeometry geometry;
@@ -21,7 +21,7 @@ struct ImageSettings
   BModeSettings bmode;
   double pixelMm = 0.23;
 
-  /// Takes depth from the geometry, and frequency and sampling from the RF, for all stages.
+  /// Takes depth from the geometry, and frequency, aperture and sampling from the RF, for all stages.
   void matchStages();
   /// Throws Error, naming it, when the stages disagree about one of these.
   void requireMatch() const;

@@ -21,7 +21,7 @@ std::vector<double> parametersOf(const Settings& settings)
 
 auto rest(const TraceSettings& s)
 {
-  return std::tie(s.march, s.frequencyMHz, s.depthMm, s.echoSampleMm, s.interactive, s.seed);
+  return std::tie(s.march, s.frequencyMHz, s.depthMm, s.aperture, s.echoSampleMm, s.interactive, s.seed);
 }
 
 auto rest(const EchoSettings& s)

@@ -411,7 +411,7 @@ ImageResult Simulator::image(const ImageInput& input, const Progress& progress)
 void Simulator::prepareInteractive(const std::vector<ScanLine>& lines, const TraceSettings& settings)
 {
   const Scene& scene = needScene();
-  scene.beginInteractiveRegion(fanBox(scene, lines, settings.depthMm), runsOnDevice(settings));
+  scene.beginInteractiveRegion(fanBox(scene, lines, settings), runsOnDevice(settings));
 }
 
 } // namespace sono

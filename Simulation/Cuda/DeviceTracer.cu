@@ -45,13 +45,16 @@ int ceilDiv(int a, int b)
 template<class Targets>
 void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
-  const std::size_t scrambleBytes = std::size_t(launch.view.maxCollisions) * sizeof(BounceScramble);
+  const std::size_t scrambleBytes = std::size_t(scrambleCount(launch.view)) * sizeof(BounceScramble);
   const std::size_t bytes = scrambleBytes + (inShared ? blockWarps * launch.binCount * sizeof(float2) : 0);
   const auto kernel = !inShared   ? tracePaths<false, true, Targets>
                       : manyPaths ? tracePaths<true, true, Targets>
                                   : tracePaths<true, false, Targets>;
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)), "preparing to trace");
-  startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
+  if (!launch.view.startsApart)
+  {
+    startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
+  }
   kernel<<<dim3(launch.batches * launch.slices, lines), blockPaths, bytes, stream>>>(launch);
   const int parts = manyPaths ? launch.slices * blockWarps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
@@ -113,7 +116,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   // The cut depends on the job alone, and so does the result.
   const int wanted = std::max(1, launchWarps / (blockWarps * std::max(1, batches * linesPerImage_)));
   const int slices = std::max(1, std::min(wanted, ceilDiv(longest, blockPaths)));
-  const std::size_t scrambleBytes = std::size_t(view_.maxCollisions) * sizeof(BounceScramble);
+  const std::size_t scrambleBytes = std::size_t(scrambleCount(view_)) * sizeof(BounceScramble);
   const std::size_t binBytes = blockWarps * bins * sizeof(float2);
   const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, BvhTargets>));
   const bool inShared = binBytes + scrambleBytes <= sharedLimit;

@@ -8,7 +8,8 @@
 
 #include <cstdint>
 
-// The kernels that trace lines: what all paths of a line share, the paths, and the means of what they leave.
+// The kernels that trace lines: what all paths of a line share, if anything, the paths, and the means of what they
+// leave.
 
 namespace sono {
 
@@ -26,7 +27,7 @@ struct TraceLaunch
   TraceView view;
   CellSpace<Targets, RowCells> space;
   const TraceLine* lines; // of the launch
-  LineStart* starts;
+  LineStart* starts;      // where paths do not start apart
   float2* shared; // what all paths of a line leave: lines x bins; as all bins, the intensity and what is absorbed of it
   double2* sums;  // of parts of batches: lines x batches x parts x bins
   float2* bins;   // of the warps, where they do not lie in shared memory
@@ -53,14 +54,14 @@ struct TraceLaunch
 };
 
 template<bool KeepsRest, class Launch>
-__device__ void addEcho(const Launch& launch, int line, const Vec3f& point, float amplitude)
+__device__ void addEcho(const Launch& launch, int line, const TraceLine& beam, const Vec3f& point, float amplitude)
 {
   if (launch.echoCount == 0)
   {
     return;
   }
-  const EchoSplit split = splitEcho(launch.lines[line], point, amplitude, launch.view.coherenceMm, launch.echoSampleMm,
-                                    launch.echoCount, launch.radPerMm);
+  const EchoSplit split =
+    splitEcho(beam, point, amplitude, launch.view.coherenceMm, launch.echoSampleMm, launch.echoCount, launch.radPerMm);
   if (split.sample < 0)
   {
     return;
@@ -104,7 +105,8 @@ struct CommonSink : PathSink
   {
     if (lane == 0)
     {
-      addEcho<false>(launch, line, point, amplitude * float(launch.paths)); // sums are divided by the paths
+      // Sums are divided by the paths.
+      addEcho<false>(launch, line, launch.lines[line], point, amplitude * float(launch.paths));
     }
   }
 };
@@ -131,40 +133,49 @@ __global__ void startLines(TraceLaunch<Targets> launch, int count)
 template<bool ManyPaths, class Launch>
 struct LaneSink : PathSink
 {
-  __device__ LaneSink(const Launch& theLaunch, int theLine, StagedSegment& theStaged)
+  __device__ LaneSink(const Launch& theLaunch, int theLine, const TraceLine& theBeam, StagedSegment& theStaged)
     : launch(theLaunch)
     , line(theLine)
+    , beam(theBeam)
     , staged(theStaged)
   {
   }
 
   const Launch& launch;
   int line;
+  const TraceLine& beam; // that the path's segments are seen from
   StagedSegment& staged;
+  unsigned segments = 0;
 
   __device__ void segment(const PathSegment& piece)
   {
-    staged = stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
+    ++segments;
+    staged = stage(beam, piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
   }
-  __device__ void echo(const Vec3f& point, float amplitude) { addEcho<ManyPaths>(launch, line, point, amplitude); }
+  __device__ void echo(const Vec3f& point, float amplitude)
+  {
+    addEcho<ManyPaths>(launch, line, beam, point, amplitude);
+  }
+  /// Whether the last segment falls into a bin: there is room for one.
+  __device__ bool holdsSegment() const { return staged.binHigh >= 0; }
+  __device__ void clear() { staged.binHigh = -1; }
 };
 
-/// Takes up the lane's next path that gets away from the first boundary; the key holds the last one. Returns false when
-/// there is none.
+/// A path at its start: in the body, from its own place on the aperture, or behind the first boundary that all paths of
+/// the line share. Returns whether it walks on; `beam` is its line.
 template<class Launch, class Sink>
-__device__ bool nextPath(const Launch& launch, const LineStart& start, int end, int step, PathKey& key, PathState& path,
-                         Sink& sink)
+__device__ bool beginPath(const Launch& launch, int line, const PathKey& key, TraceLine& beam, PathState& path,
+                          Sink& sink)
 {
-  while (int(key.path) + step < end)
+  if (launch.view.startsApart)
   {
-    key.path += std::uint32_t(step);
-    path = start.path;
-    if (passBoundary(launch.view, launch.space, start.boundary, key, path, sink))
-    {
-      return true;
-    }
+    beam = pathLine(launch.view, launch.lines[line], key);
+    path = PathState();
+    return startPath(launch.view, launch.space, beam, path, sink);
   }
-  return false;
+  const LineStart& start = launch.starts[line];
+  path = start.path;
+  return passBoundary(launch.view, launch.space, start.boundary, key, path, sink);
 }
 
 /// A warp's bins go over into its doubles; each lane has its own (see depositByWarp).
@@ -179,10 +190,10 @@ __device__ inline void foldBins(int binCount, int lane, float2* bins, double2* s
 }
 
 /// One block traces one slice of a batch of a line, each lane one path after the other. The paths of a warp step
-/// together, each to its next boundary; what they leave is added to the warp's bins by all its lanes, one segment
-/// after the other. As on the CPU (LineTally), a long sum of floats would lose its last digits: where there are many
-/// paths, warps fold their bins into doubles of their own, which are added up in the end, and keep what rounding leaves
-/// of echoes. No sum depends on which warp is first.
+/// together, each to its next boundary, and lanes whose paths have ended begin the next ones together; what they leave
+/// is added to the warp's bins by all its lanes, one segment after the other. As on the CPU (LineTally), a long sum of
+/// floats would lose its last digits: where there are many paths, warps fold their bins into doubles of their own,
+/// which are added up in the end, and keep what rounding leaves of echoes. No sum depends on which warp is first.
 template<bool BinsInShared, bool ManyPaths, class Targets>
 __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
 {
@@ -209,34 +220,38 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     }
   }
   const std::uint32_t lineKey = launch.keyOf(line);
-  for (int b = threadIdx.x; b < launch.view.maxCollisions; b += blockPaths)
+  for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockPaths)
   {
-    scrambles[b] = makeBounceScramble(launch.view.seed, lineKey, std::uint32_t(batch), std::uint32_t(b));
+    scrambles[b] = makeScramble(launch.view, lineKey, std::uint32_t(batch), b);
   }
   __syncthreads();
 
   const PathRange range = batchRange(launch.paths, launch.batches, batch);
   const int end = range.last - range.first;
   const int step = launch.slices * blockPaths;
-  const TraceLine axis = launch.lines[line];
-  const LineStart& start = launch.starts[line];
-  LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, staged[warp][lane]);
+  TraceLine beam = launch.lines[line];
+  LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, beam, staged[warp][lane]);
   PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * blockPaths + int(threadIdx.x) - step), scrambles };
   PathState path;
-  bool walks = start.meets && nextPath(launch, start, end, step, key, path, sink);
-  unsigned segments = 0;
-  int untilFold = pathsPerFold; // a path adds to a bin but a few times
-  while (__any_sync(allLanes, walks))
+  bool walks = false;
+  bool active = launch.view.startsApart || launch.starts[line].meets; // until the lane has no more paths
+  int untilFold = pathsPerFold;                                       // a path adds to a bin but a few times
+  while (__any_sync(allLanes, active))
   {
-    const bool stepped = walks;
-    if (stepped)
+    sink.clear();
+    if (active && !walks)
     {
-      walks = stepPath(launch.view, launch.space, axis, key, path, sink) ||
-              nextPath(launch, start, end, step, key, path, sink);
-      ++segments;
+      key.path += std::uint32_t(step);
+      active = int(key.path) < end;
+      walks = active && beginPath(launch, line, key, beam, path, sink);
+    }
+    // A path that has met coupling leaves that first.
+    if (walks && !sink.holdsSegment())
+    {
+      walks = stepPath(launch.view, launch.space, beam, key, path, sink);
     }
     __syncwarp();
-    unsigned waiting = __ballot_sync(allLanes, stepped && staged[warp][lane].binHigh >= 0);
+    unsigned waiting = __ballot_sync(allLanes, sink.holdsSegment());
     untilFold -= __popc(waiting);
     for (; waiting; waiting &= waiting - 1)
     {
@@ -249,6 +264,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     }
     __syncwarp();
   }
+  unsigned segments = sink.segments;
   for (int s = warpLanes / 2; s > 0; s /= 2)
   {
     segments += __shfl_down_sync(allLanes, segments, unsigned(s));
@@ -295,7 +311,7 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   const std::size_t at = std::size_t(line) * launch.binCount + b;
   launch.error[at] = 0.0f;
   launch.intensity[at] = launch.shared[at].x;
-  if (!launch.starts[line].meets)
+  if (!launch.view.startsApart && !launch.starts[line].meets)
   {
     launch.attenuation[at] = attenuationOf(launch.shared[at].x, double(launch.shared[at].y), launch.frequencyMHz);
     return;

@@ -26,9 +26,9 @@ struct FibreView
     }
     const std::uint32_t w =
       packed[std::size_t(p.x) + std::size_t(size.x) * (std::size_t(p.y) + std::size_t(size.y) * std::size_t(p.z))];
-    return w == 0u
-             ? Vec3f(0.0f)
-             : (Vec3f(float(w & 255u), float((w >> 8) & 255u), float((w >> 16) & 255u)) - 128.0f) * (1.0f / 127.0f);
+    return w == 0u ? Vec3f(0.0f)
+                   : (Vec3f(float(w & 255u), float((w >> 8) & 255u), float((w >> 16) & 255u)) - Vec3f(128.0f)) *
+                       Vec3f(1.0f / 127.0f);
   }
 };
 

@@ -1,12 +1,14 @@
 #pragma once
 
+#include "Kernel/PathKey.h"
 #include "Kernel/PathPiece.h"
 
-// From the transducer's face into the body and on to the first boundary.
+// From the transducer's face into the body: either once a line, on to the first boundary, for all its paths; or, where
+// the probe names its aperture, for each path from a place of its own.
 
 namespace sono {
 
-/// The way from the transducer to the first boundary, which every path of a line shares.
+/// The way from the transducer to the first boundary, where every path of a line shares it.
 struct LineStart
 {
   bool meets; ///< whether there is a first boundary
@@ -64,17 +66,16 @@ SONO_HD inline bool enterSpace(const Space& space, const TraceLine& line, float 
   return true;
 }
 
-/// Traces what all paths of a line share. Whatever lies between the face and the first tissue that is not the outside
-/// tissue is acoustic coupling: it neither reflects nor attenuates, and targets in it are not seen.
+/// Takes a path along its line into the body; the sink gets the coupling. Whatever lies between the face and the first
+/// tissue that is not the outside tissue is acoustic coupling: it neither reflects nor attenuates, and targets in it
+/// are not seen. Returns whether there is a body.
 template<class Space, class Sink>
-SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, const TraceLine& line, Sink& sink)
+SONO_HD inline bool enterBody(const TraceView& view, const Space& space, const TraceLine& line, PathState& path,
+                              Sink& sink)
 {
-  LineStart start;
-  start.meets = false;
-  PathState& path = start.path;
   if (!enterSpace(space, line, view.depthMm, path))
   {
-    return start;
+    return false;
   }
   sink.segment(PathSegment{ line.origin, line.axis, path.length, 1.0f, 0.0f, 0.0f });
   path.tissue = space.tissueAt(path.ray.cell);
@@ -84,7 +85,7 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
     sink.segment(PathSegment{ path.ray.position, line.axis, hit.t, 1.0f, 0.0f, 0.0f });
     if (hit.tissue < 0)
     {
-      return start;
+      return false;
     }
     path.ray.position += line.axis * hit.t;
     path.ray.cell = hit.after;
@@ -102,6 +103,20 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
       path.tissue = view.firstTargetMedium + left.target;
     }
   }
+  return true;
+}
+
+/// Traces what all paths of a line share.
+template<class Space, class Sink>
+SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, const TraceLine& line, Sink& sink)
+{
+  LineStart start;
+  start.meets = false;
+  PathState& path = start.path;
+  if (!enterBody(view, space, line, path, sink))
+  {
+    return start;
+  }
   start.meets = advanceToBoundary(view, space, line, path, start.boundary, sink) && view.maxCollisions > 0;
   if (start.meets)
   {
@@ -109,6 +124,37 @@ SONO_HD inline LineStart startLine(const TraceView& view, const Space& space, co
     depositBoundary(view, path, start.boundary, sink);
   }
   return start;
+}
+
+/// The line of a path that starts apart: from its place on the aperture to the focus, in each axis its own
+/// (Data/docs/physics.md (3.5), (3.6)). Whatever the path leaves is seen from there: a path that nothing turns away
+/// leaves what one along the beam's axis would.
+SONO_HD inline TraceLine pathLine(const TraceView& view, const TraceLine& line, const PathKey& key)
+{
+  const BounceSample u = drawStart(view, key);
+  const Vec3f lateral = line.lateral * (2.0f * u.polar - 1.0f);
+  const Vec3f elevation = line.elevation * (2.0f * u.azimuth - 1.0f);
+  return { line.origin + lateral + elevation,
+           glm::normalize(line.axis - lateral * view.perTransmitFocus - elevation * view.perElevationFocus) };
+}
+
+/// How much coupling a path met.
+struct CouplingLength : PathSink
+{
+  float mm = 0.0f;
+
+  SONO_HD void segment(const PathSegment& s) { mm += s.length; }
+};
+
+/// Takes a path of its own from the face into the body: one segment. Returns whether there is a body.
+template<class Space, class Sink>
+SONO_HD inline bool startPath(const TraceView& view, const Space& space, const TraceLine& own, PathState& path,
+                              Sink& sink)
+{
+  CouplingLength coupling;
+  const bool inBody = enterBody(view, space, own, path, coupling);
+  sink.segment(PathSegment{ own.origin, own.axis, coupling.mm, 1.0f, 0.0f, 0.0f });
+  return inBody;
 }
 
 } // namespace sono

@@ -13,10 +13,16 @@
 //       o- - - - -:=========#===========.========#===========.=====#===========....'
 //       |         :         |           |        |           |     |
 //       | coupling  1st piece boundary  piece  boundary    piece  boundary
-//       |                   |           |
-//       '---- startLine ----'           '-- another attenuation, the same impedance and speed: no echo, no bend
-//       once a line; all its
-//       paths share it      '---- tracePath: step by step; a step is a piece and what is at its end ---'
+//       |         :         |           |
+//       |         :         |           '-- another attenuation, the same impedance and speed: no echo, no bend
+//       |         :         |
+//       |'startPath'------- tracePath: step by step; a step is a piece and what is at its end ----------'
+//       |                   |
+//       '---- startLine ----'---------- the same steps, but those up to here once a line, for all its paths
+//
+// Where the probe names its aperture, each path starts at a place of its own there and aims at the focus: pathLine,
+// then startPath. Elsewhere all paths of a line start along its axis and share the way to the first boundary:
+// startLine.
 //
 //   stepPath                           done by                 tells the sink
 //     walkPiece                        (PathPiece.h)
@@ -34,10 +40,12 @@
 //   Space   what the volume is made of: where a march meets another tissue, which way the surface faces there, which
 //           targets are in it. CellSpace (dense cells, either device) or NanoSpace (the scene's own grid).
 //   Beam    who listens. It says how far a path can be heard, by a remainingLength(view, beam, path): a TraceLine hears
-//           what comes back to its own face in time.
+//           what comes back to its own face in time. A path that starts apart has a line of its own, and depths,
+//           weights and ends are seen from that.
 //   Sink    what is kept. See PathSink: a tally adds pieces and echoes to its line, a recorder keeps corners and hits.
-//   view    the settings, the same for all paths; key the path's random numbers, which are functions of (seed, line,
-//           batch, path, bounce) and of nothing else, so that it does not matter who follows a path, or when.
+//   view    the settings, the same for all paths; key the path's random numbers (PathKey.h), which are functions of
+//           (seed, line, batch, path, bounce) and of nothing else, so that it does not matter who follows a path, or
+//           when.
 //
 // The loop around the steps belongs to whoever has the threads. A CPU follows one path to its end: tracePath(). A GPU
 // has a path in every lane of a warp and lets the lanes step together by stepPath(); a lane whose path ends takes up
@@ -47,25 +55,6 @@
 // are in the media's decay already. Nothing here allocates, throws or knows a global.
 
 namespace sono {
-
-/// Identifies a path's random stream.
-struct PathKey
-{
-  std::uint32_t line;
-  std::uint32_t batch;
-  std::uint32_t path;                        ///< within its batch
-  const BounceScramble* scrambles = nullptr; ///< of the batch, one a bounce up to maxCollisions, or null to make them
-};
-
-SONO_HD inline BounceSample drawBounce(const TraceView& view, const PathKey& key, std::uint32_t bounce)
-{
-  if (view.lowDiscrepancy)
-  {
-    return lowDiscrepancySample(
-      key.scrambles ? key.scrambles[bounce] : makeBounceScramble(view.seed, key.line, key.batch, bounce), key.path);
-  }
-  return independentSample(view.seed, key.line, key.batch, key.path, bounce);
-}
 
 /// Russian roulette: a path too faint to be seen lives on with a probability in proportion, at the intensity it then
 /// stands for. The mean is unchanged.
@@ -101,7 +90,7 @@ template<class Space, class Sink>
 SONO_HD inline bool passBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
                                  const PathKey& key, PathState& path, Sink& sink)
 {
-  leaveBoundary(view, space, boundary, drawBounce(view, key, std::uint32_t(path.collisions)), path);
+  leaveBoundary(view, space, boundary, drawBounce(view, key, path.collisions), path);
   sink.left(path, boundary);
   return path.intensity > 0.0f && survivesRoulette(view, key, path);
 }
@@ -131,6 +120,19 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const B
   while (passBoundary(view, space, boundary, key, path, sink) &&
          advanceToBoundary(view, space, beam, path, boundary, sink) && arriveAtBoundary(view, path, boundary, sink))
   {
+  }
+}
+
+/// One path of its own line, from the face to its end.
+template<class Space, class Sink>
+SONO_HD inline void tracePath(const TraceView& view, const Space& space, const TraceLine& own, const PathKey& key,
+                              Sink& sink)
+{
+  PathState path;
+  bool goesOn = startPath(view, space, own, path, sink);
+  while (goesOn)
+  {
+    goesOn = stepPath(view, space, own, key, path, sink);
   }
 }
 

@@ -21,11 +21,14 @@ struct TraceMedium
   float correlationMm = 1.0f; ///< l, of that height
 };
 
-/// One main beam (see ScanLine) in the region's local millimetres; the axis is a unit vector.
+/// One main beam (see ScanLine) in the region's local millimetres; the axis is a unit vector. Where paths start apart,
+/// they do so at origin + u lateral + v elevation, u and v in [-1, 1].
 struct TraceLine
 {
   Vec3f origin;
   Vec3f axis;
+  Vec3f lateral = Vec3f(0.0f);
+  Vec3f elevation = Vec3f(0.0f);
 };
 
 /// Everything a path needs beside the space it runs through, trivially copyable.
@@ -40,6 +43,9 @@ struct TraceView
   float waveNumberAtOne = 0.0f; ///< k times c, rad/mm at 1 m/s: 2000 pi f with f in MHz
   bool lowDiscrepancy = true;
   bool deterministic = false;
+  bool startsApart = false;       ///< each path starts at a place of its own on the aperture
+  float perTransmitFocus = 0.0f;  ///< 1/mm, of the aperture along the array; 0: not focused
+  float perElevationFocus = 0.0f; ///< and across it
   int maxCollisions = 7;
   float coherenceMm = 0.1f;
   float depthMm = 160.0f;

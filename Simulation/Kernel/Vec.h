@@ -10,6 +10,7 @@
 namespace sono {
 
 using Vec2f = glm::vec2;
+using Vec2d = glm::dvec2;
 using Vec3f = glm::vec3;
 using Vec3d = glm::dvec3;
 using Vec3i = glm::ivec3;

@@ -45,11 +45,10 @@ double focusDepthMm(const BeamAperture& aperture, double frequencyMHz)
 ApertureProfile apertureProfile(const BeamAperture& aperture, double frequencyMHz)
 {
   const double wavelengthMm = assumedSoundSpeedMmPerUs / frequencyMHz;
-  const bool isArray = aperture.elevationIsArray;
   ApertureProfile profile{};
   profile.lateral = axisOf(aperture.apertureMm, aperture.transmitFocusMm, wavelengthMm, false);
-  profile.elevational = axisOf(aperture.elevationApertureMm,
-                               isArray ? aperture.transmitFocusMm : aperture.elevationFocusMm, wavelengthMm, !isArray);
+  profile.elevational =
+    axisOf(aperture.elevationApertureMm, aperture.focusAcrossMm(), wavelengthMm, !aperture.elevationIsArray);
   profile.gain = 1.0f;
   profile.gain = 1.0f / profileAt(profile, float(focusDepthMm(aperture, frequencyMHz))).amplitude;
   return profile;
@@ -59,12 +58,18 @@ ApertureProfile steeredProfile(const ApertureProfile& straight, const BeamApertu
                                const ScanLine& line)
 {
   ApertureProfile profile = straight;
-  const double lateral2 = 1.0 - line.steeringLateral * line.steeringLateral;
-  profile.lateral.cosine2 = float(lateral2);
-  // A matrix's line points to (sin theta, cos theta sin phi): the elevational aperture is seen at phi.
-  profile.elevational.cosine2 = float(1.0 - line.steeringElevational * line.steeringElevational / lateral2);
+  const Vec2d cosine2 = apertureCosines2(line);
+  profile.lateral.cosine2 = float(cosine2.x);
+  profile.elevational.cosine2 = float(cosine2.y);
   profile.gain *= float(directivity(aperture, frequencyMHz, line));
   return profile;
+}
+
+Vec2d apertureCosines2(const ScanLine& line)
+{
+  const double lateral2 = 1.0 - line.steeringLateral * line.steeringLateral;
+  // A matrix's line points to (sin theta, cos theta sin phi): the elevational aperture is seen at phi.
+  return { lateral2, 1.0 - line.steeringElevational * line.steeringElevational / lateral2 };
 }
 
 double directivity(const BeamAperture& aperture, double frequencyMHz, const ScanLine& line)

@@ -17,6 +17,9 @@ ApertureProfile steeredProfile(const ApertureProfile& straight, const BeamApertu
 /// where the aperture's far field begins, D^2 / (4 lambda).
 double focusDepthMm(const BeamAperture& aperture, double frequencyMHz);
 
+/// How narrow the aperture looks along a line that is steered: squared cosines, along the array and across it.
+Vec2d apertureCosines2(const ScanLine& line);
+
 /// Two-way amplitude of an element that is seen along a line, 1 straight ahead: sinc and cosine, both squared (12.3).
 double directivity(const BeamAperture& aperture, double frequencyMHz, const ScanLine& line);
 

@@ -144,6 +144,8 @@ struct BeamAperture
 
   /// Whether it says how wide the beam is.
   bool isNamed() const { return apertureMm > 0.0 && elevationApertureMm > 0.0; }
+  /// Focus across the plane when transmitting.
+  double focusAcrossMm() const { return elevationIsArray ? transmitFocusMm : elevationFocusMm; }
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -151,7 +153,7 @@ struct BeamAperture
     visitor(self.apertureMm, Parameter{ "apertureMm", "Aperture (mm)", between(0, 1000),
                                         "Width of the elements that send and receive a line, along the array, in mm, 0 "
                                         "to 1000. 0: not known; the beam then has the same width at each depth, the "
-                                        "sigmas of the image formation." });
+                                        "sigmas of the image formation, and all paths of a line start at one point." });
     visitor(self.elevationApertureMm,
             Parameter{ "elevationApertureMm", "Elevation Aperture (mm)", between(0, 1000),
                        "Height of the elements, of a matrix that of all of them together, in mm, 0 to 1000. 0: not "

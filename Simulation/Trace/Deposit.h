@@ -17,7 +17,7 @@ class LineTally : public PathSink
 public:
   LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm);
 
-  /// What was left so far must have been taken.
+  /// From now on depths and distances are seen from this line.
   void start(const TraceLine& line, float coherenceMm);
 
   /// Deposits of echoes are multiplied by this (1 for what all paths share, 1 / N for each path).

@@ -16,8 +16,9 @@ namespace {
 class PathRecorder : public PathSink
 {
 public:
-  PathRecorder(const TraceSetup& setup, int line)
+  PathRecorder(const TraceSetup& setup, int line, const TraceLine& seenFrom)
     : setup_(setup)
+    , line_(seenFrom)
   {
     path_.line = line;
   }
@@ -36,13 +37,12 @@ public:
   void meets(const PathState& path, const PathBoundary& boundary)
   {
     const Vec3f point = path.ray.position + path.ray.direction * boundary.surface.t;
-    const TraceLine& line = setup_.lines[std::size_t(path_.line)];
     met_ = { setup_.worldFromRegion(point),
              setup_.toWorld * Vec3d(boundary.surface.normal),
              path.intensity,
              0.0f,
              boundary.cosine,
-             glm::dot(point - line.origin, line.axis),
+             glm::dot(point - line_.origin, line_.axis),
              path.length + boundary.surface.t - boundary.restart,
              path.collisions,
              boundary.before.medium,
@@ -65,29 +65,43 @@ private:
   }
 
   const TraceSetup& setup_;
+  TraceLine line_;
   RecordedPath path_;
   BoundaryHit met_{};
   int bounces_ = 0;
 };
 
-/// The `number`-th path of a line, of all its batches. Less than two corners where there is nothing to follow.
+/// Of the `number`-th path of a line, of all its batches.
+PathKey keyOf(const TraceSetup& setup, int line, int number)
+{
+  const int batches = std::min(batchCount, setup.paths);
+  int batch = batches - 1;
+  while (batchRange(setup.paths, batches, batch).first > number)
+  {
+    --batch;
+  }
+  const int within = number - batchRange(setup.paths, batches, batch).first;
+  return { std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) };
+}
+
+/// The `number`-th path of a line. Less than two corners where there is nothing to follow.
 RecordedPath recordPath(const TraceSetup& setup, int line, int number)
 {
   const auto space = setup.space();
   const TraceLine& axis = setup.lines[std::size_t(line)];
-  PathRecorder recorder(setup, line);
+  const PathKey key = keyOf(setup, line, number);
+  if (setup.view.startsApart)
+  {
+    const TraceLine own = pathLine(setup.view, axis, key);
+    PathRecorder recorder(setup, line, own);
+    tracePath(setup.view, space, own, key, recorder);
+    return recorder.take();
+  }
+  PathRecorder recorder(setup, line, axis);
   const LineStart start = startLine(setup.view, space, axis, recorder);
   if (start.meets)
   {
-    const int batches = std::min(batchCount, setup.paths);
-    int batch = batches - 1;
-    while (batchRange(setup.paths, batches, batch).first > number)
-    {
-      --batch;
-    }
-    const int within = number - batchRange(setup.paths, batches, batch).first;
-    tracePath(setup.view, space, axis, start, { std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) },
-              recorder);
+    tracePath(setup.view, space, axis, start, key, recorder);
   }
   return recorder.take();
 }

@@ -41,36 +41,49 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
   tally.start(line, view.coherenceMm);
   tally.setEchoWeight(1.0f);
-  const LineStart start = startLine(view, space, line, tally);
-  const std::vector<float> shared = tally.takeBins(1);
-  std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
-  std::vector<double> absorbed = tally.takeAbsorbed(1);
-  if (!start.meets)
+  LineStart start;
+  std::vector<double> absorbed(std::size_t(out.binCount), 0.0);
+  if (!view.startsApart)
   {
-    writeAttenuation(absorbed, setup.frequencyMHz, index, out);
-    tally.takeEchoes(echoes);
-    return;
+    start = startLine(view, space, line, tally);
+    const std::vector<float> shared = tally.takeBins(1);
+    std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
+    absorbed = tally.takeAbsorbed(1);
+    if (!start.meets)
+    {
+      writeAttenuation(absorbed, setup.frequencyMHz, index, out);
+      tally.takeEchoes(echoes);
+      return;
+    }
   }
 
   tally.setEchoWeight(1.0f / float(setup.paths));
   const int batches = std::min(batchCount, setup.paths);
   std::vector<std::vector<float>> means;
-  std::vector<BounceScramble> scrambles(std::size_t(view.maxCollisions));
+  std::vector<BounceScramble> scrambles(std::size_t(scrambleCount(view)));
   for (int batch = 0; batch < batches; ++batch)
   {
     const auto [first, last] = batchRange(setup.paths, batches, batch);
     for (std::size_t b = 0; b < scrambles.size(); ++b)
     {
-      scrambles[b] = makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
+      scrambles[b] = makeScramble(view, std::uint32_t(index), std::uint32_t(batch), int(b));
     }
     for (int path = first; path < last;)
     {
       const int pause = std::min(last, path + pathsPerFold); // a few milliseconds' worth
       for (; path < pause; ++path)
       {
-        tracePath(view, space, line, start,
-                  PathKey{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() },
-                  tally);
+        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() };
+        if (view.startsApart)
+        {
+          const TraceLine own = pathLine(view, line, key);
+          tally.start(own, view.coherenceMm);
+          tracePath(view, space, own, key, tally);
+        }
+        else
+        {
+          tracePath(view, space, line, start, key, tally);
+        }
       }
       if (path < last)
       {

@@ -9,6 +9,7 @@ namespace sono {
 void TraceSettings::validate() const
 {
   requireInRange(*this);
+  requireInRange(aperture);
   requireInRange(lobeMinDeg < lobeMaxDeg, "lobeMinDeg", lobeMinDeg, "below lobeMaxDeg");
   requireInRange(frequencyMHz > 0.0 && std::isfinite(frequencyMHz), "frequency (MHz)", frequencyMHz, "more than 0");
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
@@ -16,6 +17,11 @@ void TraceSettings::validate() const
                  "at most the depth and at least 1/100,000 of it");
   requireInRange(echoSampleMm > 0.0 && depthMm / echoSampleMm <= 1e6, "echo sample (mm)", echoSampleMm,
                  "more than 0 and at least a millionth of the depth");
+}
+
+bool TraceSettings::startApart() const
+{
+  return model == InterfaceModel::Acoustic && !deterministic && aperture.isNamed();
 }
 
 int TraceSettings::binCount() const

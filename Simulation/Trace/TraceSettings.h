@@ -3,6 +3,7 @@
 #include "Core/Device.h"
 #include "Core/Parameters.h"
 #include "Kernel/Interface.h"
+#include "Probe/ScanGeometry.h"
 
 #include <cstdint>
 
@@ -39,6 +40,7 @@ struct TraceSettings
   double lobeMaxDeg = 90.0;   ///< b, above a
   double frequencyMHz = 2.5;  ///< > 0; sets attenuation, how rough surfaces are, and the phase of boundary echoes
   double depthMm = 160.0;     ///< > 0
+  BeamAperture aperture;      ///< of the probe: where it is named, paths start over it (see startApart)
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   double rouletteDb = -100.0;   ///< paths fainter than this play Russian roulette
@@ -46,7 +48,7 @@ struct TraceSettings
   bool interactive = false; ///< for a probe that moves: what is prepared of the scene serves the next poses as well.
                             ///< The image is the same but for rounding, and does not depend on the way there
 
-  /// The parameters of the stage; depth, frequency and echo samples come from the probe and the RF.
+  /// The parameters of the stage; depth, frequency, aperture and echo samples come from the probe and the RF.
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
@@ -100,6 +102,9 @@ struct TraceSettings
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
+  /// Whether each path starts at a place of its own on the aperture and aims at the focus (Data/docs/physics.md 3.1):
+  /// otherwise, and always in Amadou2024 and without chance, all start at the line's origin, along its axis.
+  bool startApart() const;
   /// Samples of the intensity and of the boundary echoes along a line.
   int binCount() const;
   int echoCount() const; ///< 0 for Acoustic, whose surfaces echo by themselves

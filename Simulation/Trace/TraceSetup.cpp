@@ -3,6 +3,7 @@
 #include "Core/ParallelFor.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
+#include "Probe/BeamAperture.h"
 #include "Scene/NanoGridStorage.h"
 
 #include <algorithm>
@@ -47,6 +48,27 @@ void forBlocks(const std::vector<ScanLine>& lines, const Visit& visit)
   });
 }
 
+/// Where paths start and how they are aimed, all 0 where they start together.
+struct StartSpread
+{
+  double lateralMm = 0.0; ///< to either side
+  double elevationalMm = 0.0;
+  double perTransmitFocus = 0.0; ///< 1/mm
+  double perElevationFocus = 0.0;
+};
+
+StartSpread startSpread(const TraceSettings& settings)
+{
+  if (!settings.startApart())
+  {
+    return {};
+  }
+  // The inner half of the aperture (chosen, see Data/docs/physics.md 3.1): a quarter to either side.
+  const auto inverse = [](double focusMm) { return focusMm > 0.0 ? 1.0 / focusMm : 0.0; };
+  return { 0.25 * settings.aperture.apertureMm, 0.25 * settings.aperture.elevationApertureMm,
+           inverse(settings.aperture.transmitFocusMm), inverse(settings.aperture.focusAcrossMm()) };
+}
+
 TraceView makeView(const TraceSettings& settings, const Scene& scene)
 {
   TraceView view;
@@ -59,6 +81,10 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.waveNumberAtOne = float(2000.0 * 3.14159265358979323846 * settings.frequencyMHz);
   view.lowDiscrepancy = settings.sampling != Sampling::Independent;
   view.deterministic = settings.deterministic;
+  const StartSpread spread = startSpread(settings);
+  view.startsApart = settings.startApart();
+  view.perTransmitFocus = float(spread.perTransmitFocus);
+  view.perElevationFocus = float(spread.perElevationFocus);
   view.maxCollisions = settings.maxCollisions;
   view.coherenceMm = float(settings.coherenceMm);
   view.depthMm = float(settings.depthMm);
@@ -70,8 +96,14 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
 
 } // namespace
 
-VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm)
+VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
 {
+  const double depthMm = settings.depthMm;
+  const StartSpread spread = startSpread(settings);
+  const double tilt =
+    std::atan(std::hypot(spread.lateralMm * spread.perTransmitFocus, spread.elevationalMm * spread.perElevationFocus));
+  const double tiltCosine = tilt > 0.0 ? std::cos(tilt) : 1.0;
+  const double tiltSine = tilt > 0.0 ? std::sin(tilt) : 0.0;
   const Mat3d toLocal = scene.rotationToLocal();
   struct Corners
   {
@@ -80,15 +112,22 @@ VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, double d
   };
   std::vector<Corners> corners(std::size_t(blocksOf(lines)));
   forBlocks(lines, [&](int block, std::size_t l) {
-    // The half ball of radius depthMm in front of the line's origin.
+    // The half balls of radius depthMm in front of where its paths start.
     Corners& c = corners[std::size_t(block)];
     const Vec3d origin = scene.localFromWorld(lines[l].originMm);
     const Vec3d axis = toLocal * lines[l].axis;
+    const Vec3d aside = spread.lateralMm * glm::abs(toLocal * lines[l].lateral) +
+                        spread.elevationalMm * glm::abs(toLocal * lines[l].elevation);
     for (int a = 0; a < 3; ++a)
     {
-      const double across = std::sqrt(std::max(0.0, 1.0 - axis[a] * axis[a]));
-      c.high[a] = std::max(c.high[a], origin[a] + depthMm * (axis[a] >= 0.0 ? 1.0 : across));
-      c.low[a] = std::min(c.low[a], origin[a] - depthMm * (axis[a] <= 0.0 ? 1.0 : across));
+      // How far a half ball reaches towards a side that its axis, tilted as far as may be, has this cosine to.
+      const double sine = std::sqrt(std::max(0.0, 1.0 - axis[a] * axis[a]));
+      const auto reach = [&](double cosine) {
+        return cosine * tiltCosine + sine * tiltSine >= 0.0 ? depthMm
+                                                            : depthMm * (sine * tiltCosine - cosine * tiltSine);
+      };
+      c.high[a] = std::max(c.high[a], origin[a] + aside[a] + reach(axis[a]));
+      c.low[a] = std::min(c.low[a], origin[a] - aside[a] - reach(-axis[a]));
     }
   });
   Vec3d low(1e30);
@@ -112,7 +151,7 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   {
     throw Error("the probe has no scan lines: set the number of lines to 1 or more");
   }
-  const VoxelBox box = fanBox(scene, worldLines, settings.depthMm);
+  const VoxelBox box = fanBox(scene, worldLines, settings);
   const bool bakesAll = records == Records::All || settings.march == March::NanoVDB;
   const Progress layingOut = partOf(progress, 0.0, bakesAll ? 0.25 : 1.0);
   cells = settings.interactive ? scene.interactiveRegion(box, layingOut) : scene.regionOnDemand(box, layingOut);
@@ -143,9 +182,13 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   view = makeView(settings, scene);
   view.media = media.data();
   lines.resize(worldLines.size());
+  const StartSpread spread = startSpread(settings);
   forBlocks(worldLines, [&](int, std::size_t l) {
     const ScanLine& line = worldLines[l];
-    lines[l] = { Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis) };
+    const Vec2d cosine2 = apertureCosines2(line);
+    lines[l] = { Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis),
+                 Vec3f(toLocal * line.lateral * (spread.lateralMm * std::sqrt(cosine2.x))),
+                 Vec3f(toLocal * line.elevation * (spread.elevationalMm * std::sqrt(cosine2.y))) };
   });
   const CellSpace<NoTargets> empty{ region->view(), {} };
   PathState path;

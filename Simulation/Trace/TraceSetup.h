@@ -20,8 +20,8 @@ enum class Records
   OnDemand ///< none: space() bakes those that paths meet
 };
 
-/// What the lines' fan can reach of the scene, in voxels.
-VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, double depthMm);
+/// What the lines' fan, from wherever its paths start, can reach of the scene, in voxels.
+VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
 
 /// Everything that tracing needs, made once from the scene and the settings and held while paths run.
 struct TraceSetup

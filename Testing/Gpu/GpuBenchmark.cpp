@@ -214,6 +214,7 @@ void measureKinds(Simulator& simulator)
   measureKind(simulator, "gpu_amadou", input);
   input = a4c();
   input.settings.echo.aperture = { 20.455, 14.0, 65.0, 60.0, 0.295, false }; // of a P4-2
+  input.settings.matchStages();
   measureKind(simulator, "gpu_aperture", input);
   ArrayAperture aperture;
   aperture.fractionalBandwidth = 0.74;

@@ -34,10 +34,12 @@ std::shared_ptr<const T> borrowed(const T* object)
   return { std::shared_ptr<void>(), object };
 }
 
+/// Both stages with the probe's aperture, which the settings of image formation name.
 inline Chain runChain(const EchoSources& sources, const std::vector<ScanLine>& lines, TraceSettings tracing,
                       EchoSettings echo, Device device, const std::vector<TargetSurface>& targets = {})
 {
   tracing.device = echo.device = device;
+  tracing.aperture = echo.aperture;
   Simulator simulator(borrowed(sources.scene));
   Chain chain;
   TracedResult traced;

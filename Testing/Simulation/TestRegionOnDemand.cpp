@@ -154,11 +154,13 @@ TEST(InteractiveProbe, ImageIsThatOfAFreshScene)
 TEST(InteractiveProbe, OneRegionIsPreparedForAllPoses)
 {
   const auto scene = makeBusyScene();
+  TraceSettings settings;
+  settings.depthMm = 30.0;
   std::set<std::shared_ptr<const RegionOnDemand>> regions;
   for (int step = 0; step <= 40; ++step)
   {
     const auto lines = movedFan(-20.0 + step, 0.01 * step);
-    regions.insert(scene->interactiveRegion(fanBox(*scene, lines, 30.0)));
+    regions.insert(scene->interactiveRegion(fanBox(*scene, lines, settings)));
   }
   EXPECT_EQ(regions.size(), 1u);
 }

@@ -45,6 +45,7 @@ HeartView seedView(bool quick)
   view.tracing.maxCollisions = 10; // the seed's for hearts
   view.tracing.frequencyMHz = view.echo.centreFrequencyMHz;
   view.tracing.depthMm = view.echo.depthMm;
+  view.tracing.aperture = preset.aperture();
   view.tracing.echoSampleMm = view.echo.sampleMm();
   return view;
 }

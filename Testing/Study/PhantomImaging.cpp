@@ -42,6 +42,7 @@ PhantomImaging phantomImaging(int lines, Apodization apodization)
   imaging.tracing.coherenceMm = 100.0; // the seed's 0.1, read in metres as its other lengths are
   imaging.tracing.frequencyMHz = imaging.echo.centreFrequencyMHz;
   imaging.tracing.depthMm = imaging.echo.depthMm;
+  imaging.tracing.aperture = preset.aperture();
   imaging.tracing.echoSampleMm = imaging.echo.sampleMm();
 
   imaging.bmode.tgcDbPerCm = 1.5;      // the seed's

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "Kernel/Rng.h"
+#include "Kernel/TraceView.h"
+
+// A path's random numbers: functions of (seed, line, batch, path, bounce) and of nothing else.
+
+namespace sono {
+
+/// Identifies a path's random stream.
+struct PathKey
+{
+  std::uint32_t line;
+  std::uint32_t batch;
+  std::uint32_t path;                        ///< within its batch
+  const BounceScramble* scrambles = nullptr; ///< of the batch, scrambleCount() of them, or null to make them
+};
+
+/// A batch has one scramble a bounce up to maxCollisions, and one for where its paths start.
+SONO_HD inline int scrambleCount(const TraceView& view)
+{
+  return view.maxCollisions + 1;
+}
+
+/// Stands for the bounce number of a path's start, since no bounce has it.
+constexpr std::uint32_t startBounce = 0xffffffffu;
+
+SONO_HD inline BounceScramble makeScramble(const TraceView& view, std::uint32_t line, std::uint32_t batch, int slot)
+{
+  return makeBounceScramble(view.seed, line, batch, slot < view.maxCollisions ? std::uint32_t(slot) : startBounce);
+}
+
+SONO_HD inline BounceSample drawFrom(const TraceView& view, const PathKey& key, int slot, std::uint32_t bounce)
+{
+  if (view.lowDiscrepancy)
+  {
+    return lowDiscrepancySample(
+      key.scrambles ? key.scrambles[slot] : makeBounceScramble(view.seed, key.line, key.batch, bounce), key.path);
+  }
+  return independentSample(view.seed, key.line, key.batch, key.path, bounce);
+}
+
+/// What a boundary consumes, the path's `bounce`-th.
+SONO_HD inline BounceSample drawBounce(const TraceView& view, const PathKey& key, int bounce)
+{
+  return drawFrom(view, key, bounce, std::uint32_t(bounce));
+}
+
+/// What the start consumes: its place on the aperture is (polar, azimuth).
+SONO_HD inline BounceSample drawStart(const TraceView& view, const PathKey& key)
+{
+  return drawFrom(view, key, view.maxCollisions, startBounce);
+}
+
+} // namespace sono
