@@ -65,6 +65,7 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
 
   const float brickMm = nestedCellMm(launch.level) * float(nestedBrickCells);
   const BrickSight<kind> sight(splat, beam, brickMm);
+  const Vec2f halfMm = nestedHalfExtent(beam, launch.level);
   const auto ranksOf = [&](const Vec3i& brick) {
     const Vec3f centre = nestedBrickCentre(brick, launch.level);
     const Vec3f end = launch.extentMm + 0.5f * brickMm;
@@ -80,7 +81,10 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     {
       return 0;
     }
-    return launch.density.ranks(launch.level, depthMm, relativeWeight(beam, centre - beam.origin, depthMm));
+    const Vec3f q = centre - beam.origin;
+    return relativeWeight(beam, q, depthMm, halfMm) >= nestedLeastWeight
+             ? launch.density.ranks(launch.level, depthMm, relativeWeight(beam, q, depthMm))
+             : 0;
   };
   const auto splatCandidate = [&](const Vec3i& brick, int ranks, int number) {
     const Vec3i parent = nestedChild(brick, std::uint32_t(number & 7));

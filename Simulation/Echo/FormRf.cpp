@@ -63,11 +63,11 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
         const float depthMm = glm::dot(centre - b.origin, b.axis);
         if (density.takes(level, depthMm, glm::dot(parent - b.origin, b.axis)))
         {
-          const int ranks = density.ranks(level, depthMm, relativeWeight(b, centre - b.origin, depthMm));
-          if (ranks > 0)
+          const Vec3f q = centre - b.origin;
+          if (relativeWeight(b, q, depthMm, nestedHalfExtent(b, level)) >= nestedLeastWeight)
           {
-            taken.push_back({ i, ranks });
-            most = std::max(most, ranks);
+            taken.push_back({ i, density.ranks(level, depthMm, relativeWeight(b, q, depthMm)) });
+            most = std::max(most, taken.back().ranks);
           }
         }
       }

@@ -163,20 +163,21 @@ SONO_HD inline BeamEcho beamEchoAt(const Beam& b, float lateralMm, float elevati
   return { { expNegative(-0.5f * squared), 0.0f }, depthMm };
 }
 
-/// The modulus of a beam's weight at a place, relative to that on its axis.
-SONO_HD inline float relativeWeight(const Beam& b, const Vec3f& fromOrigin, float depthMm)
+/// The modulus of a beam's weight at a place, relative to that on its axis; or at the place nearest to the axis that
+/// lies no further away than this in either direction.
+SONO_HD inline float relativeWeight(const Beam& b, const Vec3f& fromOrigin, float depthMm,
+                                    const Vec2f& withinMm = Vec2f(0.0f))
 {
+  const float l = larger(0.0f, fabsf(glm::dot(fromOrigin, b.lateral)) - withinMm.x);
+  const float e = larger(0.0f, fabsf(glm::dot(fromOrigin, b.elevation)) - withinMm.y);
   const float depth = larger(depthMm, 0.0f);
   if (isGaussian(b))
   {
     const ProfileAt at = gaussianAt(b, depth);
-    const float l = glm::dot(fromOrigin, b.lateral);
-    const float e = glm::dot(fromOrigin, b.elevation);
     return expNegative(-0.5f * (l * l * at.perLateral2 + e * e * at.perElevational2));
   }
   const ComplexWeight on = beamEchoAt(b, 0.0f, 0.0f, depth).weight;
-  const ComplexWeight off =
-    beamEchoAt(b, glm::dot(fromOrigin, b.lateral), glm::dot(fromOrigin, b.elevation), depth).weight;
+  const ComplexWeight off = beamEchoAt(b, l, e, depth).weight;
   const float onAxis = sqrtf(on.re * on.re + on.im * on.im);
   const float here = sqrtf(off.re * off.re + off.im * off.im);
   return here < onAxis ? here / onAxis : 1.0f;

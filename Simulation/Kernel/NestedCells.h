@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/EchoSplat.h"
 #include "Kernel/NormalDeviate.h"
 #include "Kernel/Rng.h"
 #include "Kernel/Vec.h"
@@ -18,8 +19,8 @@ constexpr float nestedFinestMm = 1.0f / 32.0f; ///< edge of a cell of level 0
 constexpr int nestedLevels = 8;                ///< up to cells of 4 mm
 constexpr float nestedFullWeight = 9.0f;       ///< 1 / the weight from which on all candidates count (2.1 sigma)
 constexpr float nestedLeastWeight = 0.003f;    ///< bricks of less are left out: 3.4 sigma, 1e-5 of the power
-constexpr float nestedReach = 0.87f; ///< that in shares of a Gaussian beam's reach, beamCutSigma, and a little more
-constexpr int nestedBrickCells = 4;  ///< cells along an edge of a brick, on every level
+constexpr float nestedReach = 0.87f;           ///< a little more, as a share of a Gaussian beam's reach, beamCutSigma
+constexpr int nestedBrickCells = 4;            ///< cells along an edge of a brick, on every level
 
 SONO_HD inline float nestedCellMm(int level)
 {
@@ -125,13 +126,9 @@ struct DensityView
   }
   /// Eighths of the candidates of this level that do at this depth and at this weight of the beam, which is 1 on its
   /// axis: 1 to 8. Far from the axis fewer and stronger ones do: what they add to the envelope's moments goes with the
-  /// fourth power of the weight. Still further out none do: 0.
+  /// fourth power of the weight.
   SONO_HD int ranks(int level, float depthMm, float weight) const
   {
-    if (weight < nestedLeastWeight)
-    {
-      return 0;
-    }
     const float edge = nestedCellMm(level);
     const float share = weight * nestedFullWeight;
     const float needed = perMm3[at(depthMm)] * (share < 1.0f ? share : 1.0f);
@@ -145,6 +142,13 @@ struct DensityView
     return sqrtf(edge * edge * edge * 8.0f / float(ranks));
   }
 };
+
+/// Half the extent of a brick of this level along a beam's lateral and elevational direction, mm.
+SONO_HD inline Vec2f nestedHalfExtent(const Beam& b, int level)
+{
+  const auto along = [](const Vec3f& d) { return fabsf(d.x) + fabsf(d.y) + fabsf(d.z); };
+  return Vec2f(along(b.lateral), along(b.elevation)) * (0.5f * nestedCellMm(level) * float(nestedBrickCells));
+}
 
 /// Centre of a brick of this level, mm.
 SONO_HD inline Vec3f nestedBrickCentre(const Vec3i& brick, int level)

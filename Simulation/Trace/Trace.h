@@ -35,10 +35,10 @@ struct TracedLines
   /// lineCount x binCount: the two-way exponent of the amplitude per MHz, B in exp(-B f), mean over the paths weighted
   /// as the intensity is; 0 where nothing arrives. Empty: not known.
   std::vector<float> attenuationNpPerMHz;
-  int echoCount = 0;                             ///< 0 for Acoustic
-  double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
-  std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
-  std::uint64_t segments = 0;                    ///< path segments traced
+  int echoCount = 0;                                         ///< 0 for Acoustic
+  double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm
+  std::vector<std::complex<float>> boundaryEcho;             ///< lineCount x echoCount
+  std::uint64_t segments = 0;                                ///< path segments traced
   std::shared_ptr<const std::vector<TargetSurface>> targets; ///< that it was traced with; null: none
 
   /// The arrays with the names and places that they have in a pipeline.
