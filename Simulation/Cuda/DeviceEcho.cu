@@ -196,7 +196,7 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStr
     largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
   }
   // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
-  largest *= DensityView::amplitudeScale(density_.coarsest, 1) * std::max(1.0f, float(beam.largestWeight));
+  largest *= makeNestedShare(1.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(beam.largestWeight));
   nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
 }
 
@@ -283,7 +283,7 @@ void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cuda
   pieceSet_.media = job.media;
   pieceSet_.nets = job.nets;
   pieceSet_.edgeMm = job.pieces->edgeMm();
-  pieceSet_.marginMm = job.longestStepMm;
+  pieceSet_.marginMm = 1.5f * job.longestStepMm;
   pieceSet_.seed = job.seed;
   uploadFieldSight(job.sight, pieceSight_, stream, traffic);
   targets_ = job.targets.has_value();

@@ -243,7 +243,7 @@ SurfaceJob makeSurfaces(const EchoSetup& setup)
   job.pieces = &surfaces.pieces();
   job.blocks = seenBlocks(setup);
   job.sceneId = setup.sources.scene->id();
-  job.longestStepMm = surfaces.marginMm();
+  job.longestStepMm = surfaces.longestStepMm();
   job.nets = surfaces.nets();
   job.seed = setup.settings.seed;
   job.media = surfaces.rows().count();

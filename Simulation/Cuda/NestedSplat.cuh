@@ -66,27 +66,28 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
   const float brickMm = nestedCellMm(launch.level) * float(nestedBrickCells);
   const BrickSight<kind> sight(splat, beam, brickMm);
   const Vec2f halfMm = nestedHalfExtent(beam, launch.level);
-  const auto ranksOf = [&](const Vec3i& brick) {
+  const auto shareOf = [&](const Vec3i& brick) {
+    const NestedShare none{ 0, 0.0f, 0.0f };
     const Vec3f centre = nestedBrickCentre(brick, launch.level);
     const Vec3f end = launch.extentMm + 0.5f * brickMm;
     const bool isInside =
       brick.x >= 0 && brick.y >= 0 && brick.z >= 0 && centre.x < end.x && centre.y < end.y && centre.z < end.z;
     if (!isInside || !sight.isAbove(centre, litToMm) || !sight.meets(centre))
     {
-      return 0;
+      return none;
     }
     const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, launch.level + 1);
     const float depthMm = glm::dot(centre - beam.origin, beam.axis);
     if (!launch.density.takes(launch.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
     {
-      return 0;
+      return none;
     }
     const Vec3f q = centre - beam.origin;
     return relativeWeight(beam, q, depthMm, halfMm) >= nestedLeastWeight
-             ? launch.density.ranks(launch.level, depthMm, relativeWeight(beam, q, depthMm))
-             : 0;
+             ? launch.density.share(launch.level, depthMm, relativeWeight(beam, q, depthMm))
+             : none;
   };
-  const auto splatCandidate = [&](const Vec3i& brick, int ranks, int number) {
+  const auto splatCandidate = [&](const Vec3i& brick, float scale, int number) {
     const Vec3i parent = nestedChild(brick, std::uint32_t(number & 7));
     const Vec3i cell =
       nestedChild(parent, childOfRank(nestedHash(launch.seed, parent, launch.level + 1), std::uint32_t(number >> 3)));
@@ -107,8 +108,7 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     const std::size_t at =
       std::size_t(voxel.x) + std::size_t(launch.size.x) * (std::size_t(voxel.y) + std::size_t(launch.size.y) * voxel.z);
     const int tissue = launch.voxels[at];
-    float amplitude = c.sign * scattererAmplitude(media[tissue], c.presence, c.deviate) *
-                      DensityView::amplitudeScale(launch.level, ranks);
+    float amplitude = c.sign * scattererAmplitude(media[tissue], c.presence, c.deviate) * scale;
     if (amplitude == 0.0f)
     {
       return;
@@ -124,14 +124,15 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
 
   const CellRows bricks(beam, piece, brickMm, Vec3f(0.0f), launch.extentMm);
   forCells(bricks, [&](bool exists, const Vec3i& own) {
-    const int ownRanks = exists ? ranksOf(own) : 0;
-    forItemsOfWarp(8 * ownRanks, [&](int owner, int number) {
+    const NestedShare share = exists ? shareOf(own) : NestedShare{ 0, 0.0f, 0.0f };
+    forItemsOfWarp(8 * share.ranks, [&](int owner, int number) {
       const Vec3i brick(__shfl_sync(allLanes, own.x, owner), __shfl_sync(allLanes, own.y, owner),
                         __shfl_sync(allLanes, own.z, owner));
-      const int ranks = __shfl_sync(allLanes, ownRanks, owner);
+      const NestedShare part{ __shfl_sync(allLanes, share.ranks, owner), __shfl_sync(allLanes, share.last, owner),
+                              __shfl_sync(allLanes, share.scale, owner) };
       if (owner >= 0)
       {
-        splatCandidate(brick, ranks, number);
+        splatCandidate(brick, part.scaleOf(number >> 3), number);
       }
     });
   });

@@ -12,7 +12,7 @@
 namespace sono {
 
 constexpr int surfaceThreads = 128;
-constexpr int surfaceSlices = 32; // blocks of a line at most
+constexpr int surfaceSlices = 12; // blocks of a line at most
 
 struct SurfaceLaunch
 {
@@ -42,10 +42,10 @@ template<BeamKind kind>
 class GroupSight
 {
 public:
-  __device__ GroupSight(const SurfaceLaunch& launch, const Beam& beam, float litToMm)
+  __device__ GroupSight(const SurfaceLaunch& launch, const Beam& beam, float reachMm)
     : beam_(beam)
     , bricks_(launch.splat, beam, launch.set.edgeMm, launch.set.marginMm)
-    , litToMm_(litToMm)
+    , reachMm_(reachMm)
   {
   }
 
@@ -53,7 +53,7 @@ public:
   {
     const Vec3f q = group.centreMm - beam_.origin;
     const float r = glm::dot(q, beam_.axis);
-    if (r < -group.radiusMm || r > litToMm_ + group.radiusMm)
+    if (r < -group.radiusMm || r > reachMm_ + group.radiusMm)
     {
       return false;
     }
@@ -73,7 +73,7 @@ public:
 private:
   const Beam& beam_;
   BrickSight<kind> bricks_;
-  float litToMm_;
+  float reachMm_;
 };
 
 /// A piece that a line hears.
@@ -166,7 +166,7 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
     }
   };
 
-  const GroupSight<kind> sight(launch, beam, litToMm);
+  const GroupSight<kind> sight(launch, beam, litToMm + surfaceCrossingMm + set.marginMm);
   const int lane = int(threadIdx.x) % warpLanes;
   const int warp = int(threadIdx.x) / warpLanes;
   int diffuse = 0;

@@ -33,7 +33,7 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
   struct Taken
   {
     std::size_t beam;
-    int ranks;
+    NestedShare share;
   };
   const NestedScatterers& nested = *setup.nested;
   const DensityView density = setup.density->view();
@@ -66,8 +66,8 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
           const Vec3f q = centre - b.origin;
           if (relativeWeight(b, q, depthMm, nestedHalfExtent(b, level)) >= nestedLeastWeight)
           {
-            taken.push_back({ i, density.ranks(level, depthMm, relativeWeight(b, q, depthMm)) });
-            most = std::max(most, taken.back().ranks);
+            taken.push_back({ i, density.share(level, depthMm, relativeWeight(b, q, depthMm)) });
+            most = std::max(most, taken.back().share.ranks);
           }
         }
       }
@@ -79,7 +79,7 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
       for (const Taken& t : taken)
       {
         const Beam& b = beams[t.beam].beam;
-        splat(NestedScatterers::seen(buffer, level, t.ranks, b.axis), b, grid, sums[t.beam]);
+        splat(NestedScatterers::seen(buffer, t.share, b.axis), b, grid, sums[t.beam]);
       }
     });
   }

@@ -3,6 +3,7 @@
 #include "Core/Simd.h"
 #include "Kernel/FastMath.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sono {
@@ -181,18 +182,24 @@ void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer
   }
 }
 
-ScattererView NestedScatterers::seen(Buffer& buffer, int level, int ranks, const Vec3f& axis)
+ScattererView NestedScatterers::seen(Buffer& buffer, const NestedShare& share, const Vec3f& axis)
 {
-  const int count = buffer.end[std::size_t(ranks)];
-  const float* amplitude = buffer.amplitude.data();
+  const int count = buffer.end[std::size_t(share.ranks)];
+  float* along = buffer.along.data();
   if (buffer.hasFibres)
   {
-    seeAlong(axis, buffer.fibreX.data(), buffer.fibreY.data(), buffer.fibreZ.data(), amplitude, count,
-             buffer.along.data());
-    amplitude = buffer.along.data();
+    seeAlong(axis, buffer.fibreX.data(), buffer.fibreY.data(), buffer.fibreZ.data(), buffer.amplitude.data(), count,
+             along);
   }
-  return { buffer.x.data(), buffer.y.data(), buffer.z.data(),
-           amplitude,       count,           DensityView::amplitudeScale(level, ranks) };
+  else
+  {
+    std::copy_n(buffer.amplitude.data(), count, along);
+  }
+  for (int n = buffer.end[std::size_t(share.ranks - 1)]; n < count; ++n)
+  {
+    along[n] *= share.last;
+  }
+  return { buffer.x.data(), buffer.y.data(), buffer.z.data(), along, count, share.scale };
 }
 
 } // namespace sono

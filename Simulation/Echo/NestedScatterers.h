@@ -47,9 +47,8 @@ public:
   /// Fills the buffer with the scatterers of a brick whose rank is below `ranks`, ascending by rank; amplitudes for one
   /// candidate a mm^3.
   void generate(int level, const Vec3i& brick, int ranks, Buffer& buffer) const;
-  /// The scatterers of the first ranks as a beam along `axis` (local, unit) sees them, with the amplitude of this level
-  /// and so many eighths of its candidates. In the buffer until its next use.
-  static ScattererView seen(Buffer& buffer, int level, int ranks, const Vec3f& axis);
+  /// The scatterers of a share as a beam along `axis` (local, unit) sees them. In the buffer until its next use.
+  static ScattererView seen(Buffer& buffer, const NestedShare& share, const Vec3f& axis);
 
 private:
   const Scene& scene_;

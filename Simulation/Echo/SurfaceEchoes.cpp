@@ -135,7 +135,7 @@ BrickGrid SurfaceEchoes::pieceGrid() const
   return { pieces_.edgeMm(), Vec3f(0.0f), pieces_.sizeMm() };
 }
 
-float SurfaceEchoes::marginMm() const
+float SurfaceEchoes::longestStepMm() const
 {
   const Vec3f spacing = pieces_.spacingMm();
   return std::max({ spacing.x, spacing.y, spacing.z });
@@ -146,7 +146,9 @@ std::vector<BeamReach> SurfaceEchoes::seeingPieces(std::vector<BeamReach> beams)
   for (BeamReach& beam : beams)
   {
     beam.sight = pieceSight_.get();
-    beam.marginMm = marginMm();
+    // Points lie up to a voxel and a half outside of their brick, and are lit from a little further in front.
+    beam.marginMm = 1.5f * longestStepMm();
+    beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm + beam.marginMm : 0.0f;
   }
   return beams;
 }
@@ -172,6 +174,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
     for (BeamReach& beam : beams)
     {
       beam.sight = targetSight_.get();
+      beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
     }
     const SurfaceTable table = targetTable();
     forSeenBricks(targets_->grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
@@ -191,7 +194,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
   }
   beams = seeingPieces(std::move(beams));
   const SurfaceTable table = pieceTable();
-  const float longestMm = marginMm();
+  const float longestMm = longestStepMm();
   std::vector<Listener> listeners;
   forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
     const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);

@@ -38,8 +38,7 @@ public:
   const FieldSight* targetSight() const { return targetSight_.get(); } ///< the same
   const PieceNets& nets() const { return nets_; }
   BrickGrid pieceGrid() const;
-  /// How far outside of its brick a piece may lie.
-  float marginMm() const;
+  float longestStepMm() const; ///< between voxels
   /// Beams of the scene as the pieces' bricks meet them.
   std::vector<BeamReach> seeingPieces(std::vector<BeamReach> beams) const;
   SurfaceTable pieceTable() const;

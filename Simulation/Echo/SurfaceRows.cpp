@@ -15,8 +15,9 @@ constexpr double pi = 3.14159265358979323846;
 constexpr int nodes = 162;
 constexpr double perTangent = 32.0; // up to 78.7 degrees
 constexpr double mixtureUpTo = 10.0;
-constexpr double nothing = -80.0;   // log of an amplitude
-constexpr double largePiece = 16.0; // squares of its blob
+constexpr double nothing = -80.0;    // log of an amplitude
+constexpr double leastBeside = 3e-3; // coherent power that counts beside the diffuse one
+constexpr double largePiece = 16.0;  // squares of its blob
 
 /// The surface that counts of two, the rougher.
 const Tissue& rougher(const Tissue& a, const Tissue& b)
@@ -156,6 +157,17 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
           std::exp(-out.roughness * cosine * cosine - 0.5 * radPerMm * radPerMm * spread * pulse / (pulse + spread));
         return coherent * largePiece * blobMm * blobMm * perBeamArea_ > surfaceFaintest;
       };
+      // A plane's coherent echo, eq. 10.6, for a beam half as wide as at its focus, against its diffuse one.
+      const auto isHeardBeside = [&](double diffuse, double tangent) {
+        const double cosSquared = 1.0 / (1.0 + tangent * tangent);
+        const double r = surfaceReflection(out, float(std::sqrt(cosSquared)));
+        const double depth = std::pow(0.5 * beam.lateralSigmaMm * tangent, 2);
+        const double pulse = pulseSigmaMm_ * pulseSigmaMm_;
+        const double power =
+          r * r * pulse / (pulse + depth) *
+          std::exp(-2.0 * out.roughness * cosSquared - radPerMm * radPerMm * depth * pulse / (pulse + depth));
+        return power > leastBeside * diffuse * diffuse * pi * beam.lateralSigmaMm * beam.elevationalSigmaMm;
+      };
       for (int n = 0; n < nodes - 1; ++n)
       {
         const double tangent = n / perTangent;
@@ -163,8 +175,9 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
         const double diffuse = std::exp(double(out.logDiffuse) + std::max(diffuseL_[at], diffuseE_[at]));
         const float next = float(std::min(n + 1.0, nodes - 1.5) / perTangent);
         out.reach = diffuse * std::sqrt(largePiece) * widestMm > surfaceFaintest ? next : out.reach;
-        out.coherentReach = counts(widestMm, tangent) ? next : out.coherentReach;
-        out.finestReach = counts(finestMm, tangent) ? next : out.finestReach;
+        const bool isHeard = isHeardBeside(diffuse, tangent);
+        out.coherentReach = isHeard && counts(widestMm, tangent) ? next : out.coherentReach;
+        out.finestReach = isHeard && counts(finestMm, tangent) ? next : out.finestReach;
       }
       out.finestReach = std::max(out.finestReach, out.coherentReach);
       const double steepest = std::max(out.reach, out.finestReach) + surfaceTangentSlack;

@@ -98,6 +98,25 @@ SONO_HD inline NestedCandidate nestedCandidate(std::uint64_t seed, const Vec3i& 
            (w.v[1] & 0x400u) ? 1.0f : -1.0f };
 }
 
+/// A part of a brick's candidates, by rank: whole eighths of them, and of the last eighth the amplitudes times `last`,
+/// so that nothing pops up where the part grows.
+struct NestedShare
+{
+  int ranks;   ///< 1 to 8; 0: none
+  float last;  ///< above 0, up to 1
+  float scale; ///< of all amplitudes, as 1 / sqrt(density), mm^(3/2)
+
+  SONO_HD float scaleOf(int rank) const { return rank + 1 < ranks ? scale : scale * last; }
+};
+
+/// Of cells of this edge so many eighths, taken as 1 to 8.
+SONO_HD inline NestedShare makeNestedShare(float eighths, float edgeMm)
+{
+  const float n = larger(1.0f, smaller(8.0f, eighths));
+  const int ranks = int(ceilf(n));
+  return { ranks, sqrtf(n - float(ranks - 1)), sqrtf(edgeMm * edgeMm * edgeMm * 8.0f / n) };
+}
+
 /// Which bricks a line takes its scatterers from, and how many eighths of them. Trivially copyable; see
 /// ScattererDensity, which owns the tables. A brick of level a is a cube of 4^3 cells. A line takes the coarsest bricks
 /// whose whole depth does with their density: each point of space lies in exactly one of them.
@@ -125,21 +144,14 @@ struct DensityView
     return enough && !parentHas;
   }
   /// Eighths of the candidates of this level that do at this depth and at this weight of the beam, which is 1 on its
-  /// axis: 1 to 8. Far from the axis fewer and stronger ones do: what they add to the envelope's moments goes with the
-  /// fourth power of the weight.
-  SONO_HD int ranks(int level, float depthMm, float weight) const
+  /// axis. Far from the axis fewer and stronger ones do: what they add to the envelope's moments goes with the fourth
+  /// power of the weight.
+  SONO_HD NestedShare share(int level, float depthMm, float weight) const
   {
     const float edge = nestedCellMm(level);
-    const float share = weight * nestedFullWeight;
-    const float needed = perMm3[at(depthMm)] * (share < 1.0f ? share : 1.0f);
-    const int eighths = int(ceilf(8.0f * needed * edge * edge * edge - 1e-4f));
-    return eighths < 1 ? 1 : (eighths > 8 ? 8 : eighths);
-  }
-  /// Factor of the amplitudes, as 1 / sqrt(density), mm^(3/2).
-  SONO_HD static float amplitudeScale(int level, int ranks)
-  {
-    const float edge = nestedCellMm(level);
-    return sqrtf(edge * edge * edge * 8.0f / float(ranks));
+    const float full = weight * nestedFullWeight;
+    const float needed = 8.0f * perMm3[at(depthMm)] * (full < 1.0f ? full : 1.0f) * edge * edge * edge;
+    return makeNestedShare(needed, edge);
   }
 };
 

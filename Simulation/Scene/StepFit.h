@@ -181,17 +181,42 @@ public:
   {
   }
 
-  void add(double x, double y, double height, double weight)
+  /// Data at one y: `count` places x from `first` on, a step of 1 apart, their heights and weights. The arrays go on to
+  /// a multiple of four with weights of 0.
+  void addRow(double first, double y, int count, const float* height, const float* weight)
   {
-    const double m[4] = { 1.0, x * u_, y * v_, x * x * u_ * u_ + y * y * v_ * v_ + height * height };
-    for (int r = 0; r < 4; ++r)
+    Doubles s[9] = {}; // sums of w, w x, w x^2, w q, w x q, w q^2, w h, w x h, w q h with q = x^2 + h^2
+    Doubles x = Doubles{ 0.0, 1.0, 2.0, 3.0 } + first;
+    for (int n = 0; n < count; n += 4, x += 4.0)
     {
-      for (int c = r; c < 4; ++c)
-      {
-        a_[r][c] += weight * m[r] * m[c];
-      }
-      a_[r][4] += weight * m[r] * height;
+      const Doubles h = { height[n], height[n + 1], height[n + 2], height[n + 3] };
+      const Doubles w = { weight[n], weight[n + 1], weight[n + 2], weight[n + 3] };
+      const Doubles q = x * x * (u_ * u_) + h * h;
+      const Doubles wx = w * x;
+      const Doubles wq = w * q;
+      s[0] += w;
+      s[1] += wx;
+      s[2] += wx * x;
+      s[3] += wq;
+      s[4] += wx * q;
+      s[5] += wq * q;
+      s[6] += w * h;
+      s[7] += wx * h;
+      s[8] += wq * h;
     }
+    double t[9];
+    for (int i = 0; i < 9; ++i)
+    {
+      t[i] = (s[i][0] + s[i][1]) + (s[i][2] + s[i][3]);
+    }
+    addSums(t, y * v_);
+  }
+
+  void add(double x, double y, double h, double w)
+  {
+    const double q = x * x * u_ * u_ + h * h;
+    const double t[9] = { w, w * x, w * x * x, w * q, w * x * q, w * q * q, w * h, w * x * h, w * q * h };
+    addSums(t, y * v_);
   }
 
   bool solve(Shape& out)
@@ -228,6 +253,28 @@ public:
   }
 
 private:
+  using Doubles = double __attribute__((vector_size(32)));
+
+  /// Of one y; x in columns.
+  void addSums(const double* t, double y)
+  {
+    const double y2 = y * y;
+    a_[0][0] += t[0];
+    a_[0][1] += u_ * t[1];
+    a_[0][2] += y * t[0];
+    a_[0][3] += t[3] + y2 * t[0];
+    a_[0][4] += t[6];
+    a_[1][1] += u_ * u_ * t[2];
+    a_[1][2] += u_ * y * t[1];
+    a_[1][3] += u_ * (t[4] + y2 * t[1]);
+    a_[1][4] += u_ * t[7];
+    a_[2][2] += y2 * t[0];
+    a_[2][3] += y * (t[3] + y2 * t[0]);
+    a_[2][4] += y * t[6];
+    a_[3][3] += t[5] + y2 * (2.0 * t[3] + y2 * t[0]);
+    a_[3][4] += t[8] + y2 * t[6];
+  }
+
   double u_;
   double v_;
   double a_[4][5] = {};

@@ -227,13 +227,20 @@ private:
     {
       const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
       const float* weight = windowOf(radius).weight.data() + (2 * radius + 1) * (j + radius);
-      for (int n = 0; n <= 2 * radius; ++n)
+      const int pitch = 2 * radius + 1;
+      float heights[allColumns + 3];
+      float weights[allColumns + 3];
+      for (int n = 0; n < pitch; ++n)
       {
-        if (steps[n] != unknown && weight[n] > 0.0f)
-        {
-          ofBall.add(n - radius, j, steps[n], weight[n]);
-        }
+        const bool isKnown = steps[n] != unknown;
+        heights[n] = isKnown ? float(steps[n]) : 0.0f;
+        weights[n] = isKnown ? weight[n] : 0.0f;
       }
+      for (int n = pitch; n < pitch + 3; ++n)
+      {
+        heights[n] = weights[n] = 0.0f;
+      }
+      ofBall.addRow(-radius, j, pitch, heights, weights);
       if (known)
       {
         forEdges(

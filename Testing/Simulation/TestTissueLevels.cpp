@@ -18,6 +18,13 @@ namespace {
 using namespace sono;
 using namespace sono::test;
 
+/// On the axis, of a level's candidates.
+double eighthsOf(const DensityView& view, int level, float depthMm)
+{
+  const NestedShare share = view.share(level, depthMm, 1.0f);
+  return share.ranks - 1 + double(share.last) * double(share.last);
+}
+
 Tissue backscattering(const std::string& name, double perCmSr, double exponent, double mean, double sigma,
                       double probability)
 {
@@ -158,7 +165,7 @@ TEST(TissueLevels, FewScatterersExceedRayleighAsExpected)
   const double cellMm3 = M_PI * 0.64 * std::sqrt(M_PI) * pulseSigmaMm(2.5, 0.6);
   const ScattererDensity density(s.depthMm, [&](double) { return cellMm3; });
   const int level = density.finest();
-  const double perMm3 = density.view().ranks(level, 1.0f, 1.0f) / 8.0 / std::pow(double(nestedCellMm(level)), 3.0);
+  const double perMm3 = eighthsOf(density.view(), level, 1.0f) / 8.0 / std::pow(double(nestedCellMm(level)), 3.0);
   const double scatterers = probability * perMm3 * cellMm3;
   const Moments m = momentsOf(formTissue(*scene, grid(40, 5.0, 1.5), s), 3.0, 60.0);
   const double excess = 3.0 / (2.0 * std::sqrt(2.0) * scatterers);
@@ -262,7 +269,7 @@ TEST(ScattererDensity, ALineTakesEachPointOfSpaceOnce)
         // The walk visits that brick, and there are enough there.
         EXPECT_TRUE(pointDepth < 0.0f || pointDepth > 80.0f ||
                     (pointDepth >= density.range(level).fromMm && pointDepth <= density.range(level).toMm));
-        const double perMm3 = view.ranks(level, depth, 1.0f) / 8.0 / std::pow(double(nestedCellMm(level)), 3.0);
+        const double perMm3 = eighthsOf(view, level, depth) / 8.0 / std::pow(double(nestedCellMm(level)), 3.0);
         const double inCell = perMm3 * varyingCellMm3(std::min(80.0, std::max(0.0, double(depth))));
         EXPECT_GE(inCell, 0.9 * candidatesPerCell) << "at " << depth;
       }
@@ -302,8 +309,9 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
       const double squared =
         std::pow(glm::dot(off, lines[line].lateral), 2) + std::pow(glm::dot(off, lines[line].elevation), 2);
       const double share = std::min(1.0, 9.0 * std::exp(-0.5 * squared));
-      const int ranks = std::max(1, int(std::ceil(8.0 * needed * share * h * h * h - 1e-4)));
-      const double perMm3 = ranks / 8.0 / (h * h * h);
+      const double eighths = std::clamp(8.0 * needed * share * h * h * h, 1.0, 8.0);
+      const int ranks = int(std::ceil(eighths));
+      const double perMm3 = eighths / 8.0 / (h * h * h);
       for (int rank = 0; rank < ranks; ++rank)
       {
         const Vec3i cell = nestedChild(parent, childOfRank(nestedHash(s.seed, parent, level + 1), std::uint32_t(rank)));
@@ -317,7 +325,8 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
                                    : double(normalDeviate(c.deviate));
         const double backscatter = 0.1 * (upper ? 1e-4 * std::pow(3.6, 1.4) : 2e-3);
         const double amplitude = std::sqrt(backscatter / (perMm3 * (upper ? 0.7 : 0.5))) * (1.54 / 3.6) / (2.0 * M_PI);
-        points.push_back({ Vec3d(c.positionMm), float(double(c.sign) * amplitude * shape) });
+        const double last = rank + 1 < ranks ? 1.0 : std::sqrt(eighths - rank);
+        points.push_back({ Vec3d(c.positionMm), float(double(c.sign) * amplitude * last * shape) });
       }
     }
     const auto exact = directIq(points, lines[line], s);
