@@ -1,5 +1,6 @@
 #include "Cuda/DeviceDisplay.cuh"
 
+#include "Image/BMode.h"
 #include "Kernel/GreyByte.h"
 
 #include <algorithm>
@@ -140,7 +141,7 @@ __global__ void __launch_bounds__(threads)
       const float value = __uint_as_float(state.bits);
       const float top = __uint_as_float(atomicMax(&state.largest, 0u));
       reference[blockIdx.y] =
-        value >= smallestNormalFloat ? double(value) : (top >= smallestNormalFloat ? double(top) : 1.0);
+        value >= smallestNormalFloat ? whiteOverRank * double(value) : (top >= smallestNormalFloat ? double(top) : 1.0);
     }
   }
 }
@@ -271,7 +272,7 @@ GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines,
     const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 4096, 264))), images);
     const int first = settings_.firstReferenceSample;
     const std::size_t counted = std::size_t(lines) * (samples - first);
-    const auto rank = std::uint32_t(counted - counted / 1000);
+    const auto rank = std::uint32_t(referenceRank(counted));
     for (const auto pass : { findRank<0>, findRank<1>, findRank<2> })
     {
       pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples, first, lines, counted, rank, states,

@@ -136,10 +136,10 @@ double automaticReference(const std::vector<float>& envelope, int lineCount, con
   const auto first = std::size_t(firstReferenceSample(int(factor.size()), sampleMm));
   const RankSearch search(envelope, factor, first, lineCount);
   const std::uint64_t count = (factor.size() - first) * std::uint64_t(lineCount);
-  const float percentile = search.find(count - count / 1000); // ceil(0.999 n) without rounding
+  const float percentile = search.find(referenceRank(count));
   if (percentile >= smallestNormalFloat)
   {
-    return percentile;
+    return whiteOverRank * double(percentile);
   }
   const float largest = search.find(count);
   return largest >= smallestNormalFloat ? largest : 1.0;

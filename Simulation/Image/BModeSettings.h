@@ -48,8 +48,8 @@ struct BModeSettings
             Parameter{ "automaticReference",
                        "Automatic Reference",
                        {},
-                       "Take the 99.9th percentile of the depth-gained envelope, the first 6 mm left out, as the "
-                       "reference." });
+                       "Take 25 dB above the 90th percentile of the depth-gained envelope, the first 6 mm left "
+                       "out, as the reference." });
     visitor(self.referenceAmplitude,
             Parameter{ "referenceAmplitude", "Reference Amplitude", atLeast(0),
                        "Envelope that is white, above 0, no unit: 1 is the echo of a perfect plane reflector; used "
