@@ -92,6 +92,15 @@ vtkMultiBlockDataSet* Anatomy::blocks(vtkDataObject* input, const char* labels)
   return builder_->GetOutput();
 }
 
+vtkMultiBlockDataSet* Anatomy::builtBlocks(vtkDataObject* input) const
+{
+  if (!vtkImageData::SafeDownCast(input))
+  {
+    return vtkMultiBlockDataSet::SafeDownCast(input);
+  }
+  return builtAt_ == builder_->GetMTime() && contentOf(input) == connected_ ? builder_->GetOutput() : nullptr;
+}
+
 void Anatomy::update()
 {
   const bool isMade = builder_->GetExecutive()->Update() != 0;

@@ -27,6 +27,8 @@ public:
   /// holds the labels; null: as the builder has it. Throws Error with the builder's sentence, Aborted when the owner is
   /// to stop.
   vtkMultiBlockDataSet* blocks(vtkDataObject* input, const char* labels);
+  /// The same where nothing need be built; null otherwise.
+  vtkMultiBlockDataSet* builtBlocks(vtkDataObject* input) const;
 
 private:
   void reportProgress(double fraction);

@@ -136,7 +136,7 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
     {
       throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
     }
-    this->Inside->announce(output);
+    this->Inside->announce(input, output);
   });
 }
 
