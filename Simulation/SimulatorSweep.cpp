@@ -1,4 +1,3 @@
-#include "Core/ParallelFor.h"
 #include "Core/Policy.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
@@ -70,11 +69,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
                    const std::vector<TargetSurface>& targets)
 {
   const int perImage = settings.geometry.totalLineCount();
-  std::vector<ScanLine> lines(poses.size() * std::size_t(perImage));
-  parallelFor(int(poses.size()), {}, [&](int pose) {
-    const auto made = makeScanLines(settings.geometry, poses[std::size_t(pose)]);
-    std::copy(made.begin(), made.end(), lines.begin() + std::ptrdiff_t(pose) * perImage);
-  });
+  const std::vector<ScanLine> lines = makeScanLines(settings.geometry, poses);
   const TracedLines tracedOfOne = tracedLayout(perImage, settings.tracing);
   const RfLines rfOfOne = rfLayout(perImage, settings.echo);
   const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
@@ -88,9 +83,8 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   const Progress running = partOf(progress, 0.3, 1.0);
   DeviceImager& imager = DeviceImager::instance();
   const int together = std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, perImage, scan)));
-  const auto bmodeJob =
-    std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
-  std::shared_ptr<const EchoJob> echoJob; // made while the first lines are traced
+  std::shared_ptr<const EchoJob> echoJob; // these two are made while the first lines are traced
+  std::shared_ptr<const BModeJob> bmodeJob;
   SweptPictures before;
   std::shared_ptr<DeviceImager::Download> download;
   const auto deliver = [&] {
@@ -111,6 +105,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
       const EchoSources sources{ &scene, nullptr, nullptr };
       const EchoSetup setup(sources, lines, settings.echo);
       echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
+      bmodeJob = std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
     }
     const auto rf = imager.formRf(echoJob, range, traced.get(), false);
     const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
