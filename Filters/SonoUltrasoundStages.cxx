@@ -309,8 +309,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     fields->Initialize();
     return fillProbe(field_, vtkPolyData::SafeDownCast(made));
   }
-  const char* labels = owner_->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[Filter::LABELS_OR_SCENE], labels);
+  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[Filter::LABELS_OR_SCENE]);
   if (port == Filter::ANATOMY)
   {
     return made->ShallowCopy(blocks);

@@ -19,6 +19,7 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
+#include <type_traits>
 
 vtkStandardNewMacro(vtkSonoUltrasound);
 
@@ -67,7 +68,10 @@ void vtkSonoUltrasound::Replace(vtkSmartPointer<Stage>& own, Stage* given)
   if (given && given != own)
   {
     own = given;
-    this->Inside->listenToBuilder();
+    if constexpr (std::is_same_v<Stage, vtkSonoSceneBuilder>)
+    {
+      this->Inside->listenToBuilder();
+    }
     this->Modified();
   }
 }

@@ -411,7 +411,8 @@ void Simulator::begin(const ImageInput& input)
   try
   {
     const auto end = std::chrono::steady_clock::now() + longestBegun;
-    traced(input, [end](double) { return std::chrono::steady_clock::now() < end; });
+    input.settings.requireMatch();
+    trace(lines, tracing, input.targets, [end](double) { return std::chrono::steady_clock::now() < end; });
   }
   catch (const Aborted&) // left to traced(), which can be stopped
   {
