@@ -9,6 +9,7 @@
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 
@@ -63,7 +64,7 @@ void Anatomy::reportProgress(double fraction)
   }
 }
 
-vtkMultiBlockDataSet* Anatomy::blocks(vtkDataObject* input, const char* labels)
+vtkMultiBlockDataSet* Anatomy::blocks(vtkDataObject* input)
 {
   if (!vtkImageData::SafeDownCast(input))
   {
@@ -79,7 +80,7 @@ vtkMultiBlockDataSet* Anatomy::blocks(vtkDataObject* input, const char* labels)
     connected_ = std::move(content);
     builtAt_ = 0;
   }
-  if (labels)
+  if (const char* labels = owner_->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME()))
   {
     builder_->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, labels);
   }
@@ -90,6 +91,15 @@ vtkMultiBlockDataSet* Anatomy::blocks(vtkDataObject* input, const char* labels)
     builtAt_ = builder_->GetMTime();
   }
   return builder_->GetOutput();
+}
+
+vtkMultiBlockDataSet* Anatomy::builtBlocks(vtkDataObject* input) const
+{
+  if (!vtkImageData::SafeDownCast(input))
+  {
+    return vtkMultiBlockDataSet::SafeDownCast(input);
+  }
+  return builtAt_ == builder_->GetMTime() && contentOf(input) == connected_ ? builder_->GetOutput() : nullptr;
 }
 
 void Anatomy::update()

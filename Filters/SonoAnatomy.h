@@ -23,10 +23,12 @@ public:
   Anatomy(const Anatomy&) = delete;
   Anatomy& operator=(const Anatomy&) = delete;
 
-  /// The scene's blocks: those of the input, or of the builder where the input is an image, whose point array `labels`
-  /// holds the labels; null: as the builder has it. Throws Error with the builder's sentence, Aborted when the owner is
-  /// to stop.
-  vtkMultiBlockDataSet* blocks(vtkDataObject* input, const char* labels);
+  /// The scene's blocks: those of the input, or of the builder where the input is an image, whose labels are the point
+  /// array that the owner is set to process, if it is. Throws Error with the builder's sentence, Aborted when the owner
+  /// is to stop.
+  vtkMultiBlockDataSet* blocks(vtkDataObject* input);
+  /// The same where nothing need be built; null otherwise.
+  vtkMultiBlockDataSet* builtBlocks(vtkDataObject* input) const;
 
 private:
   void reportProgress(double fraction);

@@ -61,6 +61,12 @@ vtkInformationIntegerKey* quietKey()
   return key;
 }
 
+/// Whether a filter around it speaks for an algorithm, see keepQuiet.
+bool isInner(vtkAlgorithm* algorithm)
+{
+  return algorithm->GetInformation()->Has(quietKey());
+}
+
 /// What a quiet algorithm has warned of.
 vtkInformationStringVectorKey* warnedKey()
 {
@@ -86,7 +92,7 @@ void say(vtkAlgorithm* algorithm, const char* sentence)
   {
     memory->Set(saidKey(), sentence);
     memory->Set(saidAtKey(), now);
-    if (!memory->Has(quietKey()))
+    if (!isInner(algorithm))
     {
       vtkErrorWithObjectMacro(algorithm, << sentence);
     }
@@ -164,11 +170,6 @@ void warn(vtkAlgorithm* algorithm, const std::string& sentence)
   {
     vtkWarningWithObjectMacro(algorithm, << sentence);
   }
-}
-
-bool isInner(vtkAlgorithm* algorithm)
-{
-  return algorithm->GetInformation()->Has(quietKey());
 }
 
 void keepQuiet(vtkAlgorithm* algorithm)

@@ -37,10 +37,6 @@ void warn(vtkAlgorithm* algorithm, const std::string& sentence);
 /// and a failure is a 0.
 void keepQuiet(vtkAlgorithm* algorithm);
 
-/// Whether a stage is one of those. Its outputs carry their results as handles alone (SonoOutputs.h): the filter around
-/// it makes arrays of what it is asked for.
-bool isInner(vtkAlgorithm* algorithm);
-
 /// What a quiet stage said in its last pass; empty where that went well.
 std::string saidBy(vtkAlgorithm* algorithm);
 

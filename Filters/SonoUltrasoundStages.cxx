@@ -24,6 +24,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -35,6 +36,11 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <utility>
+
 namespace sono {
 namespace {
 
@@ -44,6 +50,18 @@ using Filter = vtkSonoUltrasound; // of the ports
 constexpr double anatomyEnd = 0.3;
 constexpr double tracingEnd = 0.75;
 constexpr double bmodeEnd = 0.95;
+
+/// Whether a request for data would leave what a port has as it is; so it does where nothing is connected.
+bool isUpToDate(vtkAlgorithm* filter, int port)
+{
+  if (filter->GetNumberOfInputConnections(port) == 0)
+  {
+    return true;
+  }
+  auto* producer = vtkDemandDrivenPipeline::SafeDownCast(filter->GetInputExecutive(port, 0));
+  vtkDataObject* data = filter->GetInputDataObject(port, 0);
+  return producer && data && data->GetUpdateTime() > producer->GetPipelineMTime();
+}
 
 } // namespace
 
@@ -85,12 +103,36 @@ Progress UltrasoundStages::progress(vtkAlgorithm* stage, double from, double to)
   return partOf(progressOf(owner_), from, to);
 }
 
-void UltrasoundStages::announce(vtkInformationVector* output)
+/// While VTK prepares the request for data. Once between two such requests, for it may be that none follows.
+void UltrasoundStages::beginTrace(vtkInformationVector** input)
+{
+  const int ports[] = { Filter::LABELS_OR_SCENE, Filter::TARGETS };
+  if (!std::exchange(isAsked_, false) ||
+      !std::all_of(std::begin(ports), std::end(ports), [&](int port) { return isUpToDate(owner_, port); }))
+  {
+    return;
+  }
+  vtkMultiBlockDataSet* blocks = anatomy_->builtBlocks(vtkDataObject::GetData(input[Filter::LABELS_OR_SCENE]));
+  try
+  {
+    if (blocks && vtkSonoSceneHandle::Get(blocks) == simulator_.scene())
+    {
+      vtkDataObject* surfaces = vtkDataObject::GetData(input[Filter::TARGETS]);
+      simulator_.begin({ field_.pose, settings_, targets(surfaces, blocks), nullptr });
+    }
+  }
+  catch (const std::exception&) // make() meets it again, and lets it be said
+  {
+  }
+}
+
+void UltrasoundStages::announce(vtkInformationVector** input, vtkInformationVector* output)
 {
   const auto on = [&](int port) { return output->GetInformationObject(port); };
   formation->SetDevice(tracer->GetDevice()); // what it says when it is asked
   field_ = probe->Probe();
   settings_ = imageSettings(field_, *tracer, *formation, *bmode, pixelMmOf(field_, converter->GetPixelMm()));
+  beginTrace(input);
   const vtkSmartPointer<vtkFieldData> before = acquisition_;
   acquisition_ = vtkSmartPointer<vtkFieldData>::New();
   writeProbe(field_, acquisition_, before);
@@ -146,6 +188,7 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
     }
   };
   TracedResult traced;
+  isAsked_ = true;
   try
   {
     traced = simulator_.traced(image, progress(tracer, anatomyEnd, tracingEnd));
@@ -266,8 +309,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     fields->Initialize();
     return fillProbe(field_, vtkPolyData::SafeDownCast(made));
   }
-  const char* labels = owner_->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[Filter::LABELS_OR_SCENE], labels);
+  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[Filter::LABELS_OR_SCENE]);
   if (port == Filter::ANATOMY)
   {
     return made->ShallowCopy(blocks);

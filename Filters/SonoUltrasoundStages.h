@@ -65,8 +65,8 @@ public:
   void listenToBuilder();
   std::vector<vtkAlgorithm*> withSettings() const;
 
-  /// What the outputs will be. Throws Error for what is out of range.
-  void announce(vtkInformationVector* output);
+  /// What the outputs will be; a GPU begins with them. Throws Error for what is out of range.
+  void announce(vtkInformationVector** input, vtkInformationVector* output);
   /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
   /// stop.
   void make(int port, vtkInformationVector** input, vtkInformationVector* output);
@@ -83,6 +83,7 @@ private:
 
   /// The part of the whole's progress that a stage reports, with its text.
   Progress progress(vtkAlgorithm* stage, double from, double to);
+  void beginTrace(vtkInformationVector** input);
   const std::vector<TargetSurface>& targets(vtkDataObject* input, vtkMultiBlockDataSet* blocks);
   TracedResult trace(const ImageInput& image);
   void readEchoInputs(const Inputs& inputs, ImageInput& image);
@@ -110,6 +111,7 @@ private:
   vtkMTimeType pulseTime_ = 0; ///< of the stage when it was read; 0: it is to be read
   // The last results, and the arrays that stay as long as they do.
   TracedResult traced_;
+  bool isAsked_ = false; ///< for what is traced, since the last announcement
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;
   ImageResult errorMap_;

@@ -36,7 +36,7 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, bool fillBody, 
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
   builder->SetProgressText(owner->GetProgressText()); // it is a part of that
-  return vtkSonoSceneHandle::Get(sono::Anatomy(owner, builder, 0.5).blocks(input, nullptr));
+  return vtkSonoSceneHandle::Get(sono::Anatomy(owner, builder, 0.5).blocks(input));
 }
 
 /// The pose that the data bring along.

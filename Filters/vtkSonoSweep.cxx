@@ -236,8 +236,7 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     sono::announceDevice(sono::chooseDevice(settings.tracing));
     vtkDataObject* anatomy = vtkDataObject::GetData(input[LABELS_OR_SCENE]);
     const double begin = vtkImageData::SafeDownCast(anatomy) ? anatomyEnd : 0.0;
-    const char* labels = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-    const auto scene = vtkSonoSceneHandle::Get(this->Anatomy->blocks(anatomy, labels));
+    const auto scene = vtkSonoSceneHandle::Get(this->Anatomy->blocks(anatomy));
     this->Simulator->setScene(scene);
 
     const sono::PlaneImage layout = sono::planeImageLayout(settings.geometry, settings.pixelMm);

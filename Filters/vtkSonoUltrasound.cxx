@@ -19,6 +19,7 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
+#include <type_traits>
 
 vtkStandardNewMacro(vtkSonoUltrasound);
 
@@ -67,7 +68,10 @@ void vtkSonoUltrasound::Replace(vtkSmartPointer<Stage>& own, Stage* given)
   if (given && given != own)
   {
     own = given;
-    this->Inside->listenToBuilder();
+    if constexpr (std::is_same_v<Stage, vtkSonoSceneBuilder>)
+    {
+      this->Inside->listenToBuilder();
+    }
     this->Modified();
   }
 }
@@ -136,7 +140,7 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
     {
       throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
     }
-    this->Inside->announce(output);
+    this->Inside->announce(input, output);
   });
 }
 

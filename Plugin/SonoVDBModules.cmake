@@ -1,14 +1,7 @@
 # The VTK modules, their Python wrapping and the ParaView plugin. Included, not added, by the top CMakeLists.txt, so that
 # the modules' folders are relative to it.
-# ParaView's package looks for whatever any of its modules was built with. Of the modules that the plugin stands on, these
-# targets are named in the link interfaces, though neither their headers nor their libraries are asked for by ours: where
-# the package did not find them, an empty target spares a user their -dev packages.
 find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingViews pqApplicationComponents)
-foreach(target IN ITEMS Boost::boost GLEW::GLEW LibXml2::LibXml2 MPI::MPI_C NetCDF::NetCDF hdf5::hdf5 hdf5::hdf5_hl)
-  if(NOT TARGET ${target})
-    add_library(${target} INTERFACE IMPORTED)
-  endif()
-endforeach()
+include("${CMAKE_CURRENT_LIST_DIR}/SonoVDBParaViewLinks.cmake")
 
 # The plugin lies three folders below the libraries, lib/python3/dist-packages/sonovdb four below the prefix.
 list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../../.." "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
@@ -25,6 +18,10 @@ vtk_module_build(
   INSTALL_EXPORT SonoVDB
   HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sonovdb"
   CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/sonovdb")
+install(
+  FILES "${CMAKE_SOURCE_DIR}/Plugin/SonoVDBFilters.cmake" "${CMAKE_SOURCE_DIR}/Plugin/SonoVDBParaViewLinks.cmake"
+  DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/sonovdb"
+  COMPONENT development)
 
 set(sono_python_dir "lib/python3/dist-packages")
 vtk_module_wrap_python(

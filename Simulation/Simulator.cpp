@@ -10,12 +10,17 @@
 #include "SameSettings.h"
 #include "Trace/TraceSetup.h"
 
+#include <chrono>
 #include <optional>
 #include <utility>
 
 namespace sono {
 
 namespace {
+
+// What begin() takes on.
+constexpr double bouncesBegun = 2e7;
+constexpr std::chrono::milliseconds longestBegun(20);
 
 /// What a stage made last, and from what. Another result replaces it when it is there.
 template<class From, class Result>
@@ -388,6 +393,37 @@ TracedResult Simulator::traced(const ImageInput& input, const Progress& progress
 {
   input.settings.requireMatch();
   return trace(makeScanLines(input.settings.geometry, input.pose), input.settings.tracing, input.targets, progress);
+}
+
+void Simulator::begin(const ImageInput& input)
+{
+  const TraceSettings& tracing = input.settings.tracing;
+  const auto& before = last_->traced.from;
+  const int lineCount = input.settings.geometry.totalLineCount();
+  if (!scene_ || !before || !runsOnDevice(tracing) ||
+      double(tracing.pathsPerLine) * tracing.maxCollisions * lineCount > bouncesBegun)
+  {
+    return;
+  }
+  const std::vector<ScanLine> lines = makeScanLines(input.settings.geometry, input.pose);
+  const auto box = [&](const std::vector<ScanLine>& of, const TraceSettings& s) {
+    return fanBox(*scene_, of, s.depthMm);
+  };
+  // A moving probe's region is wider than its fan.
+  if (tracing.interactive != before->settings.interactive ||
+      (!tracing.interactive && !(box(lines, tracing) == box(before->lines, before->settings))))
+  {
+    return;
+  }
+  try
+  {
+    const auto end = std::chrono::steady_clock::now() + longestBegun;
+    input.settings.requireMatch();
+    trace(lines, tracing, input.targets, [end](double) { return std::chrono::steady_clock::now() < end; });
+  }
+  catch (const Aborted&) // left to traced(), which can be stopped
+  {
+  }
 }
 
 RfResult Simulator::rf(const ImageInput& input, const Progress& progress)

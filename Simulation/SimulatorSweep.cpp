@@ -1,4 +1,3 @@
-#include "Core/ParallelFor.h"
 #include "Core/Policy.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
@@ -36,7 +35,7 @@ void requireEachMeets(const TraceSetup& setup, std::size_t images)
 /// Bytes that the stages need for an image, without what a single launch of the tracer needs.
 double bytesPerImage(const TracedLines& traced, const RfLines& rf, int linesPerImage, const PlaneScan& scan)
 {
-  const double bytesPerLine = 32.0 * traced.echoCount + 20.0 * traced.binCount + 32.0 * rf.sampleCount;
+  const double bytesPerLine = 32.0 * traced.echoCount + 20.0 * traced.binCount + 48.0 * rf.sampleCount;
   return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
 }
 
@@ -70,11 +69,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
                    const std::vector<TargetSurface>& targets)
 {
   const int perImage = settings.geometry.totalLineCount();
-  std::vector<ScanLine> lines(poses.size() * std::size_t(perImage));
-  parallelFor(int(poses.size()), {}, [&](int pose) {
-    const auto made = makeScanLines(settings.geometry, poses[std::size_t(pose)]);
-    std::copy(made.begin(), made.end(), lines.begin() + std::ptrdiff_t(pose) * perImage);
-  });
+  const std::vector<ScanLine> lines = makeScanLines(settings.geometry, poses);
   const TracedLines tracedOfOne = tracedLayout(perImage, settings.tracing);
   const RfLines rfOfOne = rfLayout(perImage, settings.echo);
   const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
@@ -89,9 +84,8 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   DeviceImager& imager = DeviceImager::instance();
   const int together =
     std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
-  const auto bmodeJob =
-    std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
-  std::shared_ptr<const EchoJob> echoJob; // made while the first lines are traced
+  std::shared_ptr<const EchoJob> echoJob; // these two are made while the first lines are traced
+  std::shared_ptr<const BModeJob> bmodeJob;
   SweptPictures before;
   std::shared_ptr<DeviceImager::Download> download;
   const auto deliver = [&] {
@@ -112,6 +106,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
       const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
       const EchoSetup setup(sources, lines, settings.echo);
       echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
+      bmodeJob = std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
     }
     const auto rf = imager.formRf(echoJob, range, traced.get(), false);
     const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));

@@ -5,23 +5,54 @@ set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 preset="${1:?usage: build-preset.sh PRESET [TARGET...]}"
 shift
-
-if [[ $preset == demo ]]; then
-  "$root/Testing/install-dependencies.sh"
-else
-  "$root/Testing/install-dependencies.sh" tests
-fi
-
-launcher=()
-if command -v ccache > /dev/null; then
-  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-fi
-
-# Presets are looked up in the current directory.
-cd "$root"
-cmake --preset "$preset" "${launcher[@]}"
 targets=()
 if (($# > 0)); then
   targets=(--target "$@")
 fi
+packages=(tests)
+if [[ $preset == demo ]]; then
+  packages=()
+fi
+
+configure()
+{
+  local launcher=()
+  if command -v ccache > /dev/null; then
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  cmake --preset "$preset" "${launcher[@]}" "$@"
+}
+
+# Most packages are ParaView's, and one core alone unpacks them: the others compile the simulator meanwhile, which needs none
+# of them.
+compile_ahead()
+{
+  Testing/install-dependencies.sh simulation
+  local log
+  log="$(mktemp)"
+  echo "Installs ParaView, and compiles the simulator meanwhile; what apt says goes to $log"
+  Testing/install-dependencies.sh "${packages[@]}" > "$log" 2>&1 &
+  local apt=$!
+  # Started so, it does not hear Ctrl-C. It is waited for, since it holds apt's lock.
+  trap 'echo "Waits until apt is done." >&2; wait' EXIT
+  configure -DSONOVDB_BUILD_PLUGIN=OFF
+  cmake --build --preset "$preset" --target Simulation
+  local status=0
+  wait "$apt" || status=$?
+  trap - EXIT
+  if ((status != 0)); then
+    cat "$log" >&2
+    exit "$status"
+  fi
+  rm "$log"
+}
+
+cd "$root" # where presets are looked up
+export CCACHE_DEPEND=1 # or it would preprocess each file once more
+if command -v pvpython > /dev/null; then
+  Testing/install-dependencies.sh "${packages[@]}"
+else
+  compile_ahead
+fi
+configure
 cmake --build --preset "$preset" "${targets[@]}"

@@ -1,20 +1,24 @@
 #!/usr/bin/env bash
-# install-dependencies.sh [tests]: installs the Debian 12 packages that SonoVDB needs to build and run, and to be tested.
-# Returns at once when all are there.
+# install-dependencies.sh [simulation|tests]: installs the Debian 12 packages that SonoVDB needs to build and run; those of
+# the simulator alone, or those of the tests, too. Returns at once when all are there.
 set -euo pipefail
 
 packages=(
   # tools
   g++ cmake ninja-build ccache
-  # ParaView 5.11 and what the modules below the plugin ask for (see Plugin/SonoVDBModules.cmake)
-  paraview paraview-dev python3-paraview python3-numpy qtbase5-dev libqt5svg5-dev libqt5opengl5-dev qttools5-dev
-  qtxmlpatterns5-dev-tools libfreetype-dev
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
   nlohmann-json3-dev libpugixml-dev zlib1g-dev
-  # the pictures that it writes
-  libopenimageio-dev
 )
+if [[ ${1:-} != simulation ]]; then
+  packages+=(
+    # ParaView 5.11 and what the modules below the plugin ask for (see Plugin/SonoVDBModules.cmake)
+    paraview paraview-dev python3-paraview python3-numpy qtbase5-dev libqt5svg5-dev libqt5opengl5-dev qttools5-dev
+    qtxmlpatterns5-dev-tools libfreetype-dev
+    # the pictures that are written
+    libopenimageio-dev
+  )
+fi
 if [[ ${1:-} == tests ]]; then
   packages+=(
     libgtest-dev libbenchmark-dev openimageio-tools libopenvdb-tools xvfb openmpi-bin python3-mpi4py python3-xlib

@@ -1,5 +1,6 @@
 #include "Probe/ScanGeometry.h"
 
+#include "Core/ParallelFor.h"
 #include "Core/Progress.h"
 
 #include <algorithm>
@@ -82,6 +83,46 @@ PlaneLine planeLine(const ScanGeometry& geometry, double line)
   return { radius * sine, axial, sine, cosine };
 }
 
+/// Throws as validate().
+std::vector<PlaneLine> planeLines(const ScanGeometry& geometry)
+{
+  geometry.validate();
+  std::vector<PlaneLine> lines;
+  for (int n = 0; n < geometry.lineCount; ++n)
+  {
+    lines.push_back(planeLine(geometry, n));
+  }
+  return lines;
+}
+
+/// All lines of a pose, from those of its plane.
+void placeLines(const ScanGeometry& geometry, const std::vector<PlaneLine>& planeLines, const ProbePose& pose,
+                ScanLine* line)
+{
+  const ProbePose frame = pose.orthonormalized();
+  const Vec3d across = glm::cross(frame.axial, frame.lateral);
+  const int elevations = geometry.totalLineCount() / geometry.lineCount;
+  for (int e = 0; e < elevations; ++e)
+  {
+    const double phi = elevations > 1 ? elevationAngle(geometry, e) : 0.0;
+    const Vec3d axial = std::cos(phi) * frame.axial + std::sin(phi) * across;
+    const Vec3d elevation = std::cos(phi) * across - std::sin(phi) * frame.axial;
+    for (const PlaneLine& plane : planeLines)
+    {
+      line->originMm = frame.positionMm + plane.lateralMm * frame.lateral + plane.axialMm * axial;
+      line->axis = plane.lateralStep * frame.lateral + plane.axialStep * axial;
+      line->lateral = plane.axialStep * frame.lateral - plane.lateralStep * axial;
+      line->elevation = elevation;
+      if (geometry.lineOrigin() == LineOrigin::Apex)
+      {
+        line->steeringLateral = plane.lateralStep;
+        line->steeringElevational = plane.axialStep * std::sin(phi);
+      }
+      ++line;
+    }
+  }
+}
+
 } // namespace
 
 ProbePose ProbePose::orthonormalized() const
@@ -162,35 +203,22 @@ BeamAperture ProbeSettings::aperture() const
   return aperture;
 }
 
+std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const std::vector<ProbePose>& poses)
+{
+  const std::vector<PlaneLine> plane = planeLines(geometry);
+  const std::size_t perPose = std::size_t(geometry.totalLineCount());
+  std::vector<ScanLine> lines(poses.size() * perPose);
+  parallelFor(int(poses.size()), {}, [&](int pose) {
+    placeLines(geometry, plane, poses[std::size_t(pose)], lines.data() + std::size_t(pose) * perPose);
+  });
+  return lines;
+}
+
 std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePose& pose)
 {
-  geometry.validate();
-  const ProbePose frame = pose.orthonormalized();
-  const Vec3d across = glm::cross(frame.axial, frame.lateral);
-  const int elevations = geometry.totalLineCount() / geometry.lineCount;
-  std::vector<ScanLine> lines;
-  lines.reserve(std::size_t(geometry.totalLineCount()));
-  for (int e = 0; e < elevations; ++e)
-  {
-    const double phi = elevations > 1 ? elevationAngle(geometry, e) : 0.0;
-    const Vec3d axial = std::cos(phi) * frame.axial + std::sin(phi) * across;
-    const Vec3d elevation = std::cos(phi) * across - std::sin(phi) * frame.axial;
-    for (int n = 0; n < geometry.lineCount; ++n)
-    {
-      const PlaneLine plane = planeLine(geometry, n);
-      ScanLine line;
-      line.originMm = frame.positionMm + plane.lateralMm * frame.lateral + plane.axialMm * axial;
-      line.axis = plane.lateralStep * frame.lateral + plane.axialStep * axial;
-      line.lateral = plane.axialStep * frame.lateral - plane.lateralStep * axial;
-      line.elevation = elevation;
-      if (geometry.lineOrigin() == LineOrigin::Apex)
-      {
-        line.steeringLateral = plane.lateralStep;
-        line.steeringElevational = plane.axialStep * std::sin(phi);
-      }
-      lines.push_back(line);
-    }
-  }
+  const std::vector<PlaneLine> plane = planeLines(geometry);
+  std::vector<ScanLine> lines(std::size_t(geometry.totalLineCount()));
+  placeLines(geometry, plane, pose, lines.data());
   return lines;
 }
 

@@ -100,6 +100,8 @@ struct ScanLine
 /// A matrix's elevation is a phased sector whose plane is turned by phi about the lateral axis: its line at angle theta
 /// points to (lateral, elevational, axial) = (sin theta, cos theta sin phi, cos theta cos phi).
 std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePose& pose);
+/// Of several poses, one after the other.
+std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const std::vector<ProbePose>& poses);
 
 /// Position in the probe's image plane, (lateral, axial) mm from the pose's position, of depth `r` on a line whose
 /// index may be fractional; and back. `beamFromPlane` returns (line, r) with line in [0, lineCount - 1] and r in

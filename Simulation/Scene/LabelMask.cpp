@@ -14,8 +14,6 @@ namespace sono {
 
 namespace {
 
-constexpr int leafEdge = 8;
-
 /// Calls visit(voxels, position) for every voxel of a block that carries the label; returns how many.
 template<class Visit>
 int forLabelInBlock(const LabelVolume& volume, int labelId, const Vec3i& origin, const Visit& visit)

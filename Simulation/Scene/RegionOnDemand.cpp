@@ -51,6 +51,7 @@ struct RegionOnDemand::Baking
   tbb::enumerable_thread_specific<Worker> workers;
   Vec3i blocks;
   std::vector<std::atomic<bool>> baked;
+  std::atomic<bool> all = false; ///< of them; to look through them takes as long as a part of an image
 };
 
 RegionOnDemand::RegionOnDemand(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
@@ -135,6 +136,10 @@ std::uint32_t RegionOnDemand::knownAt(const Vec3i& volumeVoxel) const
 
 void RegionOnDemand::bakeAll(const Progress& progress) const
 {
+  if (baking_->all.load(std::memory_order_acquire))
+  {
+    return report(progress, 1.0);
+  }
   const Vec3i blocks = baking_->blocks;
   parallelFor(blocks.y * blocks.z, progress, [&](int row) {
     for (int x = 0; x < blocks.x; ++x)
@@ -146,6 +151,7 @@ void RegionOnDemand::bakeAll(const Progress& progress) const
       }
     }
   });
+  baking_->all.store(true, std::memory_order_release);
 }
 
 int RegionOnDemand::bakedBlocks() const

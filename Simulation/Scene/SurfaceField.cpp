@@ -20,8 +20,6 @@ namespace sono {
 
 namespace {
 
-constexpr int leafEdge = 8; // of OpenVDB's leaf nodes
-
 template<class Build>
 auto valueAt(const NanoGrid& grid, const Vec3i& ijk)
 {

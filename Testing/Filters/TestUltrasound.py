@@ -168,10 +168,26 @@ class TestWhatIsMade(unittest.TestCase):
         np.testing.assert_array_equal(values(ultrasound.filter.GetOutputDataObject(RF_LINES), "RF"), rf)
         self.assertFalse(np.array_equal(values(ultrasound.output(RF_LINES), "RF"), rf))
 
-    def test_asking_for_the_probe_simulates_nothing(self):
-        ultrasound = Ultrasound()
+    def texts_of(self, ultrasound):
+        """What the filter says it is at, from now on."""
         texts = []
         ultrasound.filter.AddObserver("ProgressEvent", lambda *_: texts.append(ultrasound.filter.GetProgressText()))
+        return texts
+
+    def test_lines_after_the_image_are_those_that_it_was_made_from(self):
+        ultrasound = Ultrasound()
+        texts = self.texts_of(ultrasound)
+        ultrasound.output(IMAGE)
+        self.assertIn("Tracing", texts)
+        texts.clear()
+        rf = values(ultrasound.output(RF_LINES), "RF")
+        self.assertNotIn("Tracing", texts)
+        alone = Ultrasound()
+        np.testing.assert_array_equal(rf, values(alone.output(RF_LINES), "RF"))
+
+    def test_asking_for_the_probe_simulates_nothing(self):
+        ultrasound = Ultrasound()
+        texts = self.texts_of(ultrasound)
         self.assertEqual(ultrasound.output(PROBE).GetNumberOfCells(), 2)
         self.assertNotIn("Tracing", texts)
 

@@ -1,43 +1,29 @@
-// Traces a few lines through the bundled thorax: consumer VERSION, the version that the library must have.
+// Makes an image of the bundled thorax: consumer VERSION, the version that the library must have.
 #include <sono/Core/Version.h>
 #include <sono/Labels/AssignTissues.h>
 #include <sono/Phantoms/ThoraxPhantom.h>
-#include <sono/Trace/Trace.h>
+#include <sono/Simulator.h>
 
-#include <cmath>
+#include <cstddef>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
 
 namespace {
 
-int traceThorax()
+std::shared_ptr<const sono::Scene> thoraxScene()
 {
   const std::string data = DATA_DIR;
   const auto tissues = sono::TissueTable::read(data + "/tissues.csv");
   sono::LabelVolume thorax = sono::makeThoraxPhantom(3.0);
   sono::assignTissues(thorax, sono::LabelTissueMap::read(data + "/label_tissues.csv"), tissues, "air");
-  const sono::Scene scene(thorax, tissues, "air");
+  return std::make_shared<const sono::Scene>(thorax, tissues, "air");
+}
 
-  sono::ScanGeometry geometry;
-  geometry.lineCount = 8;
-  sono::TraceSettings settings;
-  settings.device = sono::Device::Cpu;
-  settings.depthMm = geometry.depthMm;
-  settings.pathsPerLine = 50;
-  settings.model = sono::InterfaceModel::Amadou2024; // whose paths bring the boundaries' echoes
-  const sono::TracedLines lines = sono::trace(scene, sono::makeScanLines(geometry, sono::thoraxPhantomA4C()), settings);
-
-  int peak = 0;
-  for (int sample = 0; sample < int(lines.boundaryEcho.size()); ++sample)
-  {
-    peak = std::abs(lines.boundaryEcho[sample]) > std::abs(lines.boundaryEcho[peak]) ? sample : peak;
-  }
-  const float amplitude = std::abs(lines.boundaryEcho[peak]);
-  std::cout << "Peak boundary echo " << amplitude << " on line " << peak / lines.echoCount << " at "
-            << peak % lines.echoCount * lines.echoSampleMm << " mm\n";
-
-  // Intensity is 1 at the transducer, where a boundary sends back that at most; little is left behind.
+/// Intensity is 1 at the transducer, where a boundary sends back that at most; little is left behind.
+bool linesFade(const sono::TracedLines& lines)
+{
   for (int line = 0; line < lines.lineCount; ++line)
   {
     const float first = lines.intensity[line * lines.binCount];
@@ -45,10 +31,41 @@ int traceThorax()
     if (!(first > 0.9f && first <= 2.0f && last < 0.1f))
     {
       std::cerr << "Line " << line << " begins with " << first << " and ends with " << last << '\n';
-      return 1;
+      return false;
     }
   }
-  return lines.lineCount == geometry.lineCount && amplitude > 0.0f && amplitude < 1.0f ? 0 : 1;
+  return true;
+}
+
+/// Inside the sector there are several greys, the darkest being 1; outside there is 0.
+bool isPicture(const sono::ScanPicture& picture)
+{
+  int brightest = 0;
+  for (std::size_t i = 0; i < picture.grey.size; ++i)
+  {
+    if ((picture.grey[i] == 0) != (picture.mask[i] == 0))
+    {
+      std::cerr << "Pixel " << i << " is " << int(picture.grey[i]) << " where the mask is " << int(picture.mask[i])
+                << '\n';
+      return false;
+    }
+    brightest = picture.grey[i] > brightest ? picture.grey[i] : brightest;
+  }
+  std::cout << picture.grey.size << " pixels, the brightest " << brightest << '\n';
+  return brightest > 100;
+}
+
+bool imageThorax()
+{
+  sono::Simulator simulator(thoraxScene());
+  sono::ImageInput input;
+  input.pose = sono::thoraxPhantomA4C();
+  input.settings.geometry.lineCount = 8;
+  input.settings.tracing.pathsPerLine = 50;
+  input.settings.matchStages();
+  input.settings.setDevice(sono::Device::Cpu);
+  const sono::ImageResult image = simulator.image(input);
+  return linesFade(simulator.traced(input).host()) && isPicture(simulator.picture(image, input.pose, true));
 }
 
 } // namespace
@@ -62,7 +79,7 @@ int main(int argc, char** argv)
   }
   try
   {
-    return traceThorax();
+    return imageThorax() ? 0 : 1;
   }
   catch (const std::exception& error)
   {
