@@ -176,9 +176,14 @@ struct BeamAperture
 
 bool operator==(const BeamAperture& a, const BeamAperture& b);
 
-/// What a probe is, wherever it stands.
+/// What a probe is, wherever it stands. One that says nothing has the aperture of the bundled P4-2.
 struct ProbeSettings : BeamAperture
 {
+  ProbeSettings()
+    : BeamAperture{ 20.455, 14.0, 65.0, 60.0, 0.295, false }
+  {
+  }
+
   ScanGeometry geometry;
   double centreFrequencyMHz = 2.5;
   double fractionalBandwidth = 0.6; ///< at -6 dB

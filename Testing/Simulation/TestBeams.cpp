@@ -57,7 +57,7 @@ TEST(Beams, ThePresetNamesItsAperture)
   EXPECT_EQ(preset.elevationApertureMm, 14.0);
   EXPECT_EQ(preset.elementWidthMm, 0.295);
   EXPECT_TRUE(preset.aperture().isNamed());
-  EXPECT_FALSE(ProbeSettings{}.aperture().isNamed());
+  EXPECT_TRUE(ProbeSettings{}.aperture() == preset.aperture());
 }
 
 TEST(Beams, WidthsAreThoseOfTheTable)
