@@ -18,8 +18,8 @@ public:
   static std::map<std::string, Run>& all();
 };
 
-/// Prints one line, `name value unit`.
-void printFigure(const std::string& name, double value, const std::string& unit);
+/// Prints one line, `name value unit`, with what is asked of it, if anything, behind: `(asked: at most 1)`.
+void printFigure(const std::string& name, double value, const std::string& unit, const std::string& asked = "");
 
 /// Largest resident memory of this process so far, in MB of 10^6 bytes.
 double peakMegabytes();

@@ -13,9 +13,10 @@ std::map<std::string, Stage::Run>& Stage::all()
   return stages;
 }
 
-void printFigure(const std::string& name, double value, const std::string& unit)
+void printFigure(const std::string& name, double value, const std::string& unit, const std::string& asked)
 {
-  std::printf("%s %.6g %s\n", name.c_str(), value, unit.c_str());
+  const std::string beside = asked.empty() ? "" : " (asked: " + asked + ")";
+  std::printf("%s %.6g %s%s\n", name.c_str(), value, unit.c_str(), beside.c_str());
   std::fflush(stdout);
 }
 

@@ -1,4 +1,4 @@
-#include "FieldScenes.h"
+#include "BeamFigures.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,6 @@ namespace {
 using namespace sono;
 using namespace sono::test;
 
-constexpr double attenuationDb = 0.5; // /(cm MHz)
-
 EchoSettings p42Pulse(double depthMm)
 {
   EchoSettings s;
@@ -21,35 +19,12 @@ EchoSettings p42Pulse(double depthMm)
   return s;
 }
 
-double exponentAt(double depthMm)
-{
-  return 2.0 * attenuationDb * depthMm / 10.0 / 8.685889638065037;
-}
-
-/// A uniform phantom's line.
-TracedLines uniformPhantom(double depthMm, double frequencyMHz)
-{
-  TracedLines traced;
-  traced.lineCount = 1;
-  traced.binMm = 0.25;
-  traced.binCount = int(std::ceil(depthMm / traced.binMm));
-  for (int b = 0; b < traced.binCount; ++b)
-  {
-    const double exponent = exponentAt((b + 0.5) * traced.binMm);
-    traced.intensity.push_back(float(std::exp(-exponent * frequencyMHz)));
-    traced.attenuationNpPerMHz.push_back(float(exponent));
-  }
-  return traced;
-}
-
-const std::vector<ScanLine> oneLine{ { { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { 0, 1, 0 } } };
-
 /// IQ of a point at a depth by the integral over its spectrum, exp(-(f - f0)^2 / (2 s_f^2)) exp(-B f), in double.
 std::vector<std::complex<double>> exactIq(const EchoSettings& s, double depthMm)
 {
   const double spectrum = 1.54 / (4.0 * M_PI * pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth)); // MHz
   const double f0 = s.centreFrequencyMHz;
-  const double exponent = exponentAt(depthMm);
+  const double exponent = uniformExponentAt(depthMm);
   std::vector<std::complex<double>> iq(std::size_t(s.sampleCount()));
   const double step = spectrum / 40.0;
   for (double f = f0 - 9.0 * spectrum; f < f0 + 6.0 * spectrum; f += step)
@@ -74,8 +49,7 @@ TEST(Downshift, APointsEchoIsThatOfItsSpectrum)
   const TracedLines traced = uniformPhantom(s.depthMm, s.centreFrequencyMHz);
   for (const double depthMm : { 20.0, 60.0, 120.0 })
   {
-    const PointScatterers point({ { { 0.0, 0.0, depthMm }, 1.0f } });
-    const RfLines rf = formRf({ nullptr, &traced, &point }, oneLine, s);
+    const RfLines rf = pointEcho(traced, s, depthMm);
     EXPECT_LT(nrmse(rf.iq.data(), exactIq(s, depthMm)), 0.05) << depthMm; // B changes a little within the pulse
   }
 }
@@ -85,16 +59,13 @@ TEST(Downshift, FrequencyAndLevelAt12Cm)
   // Section 12.4: 1.83 MHz and 10.6 dB.
   const EchoSettings s = p42Pulse(130.0);
   TracedLines traced = uniformPhantom(s.depthMm, s.centreFrequencyMHz);
-  const PointScatterers point({ { { 0.0, 0.0, 120.0 }, 1.0f } });
-  const RfLines rf = formRf({ nullptr, &traced, &point }, oneLine, s);
+  const RfLines rf = pointEcho(traced, s, 120.0);
+  EXPECT_NEAR(frequencyAtMHz(rf, 120.0), 1.83, 0.02 * 1.83);
+  EXPECT_LT(downshiftError(), 0.02);
   const auto at = std::size_t(std::lround(120.0 / rf.sampleMm));
-  const double turn = std::arg(std::complex<double>(rf.iq[at + 3]) * std::conj(std::complex<double>(rf.iq[at - 3])));
-  const double frequencyMHz = s.centreFrequencyMHz + turn / (6.0 * rf.sampleMm) * 1.54 / (4.0 * M_PI);
-  EXPECT_NEAR(frequencyMHz, 1.83, 0.02 * 1.83);
-  const double with = std::abs(rf.iq[at]);
   traced.attenuationNpPerMHz.clear();
-  const double without = std::abs(formRf({ nullptr, &traced, &point }, oneLine, s).iq[at]);
-  EXPECT_NEAR(20.0 * std::log10(with / without), 10.6, 0.1);
+  const double without = std::abs(pointEcho(traced, s, 120.0).iq[at]);
+  EXPECT_NEAR(20.0 * std::log10(std::abs(rf.iq[at]) / without), 10.6, 0.1);
 }
 
 TEST(Downshift, OffChangesNothing)
@@ -117,11 +88,7 @@ TEST(Downshift, TheCentreDoesNotFallBelowTheSpectrumsWidth)
   {
     b = 1000.0f; // bone all the way
   }
-  const PointScatterers point({ { { 0.0, 0.0, 60.0 }, 1.0f } });
-  const RfLines rf = formRf({ nullptr, &traced, &point }, oneLine, s);
-  const auto at = std::size_t(std::lround(60.0 / rf.sampleMm));
-  const double turn = std::arg(std::complex<double>(rf.iq[at + 3]) * std::conj(std::complex<double>(rf.iq[at - 3])));
-  EXPECT_NEAR(s.centreFrequencyMHz + turn / (6.0 * rf.sampleMm) * 1.54 / (4.0 * M_PI), 1.133, 0.02);
+  EXPECT_NEAR(frequencyAtMHz(pointEcho(traced, s, 60.0), 60.0), 1.133, 0.02);
 }
 
 } // namespace
