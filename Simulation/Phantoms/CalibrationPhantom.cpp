@@ -15,6 +15,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double blockWidthMm = 178.0;
 constexpr double blockDepthMm = 203.0;
 constexpr const char* background = "phantom_gel";
+constexpr int wireSides = 8; // a tenth of a wavelength each: more cost time and echo the same
 
 void requireInside(const CalibrationPhantomSettings& settings, const PhantomTarget& target)
 {
@@ -172,7 +173,7 @@ TargetSurface phantomWireSurface(const std::vector<PhantomTarget>& targets, cons
   for (const PhantomTarget& wire : wires)
   {
     requireInside(settings, wire);
-    addPrism(surface, phantomTargetCentreMm(settings, wire), 0.5 * wire.diameterMm, half, 24);
+    addPrism(surface, phantomTargetCentreMm(settings, wire), 0.5 * wire.diameterMm, half, wireSides);
   }
   return surface;
 }

@@ -36,7 +36,7 @@ ProbePose phantomViewPose(const CalibrationPhantomSettings& settings, int view);
 /// Centre of a target's cross-section in the world, mm; y is 0.
 Vec3d phantomTargetCentreMm(const CalibrationPhantomSettings& settings, const PhantomTarget& target);
 
-/// The wires as closed surfaces for the tracer: prisms of 24 sides with the wires' cross-section. All are of the
+/// The wires as closed surfaces for the tracer: prisms of 8 sides with the wires' cross-section. All are of the
 /// tissue of the first. Throws Error when there are no wires or the table lacks the tissue.
 TargetSurface phantomWireSurface(const std::vector<PhantomTarget>& targets, const CalibrationPhantomSettings& settings,
                                  const TissueTable& tissues);

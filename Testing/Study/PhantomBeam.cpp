@@ -166,7 +166,7 @@ void run(Output& output)
 
   const PhantomImaging imaging = phantomImaging();
   const double wavelengthMm = assumedSoundSpeedMmPerUs / imaging.echo.centreFrequencyMHz;
-  const double apertureMm = phantomApertureMm();
+  const double apertureMm = phantomAperture().widthMm();
   const double axialTheory = pulseWidthMm(imaging.echo.centreFrequencyMHz, imaging.echo.fractionalBandwidth);
   std::vector<std::vector<std::string>> rows;
   for (double depth = 10.0; depth <= 150.0; depth += output.quick() ? 40.0 : 10.0)

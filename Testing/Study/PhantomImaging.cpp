@@ -6,7 +6,6 @@
 #include "Probe/ArrayBeam.h"
 #include "Study.h"
 #include "WireEcho.h"
-#include "WireRays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +13,23 @@
 
 namespace sono::study {
 
+namespace {
+
+/// A P4-2 as in the seed, by its data sheets.
+ProbePreset phantomProbe()
+{
+  ProbePreset preset = readProbePreset(dataFile("probes/phased_p4-2.json"));
+  preset.transmitFocusMm = 50.0;   // the seed's focus of the phantom study
+  preset.centreFrequencyMHz = 3.6; // the seed's
+  return preset;
+}
+
+} // namespace
+
 PhantomImaging phantomImaging(int lines, Apodization apodization)
 {
   PhantomImaging imaging;
-  // The probe: a P4-2 as in the seed, by its data sheets.
-  ProbePreset preset = readProbePreset(dataFile("probes/phased_p4-2.json"));
-  preset.transmitFocusMm = 50.0;      // the seed's focus of the phantom study
-  preset.centreFrequencyMHz = 3.6;    // the seed's
+  const ProbePreset preset = phantomProbe();
   imaging.geometry = preset.geometry; // a sector of 75 degrees, 160 mm deep: holds all targets of a view
   // 128 lines sample the beam's field without gaps, (75 degrees) / (wavelength / (2 x 20.5 mm)) = 125. Detection
   // doubles its band, so twice as many sample the envelope.
@@ -31,8 +40,7 @@ PhantomImaging phantomImaging(int lines, Apodization apodization)
   imaging.echo.samplingMHz = 50.0; // the seed's
   imaging.echo.depthMm = imaging.geometry.depthMm;
   imaging.echo.scattererCellMm = 0.4; // some 20 scatterers in the smallest resolution cell: fully developed speckle
-  ArrayAperture aperture = apertureOf(preset);
-  aperture.apodization = apodization;
+  const ArrayAperture aperture = phantomAperture(apodization);
   imaging.echo.field =
     std::make_shared<PulseEchoField>(pulseEchoField(aperture, suggestedFieldGrid(aperture, imaging.echo.depthMm)));
   imaging.echo.scattererLevelDb = gelLevelDb(imaging.echo);
@@ -57,9 +65,11 @@ PhantomImaging phantomImaging(int lines, Apodization apodization)
   return imaging;
 }
 
-double phantomApertureMm()
+ArrayAperture phantomAperture(Apodization apodization)
 {
-  return apertureOf(readProbePreset(dataFile("probes/phased_p4-2.json"))).widthMm();
+  ArrayAperture aperture = apertureOf(phantomProbe());
+  aperture.apodization = apodization;
+  return aperture;
 }
 
 double gelDbAt(const PhantomImaging& imaging, double depthMm)
@@ -97,7 +107,7 @@ PhantomBench::PhantomBench(std::vector<PhantomTarget> targets, WireModel wires, 
 {
   settings_.spacingMm = spacingMm;
   settings_.wiresAsVoxels = wires == WireModel::Voxels;
-  if (wires == WireModel::Surface || wires == WireModel::SurfaceOfAperture)
+  if (wires == WireModel::Surface)
   {
     surfaces_.push_back(phantomWireSurface(targets_, settings_, bundledTissues()));
   }
@@ -111,28 +121,21 @@ double PhantomBench::wireMm() const
   return wire == targets_.end() ? 0.0 : wire->diameterMm;
 }
 
-RfLines PhantomBench::image(const PhantomImaging& imaging, int view, unsigned seed, bool background) const
+RfLines PhantomBench::image(const PhantomImaging& imaging, int view, unsigned seed) const
 {
   const auto lines = makeScanLines(imaging.geometry, phantomViewPose(settings_, view));
   TraceSettings tracing = imaging.tracing;
   tracing.seed = seed;
   EchoSettings echo = imaging.echo;
   echo.seed = seed;
-  const bool mirrors = wires_ == WireModel::Surface;
-  const TracedLines traced = trace(*scene_, lines, tracing, {}, mirrors ? surfaces_ : std::vector<TargetSurface>());
+  const TracedLines traced = trace(*scene_, lines, tracing, {}, surfaces_);
   std::unique_ptr<PointScatterers> points;
-  if (wires_ == WireModel::SurfaceOfAperture)
-  {
-    points =
-      std::make_unique<PointScatterers>(scatterersMet(*scene_, surfaces_, imaging, phantomViewPose(settings_, view),
-                                                      phantomApertureMm(), wireMm(), wireEchoPerMm(echo, wireMm())));
-  }
   if (wires_ == WireModel::Scatterers)
   {
     points =
       std::make_unique<PointScatterers>(phantomWireScatterers(targets_, settings_, wireEchoPerMm(echo, wireMm())));
   }
-  return formRf({ background ? scene_.get() : nullptr, &traced, points.get() }, lines, echo);
+  return formRf({ scene_.get(), &traced, points.get() }, lines, echo);
 }
 
 double valueAt(const PlaneImage& image, double lateralMm, double depthMm)

@@ -16,10 +16,9 @@ namespace sono::study {
 /// How a wire echoes.
 enum class WireModel
 {
-  Scatterers,        ///< thinner than a wavelength: a line of scatterers, seen by every beam that covers it
-  Surface,           ///< Embree geometry for the tracer: a mirror for the scan lines that meet it, and for no others
-  SurfaceOfAperture, ///< the same surface, passed by rays from the whole aperture (WireRays.h)
-  Voxels             ///< voxels of the label map, as the seed has it: boundary and scatterers
+  Scatterers, ///< a line of scatterers, as strong as the exact series for a fluid cylinder has it
+  Surface,    ///< a target, as a needle is one: an Embree surface that paths meet and whose pieces echo
+  Voxels      ///< voxels of the label map, as the seed has it: boundary and scatterers
 };
 
 /// The settings of the phantom study. What the seed (Amadou 2024, tables 3 and 4 and the text around them) gives is
@@ -37,8 +36,8 @@ struct PhantomImaging
 /// takes a second.
 PhantomImaging phantomImaging(int lines = 256, Apodization apodization = Apodization::Boxcar);
 
-/// Width of that probe's aperture.
-double phantomApertureMm();
+/// That probe's elements.
+ArrayAperture phantomAperture(Apodization apodization = Apodization::Boxcar);
 
 /// Rms echo of the phantom's gel at a depth, before any gain, dB to a perfect reflector at the focus.
 double gelDbAt(const PhantomImaging& imaging, double depthMm);
@@ -55,9 +54,8 @@ public:
   const CalibrationPhantomSettings& settings() const { return settings_; }
   const Scene& scene() const { return *scene_; }
 
-  /// The envelope of a view, with a pattern of scatterers of its own for each seed. `background` false: the wires
-  /// alone.
-  RfLines image(const PhantomImaging& imaging, int view, unsigned seed, bool background = true) const;
+  /// The RF of a view, with a pattern of scatterers of its own for each seed.
+  RfLines image(const PhantomImaging& imaging, int view, unsigned seed) const;
 
 private:
   double wireMm() const; ///< diameter of the wires, which are all alike

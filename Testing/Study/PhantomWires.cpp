@@ -1,4 +1,4 @@
-// Target registration error of the wires, by view and group, for four ways to model a wire.
+// Target registration error of the wires, by view and group, for three ways to model a wire.
 #include "PhantomWires.h"
 
 #include "PhantomImaging.h"
@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numeric>
 
 namespace sono::study {
 namespace {
 
-constexpr double windowMm = 4.9; // to either side of a wire; those of a line are 10 mm apart
+constexpr double sameLineMm = 1.0; // wires that lie so near to a line are seen on it
 
 /// Least squares parabola through (x, y); its vertex. A Gaussian peak is a parabola in dB.
 double vertexOf(const std::vector<double>& x, const std::vector<double>& y)
@@ -47,13 +48,13 @@ struct Profile
   std::vector<double> decibels;
 };
 
-Profile profileAt(const PlaneImage& image, const PhantomTarget& wire, bool vertical)
+Profile profileAt(const PlaneImage& image, const PhantomTarget& wire, bool vertical, const WireWindow& window)
 {
   Profile profile;
   const double expected = vertical ? wire.depthMm : wire.lateralMm;
   const double first = vertical ? image.axialMinMm : image.lateralMinMm;
-  const int low = int(std::ceil((expected - windowMm - first) / image.pixelMm));
-  const int high = int(std::floor((expected + windowMm - first) / image.pixelMm));
+  const int low = int(std::ceil((expected - window.beforeMm - first) / image.pixelMm));
+  const int high = int(std::floor((expected + window.behindMm - first) / image.pixelMm));
   for (int i = low; i <= high; ++i)
   {
     const double place = first + i * image.pixelMm;
@@ -68,12 +69,30 @@ Profile profileAt(const PlaneImage& image, const PhantomTarget& wire, bool verti
   return profile;
 }
 
+/// Not beyond half way to the next wire on the line, of whatever group or view.
+WireWindow windowOf(const PhantomBench& bench, const PhantomTarget& wire)
+{
+  const Vec3d centre = phantomTargetCentreMm(bench.settings(), wire);
+  const int along = wire.name == "vertical" ? 2 : 0;
+  WireWindow window;
+  for (const PhantomTarget& other : bench.targets())
+  {
+    const Vec3d off = phantomTargetCentreMm(bench.settings(), other) - centre;
+    if (other.kind == PhantomTargetKind::Wire && std::fabs(off[2 - along]) < sameLineMm)
+    {
+      window.beforeMm = off[along] < 0.0 ? std::min(window.beforeMm, -0.5 * off[along]) : window.beforeMm;
+      window.behindMm = off[along] > 0.0 ? std::min(window.behindMm, 0.5 * off[along]) : window.behindMm;
+    }
+  }
+  return window;
+}
+
 } // namespace
 
-WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire)
+WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire, const WireWindow& window)
 {
   const bool vertical = wire.name == "vertical";
-  const Profile profile = profileAt(decibels, wire, vertical);
+  const Profile profile = profileAt(decibels, wire, vertical, window);
   WirePlace place;
   place.expectedMm = vertical ? wire.depthMm : wire.lateralMm;
   if (profile.decibels.size() < 5)
@@ -106,17 +125,17 @@ WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire)
   return place;
 }
 
-WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed, bool background)
+WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed)
 {
   WireErrors errors;
   for (int view = 1; view <= phantomViewCount; ++view)
   {
-    const PlaneImage decibels = decibelImage(imaging, bench.image(imaging, view, seed, background));
+    const PlaneImage decibels = decibelImage(imaging, bench.image(imaging, view, seed));
     for (const PhantomTarget& target : bench.targets())
     {
       if (target.view == view && target.kind == PhantomTargetKind::Wire)
       {
-        errors.wires.push_back({ target, locateWire(decibels, target) });
+        errors.wires.push_back({ target, locateWire(decibels, target, windowOf(bench, target)) });
       }
     }
   }
@@ -171,32 +190,27 @@ void run(Output& output)
     const char* name;
     WireModel model;
     int lines;
-    bool background;
-    double pixelMm;
   };
-  // A mirror 0.1 mm wide is met only by lines that are no further apart: 2048 at 120 mm of depth. They go without
-  // speckle, which would take a minute.
-  const double pixelMm = PhantomImaging().pixelMm;
-  const std::vector<Case> cases{
-    { "Embree surface, rays from the aperture", WireModel::SurfaceOfAperture, 256, true, pixelMm },
-    { "Embree surface, rays from the aperture", WireModel::SurfaceOfAperture, 128, true, pixelMm },
-    { "lines of scatterers", WireModel::Scatterers, 256, true, pixelMm },
-    { "lines of scatterers", WireModel::Scatterers, 128, true, pixelMm },
-    { "Embree mirror for each scan line, without speckle", WireModel::Surface, 128, false, pixelMm },
-    { "Embree mirror for each scan line, without speckle", WireModel::Surface, 2048, false, pixelMm },
-    { "Embree mirror for each scan line, without speckle", WireModel::Surface, 2048, false, 0.05 },
-    { "voxels of 0.5 mm", WireModel::Voxels, 256, true, pixelMm }
-  };
+  const std::vector<Case> cases{ { "Embree targets", WireModel::Surface, 256 },
+                                 { "Embree targets", WireModel::Surface, 128 },
+                                 { "lines of scatterers", WireModel::Scatterers, 256 },
+                                 { "lines of scatterers", WireModel::Scatterers, 128 },
+                                 { "voxels of 0.5 mm", WireModel::Voxels, 256 } };
   std::vector<std::vector<std::string>> models;
   std::vector<std::vector<std::string>> places;
   for (const Case& c : cases)
   {
     const PhantomBench bench(c.model, output.quick() ? 2.0 : 0.5);
     PhantomImaging imaging = phantomImaging(output.quick() ? 48 : c.lines);
-    imaging.pixelMm = c.pixelMm;
-    const WireErrors errors = measureWires(bench, imaging, 1, c.background && !output.quick());
+    if (c.model == WireModel::Surface)
+    {
+      // Surfaces echo by their phases, so the beam keeps its own.
+      imaging.echo.arrayField = std::make_shared<ArrayField>(phantomAperture(), imaging.echo.depthMm);
+      imaging.echo.field = nullptr;
+    }
+    const WireErrors errors = measureWires(bench, imaging, 1);
     const Spread all = errors.spread(0, "", true);
-    models.push_back({ c.name, std::to_string(c.lines), number(c.pixelMm),
+    models.push_back({ c.name, std::to_string(c.lines),
                        std::to_string(all.count) + " of " + std::to_string(errors.wires.size()), plusMinus(all),
                        plusMinus(errors.spread(0, "", false)) });
     if (&c != &cases.front())
@@ -227,7 +241,7 @@ void run(Output& output)
     output.figure("tre_pixel_mean_mm", errors.spread(0, "", false).mean, "mm");
   }
   output.table("phantom_wire_models.csv",
-               { "wires as", "scan lines", "pixel mm", "found", "TRE mm", "TRE of the brightest pixel mm" }, models);
+               { "wires as", "scan lines", "found", "TRE mm", "TRE of the brightest pixel mm" }, models);
   output.table("phantom_wires.csv", { "group", "view", "lateral mm", "depth mm", "error mm", "above the median dB" },
                places);
 }

@@ -18,8 +18,15 @@ struct WirePlace
   double aboveMedianDb = 0.0;
 };
 
-/// Looks along the expected line, as the seed does, in a scan-converted image in dB, within 4.9 mm of the wire.
-WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire);
+/// How far to either side of its expected place a wire is looked for, mm.
+struct WireWindow
+{
+  double beforeMm = 4.9;
+  double behindMm = 4.9;
+};
+
+/// Looks along the expected line, as the seed does, in a scan-converted image in dB.
+WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire, const WireWindow& window = {});
 
 /// Mean and standard deviation of an error's absolute value.
 struct Spread
@@ -37,7 +44,7 @@ struct WireErrors
   Spread spread(int view, const std::string& group, bool fitted) const;
 };
 
-/// Images all views, with or without the gel's speckle, and locates their wires.
-WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed, bool background);
+/// Images all views and locates their wires.
+WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed);
 
 } // namespace sono::study

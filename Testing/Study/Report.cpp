@@ -140,9 +140,8 @@ private:
     heading("Wires: target registration error");
     paragraph("Each wire is looked for along the line that should hold it, in the scan-converted image with pixels of "
               "0.23 mm; its place is the vertex of the parabola through the main lobe in dB. The seed's column stands "
-              "beside it. A wire of 0.1 mm is thinner than a wavelength: the first rows have it as an Embree "
-              "surface that rays from the whole aperture pass, leaving scatterers inside; for comparison as a line of "
-              "scatterers, as a mirror that only those scan lines see that meet it, and as voxels.");
+              "beside it. The first rows have wires as targets, Embree surfaces that echo as any target does; for "
+              "comparison as lines of scatterers, and as voxels.");
     showTable("phantom_tre.csv", "phantom_wires");
     showTable("phantom_wire_models.csv", "phantom_wires");
     if (const auto csv = table("phantom_wires.csv"))

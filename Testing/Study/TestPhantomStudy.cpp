@@ -149,9 +149,9 @@ TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
 
 TEST(PhantomStudy, WiresAreWhereTheTableHasThem)
 {
-  const PhantomBench bench(WireModel::Scatterers, 2.0);
-  PhantomImaging imaging = phantomImaging(128);
-  const WireErrors errors = measureWires(bench, imaging, 1, false);
+  const PhantomBench bench(WireModel::Surface, 2.0);
+  const PhantomImaging imaging = phantomImaging(128);
+  const WireErrors errors = measureWires(bench, imaging, 1);
   const Spread all = errors.spread(0, "", true);
   EXPECT_EQ(all.count, int(errors.wires.size()));
   EXPECT_LE(all.mean, 0.05);
