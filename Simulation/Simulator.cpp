@@ -407,7 +407,7 @@ void Simulator::begin(const ImageInput& input)
   }
   const std::vector<ScanLine> lines = makeScanLines(input.settings.geometry, input.pose);
   const auto box = [&](const std::vector<ScanLine>& of, const TraceSettings& s) {
-    return fanBox(*scene_, of, s.depthMm);
+    return fanBox(*scene_, of, s);
   };
   // A moving probe's region is wider than its fan.
   if (tracing.interactive != before->settings.interactive ||

@@ -12,7 +12,7 @@
 namespace sono {
 
 constexpr int surfaceThreads = 128;
-constexpr int surfaceSlices = 12; // blocks of a line at most
+constexpr int surfaceSlices = 8; // blocks of a line at most
 
 struct SurfaceLaunch
 {
@@ -83,16 +83,32 @@ struct HeardPiece
   float lit;
 };
 
+constexpr int groupsAtOnce = 4; // of a warp
+
+/// What the threads of a block found.
+struct HeardPieces
+{
+  HeardPiece items[groupsAtOnce * surfaceThreads];
+  int count;
+
+  __device__ void push(bool found, const HeardPiece& item)
+  {
+    if (found)
+    {
+      items[atomicAdd(&count, 1)] = item;
+    }
+  }
+};
+
 /// Adds what pieces (or points of targets) echo into a line; the groups are shared out among the line's blocks and
-/// their warps. The lanes of a warp look which groups are near, then at the pieces of one group at a time, and work on
-/// those that are heard once there are enough.
+/// their warps. The lanes of a warp look which groups are near, then at the pieces of one group at a time.
 template<BeamKind kind, class Item>
 __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaunch launch)
 {
   constexpr bool arePieces = std::is_same_v<Item, SurfacePiece>;
   constexpr int warps = surfaceThreads / warpLanes;
-  __shared__ WarpQueue<HeardPiece> diffuseQueues[warps];
-  __shared__ WarpQueue<HeardPiece> coherentQueues[warps];
+  __shared__ HeardPieces diffuse;
+  __shared__ HeardPieces coherent;
   __shared__ BeamTables tables;
   const SplatLaunch& splat = launch.splat;
   const SurfaceSet& set = launch.set;
@@ -166,28 +182,51 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
     }
   };
 
+  // The block looks at groups until enough pieces are heard, then all its threads work on those.
   const GroupSight<kind> sight(launch, beam, litToMm + surfaceCrossingMm + set.marginMm);
   const int lane = int(threadIdx.x) % warpLanes;
   const int warp = int(threadIdx.x) / warpLanes;
-  int diffuse = 0;
-  int coherent = 0;
   // Neighbouring groups go to different warps: lines hear them together.
   const int stride = int(gridDim.y) * warps;
-  for (int base = int(blockIdx.y) * warps + warp; base < set.groupCount; base += stride * warpLanes)
+  int base = int(blockIdx.y) * warps + warp - stride * warpLanes;
+  unsigned near = 0u;
+  bool isLeft = true;
+  while (__syncthreads_or(isLeft))
   {
-    const int own = base + lane * stride;
-    unsigned near = __ballot_sync(allLanes, own < set.groupCount && sight.sees(set.groups[own]));
-    for (; near; near &= near - 1u)
+    if (threadIdx.x == 0)
     {
+      diffuse.count = 0;
+      coherent.count = 0;
+    }
+    __syncthreads();
+    for (int looked = 0; isLeft && looked < groupsAtOnce;)
+    {
+      if (near == 0u)
+      {
+        base += stride * warpLanes;
+        isLeft = base < set.groupCount;
+        const int own = base + lane * stride;
+        near = __ballot_sync(allLanes, own < set.groupCount && sight.sees(set.groups[own]));
+        continue;
+      }
       const SurfaceGroup& group = set.groups[base + (__ffs(int(near)) - 1) * stride];
+      near &= near - 1u;
+      ++looked;
       const int p = group.first + lane;
       const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, false, false };
-      diffuseQueues[warp].push(heard.diffuse, { p, heard.lit }, diffuse, addDiffuseOf);
-      coherentQueues[warp].push(heard.coherent, { p, heard.lit }, coherent, addCoherentOf);
+      diffuse.push(heard.diffuse, { p, heard.lit });
+      coherent.push(heard.coherent, { p, heard.lit });
+    }
+    __syncthreads();
+    for (int n = int(threadIdx.x); n < diffuse.count; n += surfaceThreads)
+    {
+      addDiffuseOf(diffuse.items[n]);
+    }
+    for (int n = int(threadIdx.x); n < coherent.count; n += surfaceThreads)
+    {
+      addCoherentOf(coherent.items[n]);
     }
   }
-  diffuseQueues[warp].finish(diffuse, addDiffuseOf);
-  coherentQueues[warp].finish(coherent, addCoherentOf);
 }
 
 } // namespace sono

@@ -308,7 +308,7 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
       const Vec3d off = (Vec3d(brick) + 0.5) * (4.0 * h) - lines[line].originMm;
       const double squared =
         std::pow(glm::dot(off, lines[line].lateral), 2) + std::pow(glm::dot(off, lines[line].elevation), 2);
-      const double share = std::min(1.0, 9.0 * std::exp(-0.5 * squared));
+      const double share = std::min(1.0, double(nestedFullWeight) * std::exp(-0.5 * squared));
       const double eighths = std::clamp(8.0 * needed * share * h * h * h, 1.0, 8.0);
       const int ranks = int(std::ceil(eighths));
       const double perMm3 = eighths / 8.0 / (h * h * h);

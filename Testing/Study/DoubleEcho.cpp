@@ -89,9 +89,14 @@ double intensityAt(const DoubleEchoInput& input, const double* bins, double dept
 void formLine(const DoubleEchoInput& input, int line, Complex* iq)
 {
   const DoubleEchoInput::Line& l = input.lines[std::size_t(line)];
-  const kernel::Beam beam{ vec(l.origin),    vec(l.axis),          vec(l.lateral),
-                           vec(l.elevation), input.lateralSigmaMm, input.elevationalSigmaMm,
-                           nullptr };
+  kernel::Beam beam{};
+  beam.origin = vec(l.origin);
+  beam.axis = vec(l.axis);
+  beam.lateral = vec(l.lateral);
+  beam.elevation = vec(l.elevation);
+  beam.lateralSigmaMm = input.lateralSigmaMm;
+  beam.elevationalSigmaMm = input.elevationalSigmaMm;
+  beam.kind = kernel::BeamKind::Gaussian;
   const int half = pulseHalf(input);
   std::vector<Complex> sum(std::size_t(input.sampleCount + half));
   addScatterers(input, beam, sum);
