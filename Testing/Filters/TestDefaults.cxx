@@ -88,8 +88,8 @@ TEST(FilterDefaults, AParameterKeepsWhatItIsGiven)
 TEST(FilterDefaults, PulseEchoFieldEqualsArrayAperture)
 {
   const auto [elementCount, elementWidthMm, elementHeightMm, kerfMm, faceRadiusMm, transmitFocusMm, elevationFocusMm,
-              apodization, centreFrequencyMHz, fractionalBandwidth, attenuationDbPerCmMHz, soundSpeedMmPerUs] =
-    sono::ArrayAperture();
+              apodization, centreFrequencyMHz, fractionalBandwidth, attenuationDbPerCmMHz, soundSpeedMmPerUs,
+              elevationCount] = sono::ArrayAperture();
   vtkNew<vtkSonoPulseEchoField> field;
   EXPECT_STREQ(field->GetFileName(), "");
   EXPECT_EQ(field->GetElementCount(), elementCount);
@@ -104,6 +104,7 @@ TEST(FilterDefaults, PulseEchoFieldEqualsArrayAperture)
   EXPECT_EQ(field->GetAttenuationDbPerCmMHz(), attenuationDbPerCmMHz);
   // The settings have one frequency, the filter the preset's band, which TestField.py compares.
   EXPECT_EQ(fractionalBandwidth, 0.0);
+  EXPECT_EQ(elevationCount, 1); // the filter's is an array with a lens
   // The filter offers no choice of the sound speed, which is that of the echoes' depths.
   EXPECT_EQ(soundSpeedMmPerUs, sono::assumedSoundSpeedMmPerUs);
 }
