@@ -15,7 +15,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double blockWidthMm = 178.0;
 constexpr double blockDepthMm = 203.0;
 constexpr const char* background = "phantom_gel";
-constexpr int wireSides = 8; // a tenth of a wavelength each: more cost time and echo the same
+constexpr int wireSides = 8; // a tenth of a wavelength each (chosen): as targets, more are more pieces
 
 void requireInside(const CalibrationPhantomSettings& settings, const PhantomTarget& target)
 {
