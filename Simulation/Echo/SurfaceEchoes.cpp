@@ -97,8 +97,7 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   const float widestMm =
     float(blobPerStep) * std::max({ spacing.x / float(nets_.fewest.x), spacing.y / float(nets_.fewest.y),
                                     spacing.z / float(nets_.fewest.z) });
-  rows_ =
-    std::make_unique<SurfaceRows>(mediaOf(scene, targets), scene.outsideIndex(), settings, beam, blobMm_, widestMm);
+  rows_ = sharedSurfaceRows(mediaOf(scene, targets), scene.outsideIndex(), settings, beam, blobMm_, widestMm);
   if (targets && !targets->empty())
   {
     targets_ = std::make_unique<TargetPieces>(scene, *targets, *rows_, edgePerBlob * blobMm_, seed_);

@@ -51,7 +51,7 @@ private:
   const SurfacePieces& pieces_;
   std::uint64_t seed_;
   double blobMm_;
-  std::unique_ptr<SurfaceRows> rows_;
+  std::shared_ptr<const SurfaceRows> rows_;
   std::unique_ptr<TargetPieces> targets_;
   std::unique_ptr<FieldSight> pieceSight_;
   std::unique_ptr<FieldSight> targetSight_;

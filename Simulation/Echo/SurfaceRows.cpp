@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <mutex>
+#include <utility>
 
 namespace sono {
 
@@ -26,12 +29,14 @@ const Tissue& rougher(const Tissue& a, const Tissue& b)
 }
 
 /// Diffuse cross-section per area for r = 1, eq. 10.7 with the beam's own range of directions (10.10); where the
-/// roughness is small against the wavelength, the mixture of (10.12).
+/// roughness is small against the wavelength, the mixture of (10.12). Averaged over the pulse's band: aslant, what is
+/// heard of a surface of small slopes is the band's lower half.
 class Roughness
 {
 public:
-  Roughness(const Tissue& tissue, double radPerMm, const BeamExtent& beam)
+  Roughness(const Tissue& tissue, double radPerMm, const BeamExtent& beam, double pulseMm)
     : heightRad_(radPerMm * tissue.roughnessMm)
+    , bandShare_(1.0 / (radPerMm * pulseMm))
     , perCorrelation_(std::pow(2.0 / (radPerMm * tissue.correlationMm), 2))
     , beamL_(1.0 / std::pow(radPerMm * beam.lateralSigmaMm, 2))
     , beamE_(1.0 / std::pow(radPerMm * beam.elevationalSigmaMm, 2))
@@ -41,12 +46,32 @@ public:
   /// The tilt in the lateral or the elevational direction.
   double crossSection(double tangent, bool lateral) const
   {
-    const double cosSquared = 1.0 / (1.0 + tangent * tangent);
-    const double g = heightRad_ * heightRad_ * cosSquared;
     double sum = 0.0;
-    if (heightRad_ * heightRad_ >= mixtureUpTo)
+    double weights = 0.0;
+    for (int i = -4; i <= 4; ++i)
     {
-      sum = -std::expm1(-g) * lobe(heightRad_ * heightRad_, tangent, lateral);
+      const double x = 0.7 * i;
+      const double share = 1.0 + x * bandShare_; // of the centre frequency
+      if (share > 0.1)
+      {
+        weights += std::exp(-x * x);
+        sum += std::exp(-x * x) * at(share * share, tangent, lateral);
+      }
+    }
+    return sum / weights;
+  }
+
+private:
+  /// At the centre frequency times the root of `f2`, times the square of the wavelength there over the centre's.
+  double at(double f2, double tangent, bool lateral) const
+  {
+    const double cosSquared = 1.0 / (1.0 + tangent * tangent);
+    const double height2 = heightRad_ * heightRad_ * f2;
+    const double g = height2 * cosSquared;
+    double sum = 0.0;
+    if (height2 >= mixtureUpTo)
+    {
+      sum = -std::expm1(-g) * lobe(height2, f2, tangent, lateral);
     }
     else
     {
@@ -54,22 +79,22 @@ public:
       for (int n = 1; n <= 40; ++n)
       {
         poisson *= g / n;
-        sum += poisson * lobe(n, tangent, lateral);
+        sum += poisson * lobe(n / cosSquared, f2, tangent, lateral);
       }
     }
-    return sum / (4.0 * pi * cosSquared * cosSquared);
+    return sum / (4.0 * pi * cosSquared * cosSquared * f2);
   }
 
-private:
-  /// alpha^2 = n / (k l)^2
-  double lobe(double n, double tangent, bool lateral) const
+  /// alpha^2 = n / (k l cos t)^2: aslant, heights count by their cosine, and so do slopes
+  double lobe(double n, double f2, double tangent, bool lateral) const
   {
-    const double alphaL = n * perCorrelation_ + beamL_;
-    const double alphaE = n * perCorrelation_ + beamE_;
+    const double alphaL = (n * perCorrelation_ + beamL_) / f2;
+    const double alphaE = (n * perCorrelation_ + beamE_) / f2;
     return std::exp(-tangent * tangent / (lateral ? alphaL : alphaE)) / std::sqrt(alphaL * alphaE);
   }
 
   double heightRad_; // 2 k h
+  double bandShare_; // s_f / f0
   double perCorrelation_;
   double beamL_; // 1 / (4 k^2 s^2)
   double beamE_;
@@ -110,7 +135,7 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
     if (same == owner.end())
     {
       owner.push_back(int(m));
-      const Roughness roughness(media[m], radPerMm, beam);
+      const Roughness roughness(media[m], radPerMm, beam, pulseSigmaMm_);
       for (int n = 0; n < nodes; ++n)
       {
         const double tangent = n / perTangent;
@@ -198,6 +223,42 @@ SurfaceTable SurfaceRows::view(double slackMm) const
   table.slackMm = float(slackMm);
   table.pulseSigmaMm = float(pulseSigmaMm_);
   return table;
+}
+
+std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const std::vector<Tissue>& media, int coupling,
+                                                     const EchoSettings& settings, const BeamExtent& beam,
+                                                     double finestMm, double widestMm)
+{
+  // All that the constructor looks at.
+  std::vector<double> key{ double(coupling),
+                           settings.centreFrequencyMHz,
+                           settings.fractionalBandwidth,
+                           beam.areaMm2,
+                           beam.lateralSigmaMm,
+                           beam.elevationalSigmaMm,
+                           finestMm,
+                           widestMm };
+  for (const Tissue& t : media)
+  {
+    key.insert(key.end(), { t.impedanceMRayl, t.soundSpeedMPerS, t.tau, t.gamma, t.roughnessMm, t.correlationMm });
+  }
+  using Kept = std::pair<std::vector<double>, std::shared_ptr<const SurfaceRows>>;
+  constexpr std::size_t most = 8;
+  static std::mutex mutex;
+  static std::deque<Kept> kept;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto found = std::find_if(kept.begin(), kept.end(), [&](const Kept& k) { return k.first == key; });
+  if (found != kept.end())
+  {
+    return found->second;
+  }
+  auto rows = std::make_shared<const SurfaceRows>(media, coupling, settings, beam, finestMm, widestMm);
+  kept.emplace_front(std::move(key), rows);
+  if (kept.size() > most)
+  {
+    kept.pop_back();
+  }
+  return rows;
 }
 
 } // namespace sono

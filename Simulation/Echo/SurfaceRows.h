@@ -5,6 +5,7 @@
 #include "Kernel/SurfaceEcho.h"
 #include "Labels/TissueTable.h"
 
+#include <memory>
 #include <vector>
 
 namespace sono {
@@ -47,5 +48,10 @@ private:
   std::vector<float> diffuseL_;
   std::vector<float> diffuseE_;
 };
+
+/// The same; those made last are kept, since they take tens of milliseconds and the next image wants the same.
+std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const std::vector<Tissue>& media, int coupling,
+                                                     const EchoSettings& settings, const BeamExtent& beam,
+                                                     double finestMm, double widestMm);
 
 } // namespace sono
