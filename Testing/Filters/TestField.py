@@ -122,11 +122,13 @@ class TestFieldInTheImage(unittest.TestCase):
     def setUp(self):
         self.chain = Chain()
         self.chain.tracer.SetDeterministic(True)
+        self.chain.probe.SetApertureMm(0)  # one width, that of the table
 
     def with_field(self, image):
         self.chain.formation.SetInputDataObject(2, image)
 
     def test_gaussian_table_gives_the_gaussians_image(self):
+        self.chain.tracer.SetInterfaceModel(1)  # surfaces are narrower for a Gaussian than for a table's beam
         gaussian = envelope(self.chain)
         x, depths = np.arange(-80, 81) * 0.05, np.ones(2)
         profile = np.exp(-x**2 / 2.0)

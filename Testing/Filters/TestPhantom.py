@@ -26,7 +26,7 @@ class TestPhantom(unittest.TestCase):
         places = [image.GetFieldData().GetArray(f"View{view}PositionMm").GetTuple3(0) for view in (1, 2, 3)]
         self.assertEqual(places, [(-45.0, 0.0, 0.0), (0.0, 0.0, 0.0), (45.0, 0.0, 0.0)])
         self.assertEqual(surfaces.GetFieldData().GetAbstractArray("Tissue").GetValue(0), "phantom_nylon")
-        self.assertGreater(surfaces.GetNumberOfCells(), 60 * 48)
+        self.assertEqual(surfaces.GetNumberOfCells(), 75 * 28)  # prisms of eight sides
         self.assertEqual(scatterers.GetNumberOfPoints() % 75, 0)
 
     def test_wires_as_voxels_leave_the_other_ports_empty(self):

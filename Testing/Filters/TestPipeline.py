@@ -164,6 +164,8 @@ class TestRunningAgain(unittest.TestCase):
     def test_noise_is_added_only_when_asked_for(self):
         chain = Chain()
         chain.bmode.SetNoiseDb(-60)
+        chain.bmode.AutomaticReferenceOff()
+        chain.bmode.SetReferenceAmplitude(0.1)
         chain.bmode.Update()
         clean = values(chain.bmode.GetOutput(), "BMode").copy()
         chain.bmode.AddNoiseOn()

@@ -114,6 +114,7 @@ class TestPaths(unittest.TestCase):
 
     def test_paths_start_at_the_face_and_fade(self):
         chain = Chain()
+        chain.probe.SetApertureMm(0)  # all at one point
         chain.tracer.SetNumberOfShownPaths(24)
         chain.tracer.Update()
         paths = chain.tracer.GetOutputDataObject(2)
@@ -140,6 +141,8 @@ class TestPaths(unittest.TestCase):
 class TestScatterers(unittest.TestCase):
     def test_one_bright_scatterer_shows_at_its_depth(self):
         chain = Chain()
+        chain.probe.SetApertureMm(0)  # the same weight at each depth
+        chain.tracer.SetInterfaceModel(1)  # no tissue beside it, and no frequency that sinks
         chain.probe.SetLineCount(13)  # the seventh runs along the axis
         chain.formation.SetScattererLevelDb(-200)
         chain.formation.Update()

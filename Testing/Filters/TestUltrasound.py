@@ -113,7 +113,9 @@ class TestOutputs(unittest.TestCase):
         self.assertTrue(all(before != behind for before, behind in pairs))
         self.assertTrue((values(hits, "IncidenceDeg") <= 90).all())
         self.assertTrue((values(hits, "PathMm") >= 0.99 * values(hits, "DepthMm")).all())
-        np.testing.assert_allclose(values(hits, "IntensityDb"), 20 * np.log10(values(hits, "Intensity")), atol=1e-3)
+        bright = values(hits, "Intensity") > 1e-10  # less is shown as that
+        np.testing.assert_allclose(values(hits, "IntensityDb")[bright], 20 * np.log10(values(hits, "Intensity")[bright]),
+                                   atol=1e-3)
         # Where each path's first corner with another bounce lies, up to the voxel that a hit lies beside its face.
         corners = vtk_to_numpy(paths.GetPoints().GetData())
         hit_points = vtk_to_numpy(hits.GetPoints().GetData())
