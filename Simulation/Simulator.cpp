@@ -406,9 +406,7 @@ void Simulator::begin(const ImageInput& input)
     return;
   }
   const std::vector<ScanLine> lines = makeScanLines(input.settings.geometry, input.pose);
-  const auto box = [&](const std::vector<ScanLine>& of, const TraceSettings& s) {
-    return fanBox(*scene_, of, s);
-  };
+  const auto box = [&](const std::vector<ScanLine>& of, const TraceSettings& s) { return fanBox(*scene_, of, s); };
   // A moving probe's region is wider than its fan.
   if (tracing.interactive != before->settings.interactive ||
       (!tracing.interactive && !(box(lines, tracing) == box(before->lines, before->settings))))

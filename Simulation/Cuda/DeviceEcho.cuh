@@ -23,7 +23,8 @@ struct TracedOnDevice
   const float2* echo = nullptr; ///< or lines x sumCount amplitudes
 };
 
-/// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them. They lie in a brick.
+/// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them. They lie in a
+/// brick.
 struct SurfaceGroup
 {
   Vec3f brickMm; ///< its centre

@@ -44,8 +44,9 @@ class TissueTable
 public:
   /// Columns, in any order, by header: tissue, impedance_MRayl, sound_speed_m_per_s, attenuation_dB_per_cm_MHz,
   /// mu0, sigma0, mu1, tau, gamma, source; and, with the defaults above where a table lacks them, roughness_mm,
-  /// correlation_mm, backscatter_1MHz_per_cm_sr, backscatter_exponent, fibre_anisotropy_dB. Lines starting with '#' are comments; fields may be quoted.
-  /// Throws Error naming the file, the tissue and the column for a missing, non-finite or out-of-range number.
+  /// correlation_mm, backscatter_1MHz_per_cm_sr, backscatter_exponent, fibre_anisotropy_dB. Lines starting with '#' are
+  /// comments; fields may be quoted. Throws Error naming the file, the tissue and the column for a missing, non-finite
+  /// or out-of-range number.
   static TissueTable read(const std::string& path);
 
   /// Checks the ranges above and that the name is new; throws Error naming the tissue.

@@ -208,7 +208,8 @@ TEST_F(SceneFiles, ForeignAndNewerFilesAreRefused)
   expectContains(refusalOf(foreign), "no scene of SonoVDB");
   expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 3}"); }), "newer SonoVDB wrote it");
   expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 2}"); }), "incomplete");
-  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 1}"); }), "without the tissues' roughness");
+  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 1}"); }),
+                 "without the tissues' roughness");
   expectContains(errorOf([] { parseSceneText("n.nvdb", "{"); }), "incomplete");
 
   const Scene scene(smallVolume(), smallTable(), "air");
