@@ -24,7 +24,7 @@ configure()
 }
 
 # Most packages are ParaView's, and one core alone unpacks them: the others compile the simulator meanwhile, which needs none
-# of them.
+# of them, nor of the tests'.
 compile_ahead()
 {
   Testing/install-dependencies.sh simulation
@@ -35,7 +35,7 @@ compile_ahead()
   local apt=$!
   # Started so, it does not hear Ctrl-C. It is waited for, since it holds apt's lock.
   trap 'echo "Waits until apt is done." >&2; wait' EXIT
-  configure -DSONOVDB_BUILD_PLUGIN=OFF
+  configure -DSONOVDB_BUILD_PLUGIN=OFF -DSONOVDB_BUILD_TESTING=OFF
   cmake --build --preset "$preset" --target Simulation
   local status=0
   wait "$apt" || status=$?
