@@ -97,11 +97,29 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
   return input;
 }
 
-/// RF of traced lines, all in double precision. `image` has their intensity.
+/// RF of Acoustic by the product's own image formation. `image` has the intensity, `absorbed` is A times that.
+std::vector<std::complex<double>> rfOf(const BenchScene& bench, const TraceSettings& tracing, const BenchImage& image,
+                                       const std::vector<double>& absorbed)
+{
+  TracedLines traced = tracedLayout(image.lineCount, tracing, bench.targets);
+  traced.intensity.assign(image.intensity.begin(), image.intensity.end());
+  traced.standardError.resize(image.intensity.size());
+  for (std::size_t i = 0; i < absorbed.size(); ++i)
+  {
+    const double intensity = image.intensity[i];
+    traced.attenuationNpPerMHz.push_back(intensity > 0.0 ? float(absorbed[i] / (intensity * tracing.frequencyMHz))
+                                                         : 0.0f);
+  }
+  EchoSettings echo = bench.echo;
+  echo.device = Device::Cpu;
+  const RfLines rf = formRf(*bench.scene, bench.lines, traced, echo);
+  return { rf.iq.begin(), rf.iq.end() };
+}
+
+/// RF of Amadou2024, all in double precision. `image` has the intensity.
 std::vector<std::complex<double>> rfInDouble(const BenchScene& bench, const BenchImage& image,
                                              const std::vector<std::complex<double>>& echo)
 {
-  // The reference in double precision knows the cells of Amadou2024.
   const EchoSources sources{ bench.scene.get(), nullptr, nullptr, InterfaceModel::Amadou2024 };
   const EchoSetup setup(sources, bench.lines, bench.echo);
   const Scene& scene = *bench.scene;
@@ -157,7 +175,8 @@ BenchImage imageInDouble(const BenchScene& bench, const TraceSettings& tracing)
   DoubleTraced traced = traceInDouble(doubleInput(bench, tracing, setup));
   image.traceSeconds = secondsSince(start);
   image.intensity = std::move(traced.intensity);
-  image.iq = rfInDouble(bench, image, traced.echo);
+  image.iq = tracing.model == InterfaceModel::Amadou2024 ? rfInDouble(bench, image, traced.echo)
+                                                         : rfOf(bench, tracing, image, traced.absorbed);
   return image;
 }
 
@@ -250,13 +269,13 @@ BenchImage exactStackImage(const BenchScene& stack)
 {
   BenchImage image = emptyImage(stack, stack.tracing);
   const StackLine line = stackLine(stack.tracing);
-  std::vector<std::complex<double>> echo;
+  std::vector<double> absorbed;
   for (int i = 0; i < image.lineCount; ++i)
   {
     image.intensity.insert(image.intensity.end(), line.intensity.begin(), line.intensity.end());
-    echo.insert(echo.end(), line.echo.begin(), line.echo.end());
+    absorbed.insert(absorbed.end(), line.absorbed.begin(), line.absorbed.end());
   }
-  image.iq = rfInDouble(stack, image, echo);
+  image.iq = rfOf(stack, stack.tracing, image, absorbed);
   return image;
 }
 

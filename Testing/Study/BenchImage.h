@@ -8,7 +8,8 @@
 
 namespace sono::study {
 
-/// What a bench scene is computed with. Double is a twin of the CPU's way for this study alone, several times slower.
+/// What a bench scene is computed with. Double is a twin of the CPU's way for this study alone, several times slower:
+/// of the tracer, and with Amadou2024 of image formation too.
 enum class Precision
 {
   Single,
@@ -34,7 +35,8 @@ BenchImage makeBenchImage(const BenchScene& bench, const TraceSettings& tracing,
 /// its paths meet while they run.
 void warmUp(const BenchScene& bench, const TraceSettings& tracing);
 
-/// The stack without noise: intensity and boundary echoes are a finite sum over the ways through the layers.
+/// The stack without noise: the intensity is a finite sum over the ways through the layers, and the product's image
+/// formation makes its RF.
 BenchImage exactStackImage(const BenchScene& stack);
 
 /// The mean of images that differ by chance alone, in intensity and RF.

@@ -1,5 +1,4 @@
 #include "BenchScenes.h"
-#include "Core/SoundSpeed.h"
 
 #include "Core/Progress.h"
 #include "PhantomImaging.h"
@@ -22,25 +21,10 @@ std::vector<ScanLine> middleLines(const ScanGeometry& geometry, const ProbePose&
   return { first, first + lineCount };
 }
 
-/// Splits an echo between the two samples around it, each with the phase of its distance.
-void addStackEcho(const TraceSettings& tracing, double r, double amplitude, StackLine& out)
-{
-  const double position = r / tracing.echoSampleMm;
-  const std::size_t sample = std::size_t(position);
-  const double fraction = position - double(sample);
-  const double turn = 4.0 * M_PI * tracing.frequencyMHz / assumedSoundSpeedMmPerUs * tracing.echoSampleMm;
-  if (sample + 1 < out.echo.size())
-  {
-    out.echo[sample] += std::polar(amplitude * (1.0 - fraction), -turn * fraction);
-    out.echo[sample + 1] += std::polar(amplitude * fraction, turn * (1.0 - fraction));
-  }
-}
-
 /// Adds what a path leaves from `r` on, inside `layer`, going down or up.
-void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool down, double intensity, double length,
-                 int collisions, StackLine& out)
+void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool down, double intensity,
+                 double absorbed, double length, int collisions, StackLine& out)
 {
-  std::vector<double>& bins = out.intensity;
   const std::vector<Layer>& layers = stackLayers();
   const double decay = layers[layer].tissue.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0;
   const bool lastDown = down && layer + 1 == layers.size();
@@ -51,7 +35,7 @@ void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool
   wall = late ? (down && heard > 0.0 ? r + 0.5 * heard : r) : wall;
   const double low = std::min(r, wall);
   const double high = std::max(r, wall);
-  for (std::size_t b = 0; b < bins.size(); ++b)
+  for (std::size_t b = 0; b < out.intensity.size(); ++b)
   {
     const double from = std::max(low, double(b) * tracing.radialBinMm);
     const double to = std::min(high, double(b + 1) * tracing.radialBinMm);
@@ -59,7 +43,9 @@ void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool
     {
       const double near = down ? from - r : r - to;
       const double share = decay > 0.0 ? -std::expm1(-decay * (to - from)) / decay : to - from;
-      bins[b] += intensity * std::exp(-decay * near) * share / tracing.radialBinMm;
+      const double value = intensity * std::exp(-decay * near) * share / tracing.radialBinMm;
+      out.intensity[b] += value;
+      out.absorbed[b] += value * (absorbed + decay * (near + 0.5 * (to - from)));
     }
   }
   if (late || lastDown || (!down && layer == 0) || collisions == tracing.maxCollisions)
@@ -71,10 +57,10 @@ void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool
   const double z2 = layers[next].tissue.impedanceMRayl;
   const double reflectance = std::pow((z2 - z1) / (z2 + z1), 2);
   const double arrives = intensity * std::exp(-decay * (high - low));
+  absorbed += decay * (high - low);
   length += high - low;
-  addStackEcho(tracing, wall, arrives * std::fabs(z2 - z1) / (z2 + z1), out);
-  followStack(tracing, wall, layer, !down, arrives * reflectance, length, collisions + 1, out);
-  followStack(tracing, wall, next, down, arrives * (1.0 - reflectance), length, collisions + 1, out);
+  followStack(tracing, wall, layer, !down, arrives * reflectance, absorbed, length, collisions + 1, out);
+  followStack(tracing, wall, next, down, arrives * (1.0 - reflectance), absorbed, length, collisions + 1, out);
 }
 
 } // namespace
@@ -93,8 +79,8 @@ StackLine stackLine(const TraceSettings& tracing)
 {
   StackLine line;
   line.intensity.resize(std::size_t(tracing.binCount()));
-  line.echo.resize(std::size_t(tracing.echoCount()));
-  followStack(tracing, 0.0, 0, true, 1.0, 0.0, 0, line);
+  line.absorbed.resize(line.intensity.size());
+  followStack(tracing, 0.0, 0, true, 1.0, 0.0, 0.0, 0, line);
   return line;
 }
 

@@ -5,7 +5,6 @@
 #include "Scene/Scene.h"
 #include "Trace/Trace.h"
 
-#include <complex>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,12 +35,12 @@ struct Layer
 };
 const std::vector<Layer>& stackLayers();
 
-/// A line down the stack, bins and boundary echoes as in TracedLines, in double precision: all sequences of reflections
-/// and transmissions of at most maxCollisions boundaries, each with its probability.
+/// A line down the stack in double precision: all sequences of reflections and transmissions of at most maxCollisions
+/// boundaries, each with its probability.
 struct StackLine
 {
-  std::vector<double> intensity;
-  std::vector<std::complex<double>> echo;
+  std::vector<double> intensity; ///< by bin
+  std::vector<double> absorbed;  ///< A times that, A the attenuation that has been met, Np of intensity
 };
 StackLine stackLine(const TraceSettings& tracing);
 

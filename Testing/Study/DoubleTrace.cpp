@@ -61,7 +61,7 @@ Space makeSpace(const DoubleInput& input, const std::vector<kernel::BvhNode>& no
 
 /// One line by paths of its own, as trace() follows it.
 void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Space& space,
-               const kernel::TraceLine& line, int index, kernel::TracedLines& out)
+               const kernel::TraceLine& line, int index, kernel::TracedLines& out, double* absorbed)
 {
   kernel::LineTally tally(input.binCount, input.settings.at("radialBinMm"), input.echoCount, input.echoSampleMm,
                           input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
@@ -70,6 +70,8 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
   std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;
   const std::vector<double> shared = tally.takeBins(1);
   std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(index) * input.binCount);
+  const std::vector<double> sharedAbsorbed = tally.takeAbsorbed(1);
+  std::copy(sharedAbsorbed.begin(), sharedAbsorbed.end(), absorbed);
   if (!start.meets)
   {
     tally.takeEchoes(echoes);
@@ -94,6 +96,11 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
         { std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - range.first), scrambles.data() }, tally);
     }
     means.push_back(tally.takeBins(range.last - range.first));
+    for (const double sum : tally.takeAbsorbed(range.last - range.first))
+    {
+      *absorbed++ += sum / batches;
+    }
+    absorbed -= input.binCount;
   }
   tally.takeEchoes(echoes);
   kernel::addBatchMeans(means, index, out);
@@ -134,8 +141,11 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   out.intensity.assign(lines.size() * std::size_t(input.binCount), 0.0);
   out.standardError.assign(out.intensity.size(), 0.0);
   out.boundaryEcho.assign(lines.size() * std::size_t(input.echoCount), {});
-  parallelFor(out.lineCount, {}, [&](int i) { traceLine(input, view, space, lines[std::size_t(i)], i, out); });
-  return { std::move(out.intensity), std::move(out.boundaryEcho) };
+  std::vector<double> absorbed(out.intensity.size(), 0.0);
+  parallelFor(out.lineCount, {}, [&](int i) {
+    traceLine(input, view, space, lines[std::size_t(i)], i, out, absorbed.data() + std::ptrdiff_t(i) * input.binCount);
+  });
+  return { std::move(out.intensity), std::move(absorbed), std::move(out.boundaryEcho) };
 }
 
 } // namespace sono::study

@@ -65,6 +65,7 @@ struct DoubleInput
 struct DoubleTraced
 {
   std::vector<double> intensity;          ///< by line and bin
+  std::vector<double> absorbed;           ///< the same: the sum of A I, see LineTally
   std::vector<std::complex<double>> echo; ///< by line and echo sample
 };
 

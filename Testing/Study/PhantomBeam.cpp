@@ -56,6 +56,8 @@ GelImage gelImage(int lines, unsigned seed)
   tracing.depthMm = geometry.depthMm;
   tracing.echoSampleMm = echo.sampleMm();
   tracing.pathsPerLine = 1; // there is no boundary to meet
+  // A beam of one width and a pulse that keeps its spectrum: nothing but the medium's attenuation has a slope.
+  tracing.model = InterfaceModel::Amadou2024;
   const auto scanLines = makeScanLines(geometry, ProbePose{});
   GelImage image;
   const TracedResult traced = simulator.trace(scanLines, tracing);

@@ -125,6 +125,17 @@ WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire, cons
   return place;
 }
 
+PhantomImaging imagingOf(WireModel wires, int lines)
+{
+  PhantomImaging imaging = phantomImaging(lines);
+  if (wires == WireModel::Surface)
+  {
+    imaging.echo.arrayField = std::make_shared<ArrayField>(phantomAperture(), imaging.echo.depthMm);
+    imaging.echo.field = nullptr;
+  }
+  return imaging;
+}
+
 WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed)
 {
   WireErrors errors;
@@ -201,13 +212,7 @@ void run(Output& output)
   for (const Case& c : cases)
   {
     const PhantomBench bench(c.model, output.quick() ? 2.0 : 0.5);
-    PhantomImaging imaging = phantomImaging(output.quick() ? 48 : c.lines);
-    if (c.model == WireModel::Surface)
-    {
-      // Surfaces echo by their phases, so the beam keeps its own.
-      imaging.echo.arrayField = std::make_shared<ArrayField>(phantomAperture(), imaging.echo.depthMm);
-      imaging.echo.field = nullptr;
-    }
+    const PhantomImaging imaging = imagingOf(c.model, output.quick() ? 48 : c.lines);
     const WireErrors errors = measureWires(bench, imaging, 1);
     const Spread all = errors.spread(0, "", true);
     models.push_back({ c.name, std::to_string(c.lines),

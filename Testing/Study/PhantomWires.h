@@ -44,6 +44,10 @@ struct WireErrors
   Spread spread(int view, const std::string& group, bool fitted) const;
 };
 
+/// How the phantom is imaged with its wires in this way. Surfaces echo by their phases, so for them the beam keeps its
+/// own.
+PhantomImaging imagingOf(WireModel wires, int lines);
+
 /// Images all views and locates their wires.
 WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging, unsigned seed);
 

@@ -196,6 +196,7 @@ void measureEcho(const std::string& name, bool quick, Rows& rows)
   TraceSettings tracing = bench.tracing;
   tracing.pathsPerLine = 100;
   tracing.device = Device::Cpu;
+  tracing.model = InterfaceModel::Amadou2024; // whose cells formRfBySkipping() walks
   const TracedLines traced = trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
   const auto ratio = [&](bool EchoSkips::*skip) {
     EchoSkips without;

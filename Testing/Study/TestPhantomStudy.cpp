@@ -150,7 +150,7 @@ TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
 TEST(PhantomStudy, WiresAreWhereTheTableHasThem)
 {
   const PhantomBench bench(WireModel::Surface, 2.0);
-  const PhantomImaging imaging = phantomImaging(128);
+  const PhantomImaging imaging = imagingOf(WireModel::Surface, 128);
   const WireErrors errors = measureWires(bench, imaging, 1);
   const Spread all = errors.spread(0, "", true);
   EXPECT_EQ(all.count, int(errors.wires.size()));
