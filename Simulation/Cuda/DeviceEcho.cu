@@ -172,7 +172,7 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStr
   fibres_ = job.fibres ? job.fibres->view() : FibreView{};
   fibres_.packed = job.fibres ? fibreWords_.data() : nullptr;
   sceneBeams_.upload(job.beams, stream, traffic);
-  media_.upload(job.media.data(), job.media.size(), stream, traffic);
+  nestedMedia_.upload(job.media.data(), job.media.size(), stream, traffic);
   fibreScale_.upload(job.fibreScale.data(), job.fibreScale.size(), stream, traffic);
   perMm3_.upload(job.perMm3, stream, traffic);
   coarseEnough_.upload(job.coarseEnough, stream, traffic);
@@ -191,9 +191,9 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStr
   spacing_ = job.spacing;
   seed_ = job.seed;
   float largest = 0.0f;
-  for (const ScatteringMedium& m : job.media)
+  for (const NestedMedium& m : job.media)
   {
-    largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
+    largest = std::max(largest, m.amplitude);
   }
   // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
   largest *= makeNestedShare(1.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(beam.largestWeight));
@@ -479,7 +479,7 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
   launch.size = size_;
   launch.perMm = 1.0f / spacing_;
   launch.extentMm = Vec3f(size_) * spacing_;
-  launch.media = media_.data();
+  launch.media = nestedMedia_.data();
   launch.fibreScale = fibreScale_.data();
   launch.fibres = fibres_;
   launch.density = density_;

@@ -120,6 +120,7 @@ private:
   DeviceArray<std::uint8_t> voxels_;
   DeviceArray<Beam> sceneBeams_;
   DeviceArray<ScatteringMedium> media_;
+  DeviceArray<NestedMedium> nestedMedia_;
   Sight tissueSight_;
   Vec3i size_{ 0 };
   Vec3f spacing_{ 1.0f };

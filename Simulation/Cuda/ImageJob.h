@@ -114,7 +114,7 @@ struct NestedJob
   std::uint64_t sceneId = 0;         ///< the voxels and fibres are kept on the device while it is the same
   Vec3i size{ 0 };
   Vec3f spacing{ 1.0f };
-  std::array<ScatteringMedium, 256> media{};
+  std::array<NestedMedium, 256> media{};
   std::array<float, 256> fibreScale{}; ///< amplitude times exp(-(fibreScale fibre . axis)^2); 0: no fibres
   const FibreField* fibres = nullptr;  ///< of the scene; null: none
   std::uint64_t seed = 1;

@@ -4,7 +4,6 @@
 #include "Cuda/SplatChunk.cuh"
 #include "Kernel/FibreView.h"
 #include "Kernel/NestedCells.h"
-#include "Kernel/Scatterer.h"
 
 // Scatterers whose density follows the resolution cell, as NestedScatterers and the walk over its bricks on the CPU.
 
@@ -18,7 +17,7 @@ struct NestedLaunch
   Vec3i size;
   Vec3f perMm;
   Vec3f extentMm;
-  const ScatteringMedium* media; // 256
+  const NestedMedium* media; // 256
   const float* fibreScale;       // 256
   FibreView fibres;
   DensityView density;
@@ -34,7 +33,7 @@ template<BeamKind kind>
 __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch launch)
 {
   __shared__ ShortSums sums;
-  __shared__ ScatteringMedium media[256];
+  __shared__ NestedMedium media[256];
   __shared__ float fibreScale[256];
   __shared__ BeamTables tables;
   const SplatLaunch& splat = launch.splat;
@@ -108,7 +107,7 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     const std::size_t at =
       std::size_t(voxel.x) + std::size_t(launch.size.x) * (std::size_t(voxel.y) + std::size_t(launch.size.y) * voxel.z);
     const int tissue = launch.voxels[at];
-    float amplitude = c.sign * scattererAmplitude(media[tissue], c.presence, c.deviate) * scale;
+    float amplitude = c.amplitude(media[tissue]) * scale;
     if (amplitude == 0.0f)
     {
       return;

@@ -19,9 +19,7 @@ struct Candidates
 {
   float x[cells], y[cells], z[cells];
   std::int32_t i[cells], j[cells], k[cells]; // cell, then voxel
-  float presence[cells], deviate[cells], sign[cells];
-  float mean[cells], sigma[cells], probability[cells];
-  float amplitude[cells];
+  float presence[cells], sign[cells];
 };
 
 /// Slot n holds rank n / 8 of parent n % 8: the bricks' cells are the children of 2^3 cells of the next level.
@@ -57,17 +55,7 @@ SONO_SIMD_CLONES void draw(std::uint64_t seed, int level, const Vec3i brick, int
     c.j[n] = std::int32_t(std::floor(c.y[n] * perMm.y));
     c.k[n] = std::int32_t(std::floor(c.z[n] * perMm.z));
     c.presence[n] = candidate.presence;
-    c.deviate[n] = candidate.deviate;
     c.sign[n] = candidate.sign;
-  }
-}
-
-SONO_SIMD_CLONES void decide(int count, Candidates& c)
-{
-  for (int n = 0; n < count; ++n)
-  {
-    c.amplitude[n] =
-      c.sign[n] * scattererAmplitude({ c.mean[n], c.sigma[n], c.probability[n] }, c.presence[n], c.deviate[n]);
   }
 }
 
@@ -82,16 +70,15 @@ SONO_SIMD_CLONES void seeAlong(const Vec3f axis, const float* fx, const float* f
   }
 }
 
-ScatteringMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitudePerRoot)
+NestedMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitudePerRoot)
 {
-  const double rms = std::hypot(tissue.scattererMean, tissue.scattererSigma);
-  if (!(rms > 0.0) || !(tissue.scattererProbability > 0.0))
+  const bool scatters = tissue.scattererMean != 0.0 || tissue.scattererSigma != 0.0;
+  if (!scatters || !(tissue.scattererProbability > 0.0) || !(tissue.backscatterPerCmSr > 0.0))
   {
     return {};
   }
-  const double scale =
-    amplitudePerRoot * std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / tissue.scattererProbability) / rms;
-  return { float(scale * tissue.scattererMean), float(scale * tissue.scattererSigma),
+  return { float(amplitudePerRoot *
+                 std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / tissue.scattererProbability)),
            float(tissue.scattererProbability) };
 }
 
@@ -111,7 +98,7 @@ NestedScatterers::NestedScatterers(const Scene& scene, double frequencyMHz, doub
   {
     const Tissue& tissue = scene.tissues()[t];
     media_[t] = mediumOf(tissue, frequencyMHz, amplitudePerRoot);
-    const bool echoes = media_[t].mean != 0.0f || media_[t].sigma != 0.0f;
+    const bool echoes = media_[t].amplitude != 0.0f;
     fibreScale_[t] = echoes ? float(std::sqrt(npPerDb * tissue.fibreAnisotropyDb)) : 0.0f;
     any_ |= echoes;
     anisotropic |= fibreScale_[t] > 0.0f;
@@ -146,13 +133,8 @@ void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer
     const std::size_t at =
       std::size_t(voxel.x) + std::size_t(size.x) * (std::size_t(voxel.y) + std::size_t(size.y) * std::size_t(voxel.z));
     tissue[n] = inside ? tissues[at] : nowhere;
-    const ScatteringMedium& medium = media_[tissue[n]];
-    c.mean[n] = medium.mean;
-    c.sigma[n] = medium.sigma;
-    c.probability[n] = medium.probability;
     hasFibres |= fibreScale_[tissue[n]] > 0.0f;
   }
-  decide(candidates, c);
   buffer.hasFibres = hasFibres && fibres_;
   int count = 0;
   for (int rank = 0; rank < ranks; ++rank)
@@ -165,7 +147,9 @@ void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer
       buffer.x[to] = c.x[n];
       buffer.y[to] = c.y[n];
       buffer.z[to] = c.z[n];
-      buffer.amplitude[to] = c.amplitude[n];
+      const NestedMedium& medium = media_[tissue[n]];
+      const bool isThere = c.presence[n] < medium.probability;
+      buffer.amplitude[to] = c.sign[n] * medium.amplitude;
       if (buffer.hasFibres)
       {
         const Vec3f fibre = fibres_->at({ c.i[n], c.j[n], c.k[n] }) * fibreScale_[tissue[n]];
@@ -173,7 +157,7 @@ void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer
         buffer.fibreY[to] = fibre.y;
         buffer.fibreZ[to] = fibre.z;
       }
-      count += c.amplitude[n] != 0.0f;
+      count += isThere;
     }
   }
   for (int rank = ranks; rank <= 8; ++rank)

@@ -38,8 +38,8 @@ public:
 
   /// Bricks of a level that may hold scatterers: none when no tissue has any.
   BrickGrid grid(int level) const;
-  /// By tissue index; amplitudes for one scatterer a mm^3.
-  const std::array<ScatteringMedium, 256>& media() const { return media_; }
+  /// By tissue index; amplitudes for one candidate a mm^3.
+  const std::array<NestedMedium, 256>& media() const { return media_; }
   /// Root of a tissue's anisotropy in Np: along `axis` it echoes exp(-(scale fibre . axis)^2) of its amplitude.
   const std::array<float, 256>& fibreScale() const { return fibreScale_; }
   /// Null where no tissue has any.
@@ -55,7 +55,7 @@ private:
   std::uint64_t seed_;
   bool any_ = false;
   const FibreField* fibres_ = nullptr;
-  std::array<ScatteringMedium, 256> media_; // those that are no tissue of the scene hold nothing
+  std::array<NestedMedium, 256> media_; // those that are no tissue of the scene hold nothing
   std::array<float, 256> fibreScale_{};
 };
 

@@ -8,10 +8,10 @@
 
 namespace sono {
 
-/// Candidates in a resolution cell: 14 scatterers where a tissue's cells hold one with probability 1/2, 20 in soft
-/// tissue (7/10), which keeps the envelope's SNR within 0.02 of Rayleigh's for normal amplitudes (Data/docs/physics.md
-/// eq. 11.3).
-constexpr double candidatesPerCell = 28.0;
+/// Candidates in a resolution cell: ten scatterers in soft tissue, whose candidates are there with probability 7/10.
+/// Since all are of one strength, that keeps the envelope's SNR within 0.02 of Rayleigh's (Data/docs/physics.md eq.
+/// 11.3).
+constexpr double candidatesPerCell = 15.0;
 
 /// How many candidates a line needs at each depth, and which bricks give them. What a line costs then does not depend
 /// on beam, pulse or frequency: it is proportional to the number of resolution cells along it.

@@ -1,8 +1,6 @@
 #pragma once
 
 #include "Kernel/EchoSplat.h"
-#include "Kernel/NormalDeviate.h"
-#include "Kernel/Rng.h"
 #include "Kernel/Vec.h"
 
 #include <cmath>
@@ -75,27 +73,51 @@ SONO_HD inline Vec3i finestCell(std::uint64_t seed, Vec3i cell, int level)
   return cell;
 }
 
+/// What the scatterers of a tissue are: all of one strength, there with `probability`.
+struct NestedMedium
+{
+  float amplitude = 0.0f;
+  float probability = 0.0f;
+};
+
 /// A candidate, before the tissue at its position decides on presence and amplitude.
 struct NestedCandidate
 {
   Vec3f positionMm;
-  float presence; ///< uniform (0, 1): there when below the tissue's probability
-  float deviate;  ///< uniform (0, 1): mapped to a standard normal deviate
+  float presence; ///< uniform [0, 1): there when below the tissue's probability
   float sign;     ///< 1 or -1 by chance, so that powers add however regular the cells are
+
+  SONO_HD float amplitude(const NestedMedium& medium) const
+  {
+    return presence < medium.probability ? sign * medium.amplitude : 0.0f;
+  }
 };
 
-/// A pure function of (seed, cell of level 0); local mm.
+/// A pure function of (seed, cell of level 0); local mm. PCG4D (Jarzynski and Olano 2020), upper bits.
 SONO_HD inline NestedCandidate nestedCandidate(std::uint64_t seed, const Vec3i& cell)
 {
-  const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z), 0xbac5ca77u);
-  const float unit = 1.0f / 2097152.0f;
-  const std::uint32_t z = ((w.v[0] & 0x7ffu) << 10) | (w.v[1] & 0x3ffu);
-  return { { (float(cell.x) + float(w.v[0] >> 11) * unit) * nestedFinestMm,
-             (float(cell.y) + float(w.v[1] >> 11) * unit) * nestedFinestMm,
-             (float(cell.z) + float(z) * unit) * nestedFinestMm },
-           uniformFrom(w.v[2]),
-           uniformFrom(w.v[3]),
-           (w.v[1] & 0x400u) ? 1.0f : -1.0f };
+  std::uint32_t x = std::uint32_t(cell.x) * 1664525u + 1013904223u;
+  std::uint32_t y = std::uint32_t(cell.y) * 1664525u + 1013904223u;
+  std::uint32_t z = std::uint32_t(cell.z) * 1664525u + 1013904223u;
+  std::uint32_t w = (std::uint32_t(seed) ^ (std::uint32_t(seed >> 32) * 0x9e3779b9u)) * 1664525u + 1013904223u;
+  x += y * w;
+  y += z * x;
+  z += x * y;
+  w += y * z;
+  x ^= x >> 16;
+  y ^= y >> 16;
+  z ^= z >> 16;
+  w ^= w >> 16;
+  x += y * w;
+  y += z * x;
+  z += x * y;
+  w += y * z;
+  constexpr float unit = 1.0f / 16777216.0f;
+  return { { (float(cell.x) + float(std::int32_t(x >> 8)) * unit) * nestedFinestMm,
+             (float(cell.y) + float(std::int32_t(y >> 8)) * unit) * nestedFinestMm,
+             (float(cell.z) + float(std::int32_t(z >> 8)) * unit) * nestedFinestMm },
+           float(std::int32_t(w >> 8)) * unit,
+           (w & 0x80u) ? 1.0f : -1.0f };
 }
 
 /// A part of a brick's candidates, by rank: whole eighths of them, and of the last eighth the amplitudes times `last`,

@@ -134,7 +134,6 @@ TEST(TissueLevels, AreThoseOfTheClosedForm)
 
 TEST(TissueLevels, SpeckleIsFullyDevelopedAtEveryDepth)
 {
-  // Liver's statistics, the worst of the table: amplitudes nearly normal.
   const auto scene = uniformBox({ 150, 66, 100 }, backscattering("liver", 1e-4, 1.4, 0.19, 0.24, 0.7));
   EchoSettings s;
   s.centreFrequencyMHz = 5.0;
@@ -155,7 +154,7 @@ TEST(TissueLevels, SpeckleIsFullyDevelopedAtEveryDepth)
 
 TEST(TissueLevels, FewScatterersExceedRayleighAsExpected)
 {
-  // (11.3) for sparse normal amplitudes: with one candidate in a hundred there, places are as good as independent.
+  // (11.3) for sparse scatterers: with one candidate in a hundred there, places are as good as independent.
   const double probability = 0.01;
   const auto scene = uniformBox({ 70, 70, 70 }, backscattering("sparse", 1e-4, 1.4, 0.0, 1.0, probability));
   EchoSettings s;
@@ -168,7 +167,7 @@ TEST(TissueLevels, FewScatterersExceedRayleighAsExpected)
   const double perMm3 = eighthsOf(density.view(), level, 1.0f) / 8.0 / std::pow(double(nestedCellMm(level)), 3.0);
   const double scatterers = probability * perMm3 * cellMm3;
   const Moments m = momentsOf(formTissue(*scene, grid(40, 5.0, 1.5), s), 3.0, 60.0);
-  const double excess = 3.0 / (2.0 * std::sqrt(2.0) * scatterers);
+  const double excess = 1.0 / (2.0 * std::sqrt(2.0) * scatterers);
   EXPECT_NEAR((m.secondMoment() - 2.0) / excess, 1.0, 0.1);
 }
 
@@ -231,6 +230,29 @@ TEST(NestedCells, PlacesAreUniformInTheCell)
     }
     EXPECT_LT(chiSquared, 113.5) << "axis " << axis; // 63 degrees of freedom, p = 1e-4
   }
+}
+
+TEST(NestedCells, PresenceAndSignAreFairAndIndependentOfThePlace)
+{
+  // Of neighbouring cells, whose numbers differ in a bit or two.
+  constexpr int edge = 64;
+  std::array<double, 16 * 2 * 8> histogram{};
+  for (int i = 0; i < edge * edge * edge; ++i)
+  {
+    const Vec3i cell(i % edge, (i / edge) % edge, i / (edge * edge));
+    const NestedCandidate c = nestedCandidate(7, cell);
+    const Vec3f upper = glm::floor(2.0f * (c.positionMm / nestedFinestMm - Vec3f(cell)));
+    const int octant = int(upper.x) + 2 * int(upper.y) + 4 * int(upper.z);
+    histogram[std::size_t((int(c.presence * 16.0f) * 2 + (c.sign > 0.0f ? 1 : 0)) * 8 + octant)] += 1.0;
+  }
+  const double expected = double(edge * edge * edge) / double(histogram.size());
+  double chiSquared = 0.0;
+  for (const double n : histogram)
+  {
+    chiSquared += (n - expected) * (n - expected) / expected;
+  }
+  EXPECT_LT(chiSquared, 345.0); // 255 degrees of freedom, p = 1e-4
+  EXPECT_GT(chiSquared, 180.0); // nor too even
 }
 
 /// Resolution cells that grow and shrink over depth by a factor of 200.
@@ -321,12 +343,10 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
         {
           continue;
         }
-        const double shape = upper ? (0.3 + 0.2 * double(normalDeviate(c.deviate))) / std::hypot(0.3, 0.2)
-                                   : double(normalDeviate(c.deviate));
         const double backscatter = 0.1 * (upper ? 1e-4 * std::pow(3.6, 1.4) : 2e-3);
         const double amplitude = std::sqrt(backscatter / (perMm3 * (upper ? 0.7 : 0.5))) * (1.54 / 3.6) / (2.0 * M_PI);
         const double last = rank + 1 < ranks ? 1.0 : std::sqrt(eighths - rank);
-        points.push_back({ Vec3d(c.positionMm), float(double(c.sign) * amplitude * last * shape) });
+        points.push_back({ Vec3d(c.positionMm), float(double(c.sign) * amplitude * last) });
       }
     }
     const auto exact = directIq(points, lines[line], s);
@@ -349,18 +369,21 @@ TEST(TissueLevels, NeighbouringLinesAreAlikeAsTheirBeamsAre)
       lines.push_back(makeLine(from, { 0, 0, 1 }));
       lines.push_back(makeLine(from + apart * lines.back().lateral, { 0, 0, 1 }));
     }
-    const RfLines rf = formTissue(*scene, lines, s);
     std::complex<double> product = 0.0;
     double power = 0.0;
-    const std::size_t samples = std::size_t(rf.sampleCount);
-    for (std::size_t i = 0; i < rf.iq.size(); ++i)
+    for (s.seed = 1; s.seed <= 4; ++s.seed) // one alone is good for 0.006
     {
-      if (i / samples % 2 == 0)
+      const RfLines rf = formTissue(*scene, lines, s);
+      const std::size_t samples = std::size_t(rf.sampleCount);
+      for (std::size_t i = 0; i < rf.iq.size(); ++i)
       {
-        const std::complex<double> a(rf.iq[i]);
-        const std::complex<double> b(rf.iq[i + samples]);
-        product += a * std::conj(b);
-        power += 0.5 * (std::norm(a) + std::norm(b));
+        if (i / samples % 2 == 0)
+        {
+          const std::complex<double> a(rf.iq[i]);
+          const std::complex<double> b(rf.iq[i + samples]);
+          product += a * std::conj(b);
+          power += 0.5 * (std::norm(a) + std::norm(b));
+        }
       }
     }
     EXPECT_NEAR(std::abs(product) / power, std::exp(-0.25 * apart * apart), 0.02) << apart;
