@@ -62,6 +62,7 @@ Beam forDevice(Beam beam)
 {
   beam.field = nullptr;
   beam.array = nullptr;
+  beam.arraySight = nullptr;
   return beam;
 }
 

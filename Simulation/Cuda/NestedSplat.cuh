@@ -18,7 +18,7 @@ struct NestedLaunch
   Vec3f perMm;
   Vec3f extentMm;
   const NestedMedium* media; // 256
-  const float* fibreScale;       // 256
+  const float* fibreScale;   // 256
   FibreView fibres;
   DensityView density;
   std::uint64_t seed;

@@ -207,6 +207,7 @@ struct BeamTables
 {
   BeamFieldView field;
   ArrayBeamView array;
+  ArraySightView arraySight;
 };
 
 /// A line's beam with its tables, for functions that take any kind. All threads of a block; they must synchronise
@@ -217,10 +218,12 @@ inline __device__ Beam wholeBeam(const SplatLaunch& launch, int line, BeamTables
   {
     tables.field = launch.field;
     tables.array = launch.array;
+    tables.arraySight = launch.arraySight;
   }
   Beam beam = launch.beams[line];
   beam.field = &tables.field;
   beam.array = &tables.array;
+  beam.arraySight = &tables.arraySight;
   return beam;
 }
 

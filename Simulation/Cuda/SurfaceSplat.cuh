@@ -80,7 +80,7 @@ private:
 struct HeardPiece
 {
   int item;
-  float lit;
+  SurfaceHearing hearing;
 };
 
 constexpr int groupsAtOnce = 4; // of a warp
@@ -155,12 +155,12 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
         point.row = surfaceRow(set.media, item.below, item.above);
         const std::uint32_t phase = surfacePhase(set.seed, item.voxel, item.axis, std::uint32_t(n));
         sincospif(float(phase) * (1.0f / 128.0f), &point.phaseIm, &point.phaseRe);
-        addDiffuse(point, beam, splat.grid, set.table, heard.lit, sum);
+        addDiffuse(point, beam, splat.grid, set.table, heard.hearing, sum);
       }
     }
     else
     {
-      addDiffuse(set.points[heard.item], beam, splat.grid, set.table, heard.lit, sum);
+      addDiffuse(set.points[heard.item], beam, splat.grid, set.table, heard.hearing, sum);
     }
   };
   const auto addCoherentOf = [&](const HeardPiece& heard) {
@@ -173,12 +173,12 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       {
         SurfacePoint point = piecePoint(item, net, n);
         point.row = surfaceRow(set.media, item.below, item.above);
-        addCoherent(point, beam, splat.grid, set.table, heard.lit, sum);
+        addCoherent(point, beam, splat.grid, set.table, heard.hearing, sum);
       }
     }
     else
     {
-      addCoherent(set.points[heard.item], beam, splat.grid, set.table, heard.lit, sum);
+      addCoherent(set.points[heard.item], beam, splat.grid, set.table, heard.hearing, sum);
     }
   };
 
@@ -213,9 +213,9 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       near &= near - 1u;
       ++looked;
       const int p = group.first + lane;
-      const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, false, false };
-      diffuse.push(heard.diffuse, { p, heard.lit });
-      coherent.push(heard.coherent, { p, heard.lit });
+      const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, 0.0f, false, false };
+      diffuse.push(heard.diffuse, { p, heard });
+      coherent.push(heard.coherent, { p, heard });
     }
     __syncthreads();
     for (int n = int(threadIdx.x); n < diffuse.count; n += surfaceThreads)

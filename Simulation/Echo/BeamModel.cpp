@@ -74,6 +74,7 @@ BeamModel::BeamModel(const EchoSettings& settings, InterfaceModel model)
     array_ = settings.arrayField->view();
     focusMm_ = settings.arrayField->focusMm();
     sight_ = std::make_shared<const ArraySight>(*settings.arrayField);
+    sightView_ = sight_->view();
   }
   const BeamWidth focus = widthAt(focusMm_);
   const double sigmasMm2 = focus.lateralSigmaMm * focus.elevationalSigmaMm;
@@ -166,6 +167,7 @@ Beam BeamModel::beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& r
   {
     const double lateral2 = 1.0 - line.steeringLateral * line.steeringLateral;
     beam.array = &*array_;
+    beam.arraySight = &*sightView_;
     beam.lateralCosine = float(std::sqrt(lateral2));
     beam.elevationalCosine = float(std::sqrt(1.0 - line.steeringElevational * line.steeringElevational / lateral2));
     beam.gain = float(directivity(settings_.aperture, settings_.centreFrequencyMHz, line));

@@ -57,6 +57,7 @@ private:
   std::optional<ArrayBeamView> array_;
   std::optional<BeamReachTable> reach_;     // of an Aperture
   std::shared_ptr<const ArraySight> sight_; // of an Array
+  std::optional<ArraySightView> sightView_;
   double focusMm_ = 0.0;
   double focusAreaMm2_ = 0.0;
   double focusPowerAreaMm2_ = 0.0;

@@ -77,8 +77,7 @@ NestedMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitud
   {
     return {};
   }
-  return { float(amplitudePerRoot *
-                 std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / tissue.scattererProbability)),
+  return { float(amplitudePerRoot * std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / tissue.scattererProbability)),
            float(tissue.scattererProbability) };
 }
 

@@ -56,23 +56,24 @@ struct Listener
 
 SONO_SIMD_CLONES __attribute__((flatten)) void addDiffusePoints(const SurfacePoint* points, int count, const Beam& beam,
                                                                 const LineGrid& grid, const SurfaceTable& table,
-                                                                float lit, float* iq)
+                                                                const SurfaceHearing& heard, float* iq)
 {
   SurfaceSum sum{ iq };
   for (int n = 0; n < count; ++n)
   {
-    addDiffuse(points[n], beam, grid, table, lit, sum);
+    addDiffuse(points[n], beam, grid, table, heard, sum);
   }
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void addCoherentPoints(const SurfacePoint* points, int count,
                                                                  const Beam& beam, const LineGrid& grid,
-                                                                 const SurfaceTable& table, float lit, float* iq)
+                                                                 const SurfaceTable& table, const SurfaceHearing& heard,
+                                                                 float* iq)
 {
   SurfaceSum sum{ iq };
   for (int n = 0; n < count; ++n)
   {
-    addCoherent(points[n], beam, grid, table, lit, sum);
+    addCoherent(points[n], beam, grid, table, heard, sum);
   }
 }
 
@@ -185,8 +186,8 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
           const SurfaceHearing heard =
             hearSurface(point.position, point.normal, 0.0f, false, point.row, beam, grids[i], table, intensities[i]);
           float* iq = sums[i].iq.data();
-          addDiffusePoints(&point, heard.diffuse ? 1 : 0, beam, grids[i], table, heard.lit, iq);
-          addCoherentPoints(&point, heard.coherent ? 1 : 0, beam, grids[i], table, heard.lit, iq);
+          addDiffusePoints(&point, heard.diffuse ? 1 : 0, beam, grids[i], table, heard, iq);
+          addCoherentPoints(&point, heard.coherent ? 1 : 0, beam, grids[i], table, heard, iq);
         }
       }
     });
@@ -238,10 +239,9 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
       {
         const Beam& beam = exact[l.line].beam;
         float* iq = sums[l.line].iq.data();
-        const float lit = l.hearing.lit;
-        addDiffusePoints(points.data(), l.hearing.diffuse ? diffuse : 0, beam, grids[l.line], table, lit, iq);
+        addDiffusePoints(points.data(), l.hearing.diffuse ? diffuse : 0, beam, grids[l.line], table, l.hearing, iq);
         addCoherentPoints(points.data() + diffuse, l.hearing.coherent ? int(points.size()) - diffuse : 0, beam,
-                          grids[l.line], table, lit, iq);
+                          grids[l.line], table, l.hearing, iq);
       }
     }
   });

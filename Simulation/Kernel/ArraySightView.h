@@ -38,20 +38,24 @@ struct ArraySightView
     const int step = int(mm / stepMm);
     return step < 0 ? 0 : (step < steps ? step : steps - 1);
   }
-  /// Whether the beam may count at distances from the axis of at least these, straight ahead, between two ranges.
-  SONO_HD bool sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const
+  /// The largest share of its strongest value that the beam may have at distances from the axis of at least these,
+  /// straight ahead, between two ranges.
+  SONO_HD float most(float lateralMm, float elevationalMm, float fromMm, float toMm) const
   {
+    float share = 0.0f;
     const int last = stepAt(toMm);
     const int l = lateral.placeAt(lateralMm, toMm);
     const int e = elevational.placeAt(elevationalMm, toMm);
     for (int step = stepAt(fromMm); step <= last; ++step)
     {
-      if (lateral.at(step, l) * elevational.at(step, e) > faintest)
-      {
-        return true;
-      }
+      share = larger(share, lateral.at(step, l) * elevational.at(step, e));
     }
-    return false;
+    return share;
+  }
+  /// Whether the beam may count there.
+  SONO_HD bool sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const
+  {
+    return most(lateralMm, elevationalMm, fromMm, toMm) > faintest;
   }
 };
 

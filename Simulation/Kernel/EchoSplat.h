@@ -2,6 +2,7 @@
 
 #include "Kernel/ApertureProfile.h"
 #include "Kernel/ArrayBeam.h"
+#include "Kernel/ArraySightView.h"
 #include "Kernel/BeamField.h"
 #include "Kernel/FastMath.h"
 #include "Kernel/Vec.h"
@@ -30,9 +31,10 @@ struct Beam
   float elevationalSigmaMm;
   const BeamFieldView* field; ///< of a Field
   BeamKind kind;
-  ApertureProfile profile;    ///< of an Aperture
-  const ArrayBeamView* array; ///< of an Array
-  float lateralCosine;        ///< of an Array: of the line's angle, from where the aperture is narrower
+  ApertureProfile profile;          ///< of an Aperture
+  const ArrayBeamView* array;       ///< of an Array
+  const ArraySightView* arraySight; ///< the same
+  float lateralCosine;              ///< of an Array: of the line's angle, from where the aperture is narrower
   float elevationalCosine;
   float gain; ///< of an Array
 };

@@ -119,7 +119,8 @@ constexpr float surfaceTangentSlack = 0.1f; ///< by so much the slope of a point
 /// What a line hears of a piece of a surface. Nothing where the intensity is 0.
 struct SurfaceHearing
 {
-  float lit; ///< intensity in front of it, shaped by the tissue behind (section 1.3)
+  float lit;  ///< intensity in front of it, shaped by the tissue behind (section 1.3)
+  float most; ///< see mostWeight
   bool diffuse;
   bool coherent;
 };
@@ -131,24 +132,30 @@ SONO_HD inline bool withinTangent(float reach, float cosSquared, float sinSquare
   return reach >= 0.0f && sinSquared < wider * wider * cosSquared;
 }
 
-/// Whether a beam may see anything within `radiusMm` of a place.
-SONO_HD inline bool isNearBeam(const Vec3f& position, float radiusMm, const Beam& b, const LineGrid& g)
+/// A bound on the share of its strongest value that a beam has within `radiusMm` of a place; 0 where it sees nothing.
+SONO_HD inline float mostWeight(const Vec3f& position, float radiusMm, const Beam& b, const LineGrid& g)
 {
   const BeamPlace place = placeInBeam(position.x, position.y, position.z, b, g);
   const float depthMm = place.position / g.samplesPerMm;
   if (depthMm + radiusMm < 0.0f || place.position - radiusMm * g.samplesPerMm > g.lastSample)
   {
-    return false;
+    return 0.0f;
+  }
+  const float l = larger(0.0f, fabsf(place.lateral) - radiusMm);
+  const float e = larger(0.0f, fabsf(place.elevational) - radiusMm);
+  if (b.kind == BeamKind::Array)
+  {
+    const float most = b.arraySight->most(l * b.lateralCosine, e * b.elevationalCosine, depthMm - radiusMm,
+                                          quickSqrt(depthMm * depthMm + l * l + e * e) + 2.0f * radiusMm);
+    return most > ArraySightView::faintest ? most : 0.0f;
   }
   if (!isGaussian(b))
   {
-    return true;
+    return 1.0f;
   }
   const ProfileAt at = gaussianAt(b, larger(depthMm, 0.0f));
-  const float l = larger(0.0f, fabsf(place.lateral) - radiusMm);
-  const float e = larger(0.0f, fabsf(place.elevational) - radiusMm);
   // The beam may be a little wider at the piece's other end.
-  return l * l * at.perLateral2 + e * e * at.perElevational2 <= 1.1f * beamCutSigma * beamCutSigma;
+  return l * l * at.perLateral2 + e * e * at.perElevational2 <= 1.1f * beamCutSigma * beamCutSigma ? 1.0f : 0.0f;
 }
 
 /// For a piece all of whose points lie within `radiusMm` of a position, cut as coarsely as pieces are or not. The
@@ -157,7 +164,7 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
                                           int rowFromA, const Beam& b, const LineGrid& g, const SurfaceTable& table,
                                           const SurfaceIntensity& intensity)
 {
-  const SurfaceHearing nothing{ 0.0f, false, false };
+  const SurfaceHearing nothing{ 0.0f, 0.0f, false, false };
   const float along = glm::dot(normal, b.axis);
   const float cosSquared = along * along;
   const float sinSquared = larger(0.0f, 1.0f - cosSquared);
@@ -168,7 +175,8 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
   {
     return nothing;
   }
-  if (!isNearBeam(position, radiusMm, b, g))
+  const float most = mostWeight(position, radiusMm, b, g);
+  if (!(most > 0.0f))
   {
     return nothing;
   }
@@ -190,7 +198,7 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
   {
     lit *= powf(fabsf(along), row.gamma);
   }
-  return lit > surfaceFaintestLit ? SurfaceHearing{ lit, diffuse, coherent } : nothing;
+  return lit > surfaceFaintestLit ? SurfaceHearing{ lit, most, diffuse, coherent } : nothing;
 }
 
 /// Whether a line may hear a piece of which only a rough normal is known (0: none), from either side.
@@ -203,7 +211,7 @@ SONO_HD inline bool mayHearSurface(const Vec3f& position, const Vec3f& roughNorm
   {
     return false;
   }
-  return isNearBeam(position, radiusMm, b, g);
+  return mostWeight(position, radiusMm, b, g) > 0.0f;
 }
 
 /// How a beam meets a point of a surface.
@@ -218,19 +226,21 @@ struct SurfaceMeeting
   ProfileAt at; ///< of a Gaussian
 };
 
-/// False where the beam does not see the point.
-SONO_HD inline bool meetSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
+/// Where a point lies on a line and how it faces it; false beside the line.
+SONO_HD inline bool faceSurface(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
                                 SurfaceMeeting& m)
 {
   m.place = placeInBeam(p.position.x, p.position.y, p.position.z, b, g);
-  if (!(m.place.position >= 0.0f && m.place.position < g.lastSample))
-  {
-    return false;
-  }
   m.signedCosine = glm::dot(p.normal, b.axis);
   m.cosSquared = m.signedCosine * m.signedCosine;
   m.sinSquared = larger(0.0f, 1.0f - m.cosSquared);
   m.row = &table.rows[m.signedCosine < 0.0f ? p.row ^ 1 : p.row];
+  return m.place.position >= 0.0f && m.place.position < g.lastSample;
+}
+
+/// The beam's weight there; false where the beam does not see the point.
+SONO_HD inline bool meetSurface(const Beam& b, const LineGrid& g, SurfaceMeeting& m)
+{
   const float alongMm = m.place.position / g.samplesPerMm;
   if (!isGaussian(b))
   {
@@ -244,6 +254,12 @@ SONO_HD inline bool meetSurface(const SurfacePoint& p, const Beam& b, const Line
                         m.place.elevational * m.place.elevational * m.at.perElevational2;
   m.weight = { m.at.amplitude * expNegative(-0.5f * squared), 0.0f };
   return squared < beamCutSigma * beamCutSigma;
+}
+
+/// Whether so strong an echo counts at the beam's weight.
+SONO_HD inline bool isHeard(float echo, const ComplexWeight& w, float faintest)
+{
+  return fabsf(echo) * larger(fabsf(w.re), fabsf(w.im)) > faintest;
 }
 
 /// What is too faint where so much light falls.
@@ -268,10 +284,10 @@ SONO_HD inline void addBetween(const ComplexWeight& w, const ComplexWeight& a, f
 /// Adds the diffuse echo of a point, a scatterer of random phase, to the line's sum. sum.add(sample, re, im).
 template<class Sum>
 SONO_HD inline void addDiffuse(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
-                               float lit, Sum& sum)
+                               const SurfaceHearing& heard, Sum& sum)
 {
   SurfaceMeeting m;
-  if (!meetSurface(p, b, g, table, m))
+  if (!faceSurface(p, b, g, table, m))
   {
     return;
   }
@@ -292,9 +308,10 @@ SONO_HD inline void addDiffuse(const SurfacePoint& p, const Beam& b, const LineG
   const float lateralShare = across > 1e-12f ? normalL * normalL / across : 0.5f;
   const float diffuse =
     expNegative(smaller(0.0f, row.logDiffuse + logE + lateralShare * (logL - logE))) * quickSqrt(p.areaMm2);
-  if (diffuse * larger(fabsf(m.weight.re), fabsf(m.weight.im)) > faintestAt(lit))
+  const float faintest = faintestAt(heard.lit);
+  if (diffuse * heard.most > faintest && meetSurface(b, g, m) && isHeard(diffuse, m.weight, faintest))
   {
-    addBetween(m.weight, { diffuse * p.phaseRe, diffuse * p.phaseIm }, lit, m.place.position, g, sum);
+    addBetween(m.weight, { diffuse * p.phaseRe, diffuse * p.phaseIm }, heard.lit, m.place.position, g, sum);
   }
 }
 
@@ -338,10 +355,10 @@ SONO_HD inline void addDensity(float total, const ComplexWeight& w, float positi
 /// Adds the coherent echo of a point: a Gaussian of its blob's deviation in depth.
 template<class Sum>
 SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
-                                float lit, Sum& sum)
+                                const SurfaceHearing& heard, Sum& sum)
 {
   SurfaceMeeting m;
-  if (!meetSurface(p, b, g, table, m))
+  if (!faceSurface(p, b, g, table, m))
   {
     return;
   }
@@ -350,9 +367,23 @@ SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const Line
   {
     return;
   }
+  // Splitting a point between two samples widens by a sixth of a sample's square, which the pulse takes off again: so
+  // does the density.
+  const float du = glm::dot(b.axis, p.tangentU) * g.samplesPerMm;
+  const float dv = glm::dot(b.axis, p.tangentV) * g.samplesPerMm;
+  const float spread = du * du + dv * dv;
+  const float phaseSquared = spread * g.radPerSample * g.radPerSample;
+  // What the pulse's band leaves of it (eq. 10.6): of most points nothing, so that this comes before the beam.
+  const float pulse = table.pulseSigmaMm * g.samplesPerMm;
+  const float left = expNegative(-0.5f * phaseSquared * pulse * pulse / (pulse * pulse + spread));
+  const float faintest = faintestAt(heard.lit);
   const float cosine = fabsf(m.signedCosine);
   const float coherent = surfaceReflection(row, cosine) * cosine * expNegative(-row.roughness * m.cosSquared) *
                          p.areaMm2 * table.perBeamArea;
+  if (!(fabsf(coherent) * left * heard.most > faintest) || !meetSurface(b, g, m))
+  {
+    return;
+  }
   ComplexWeight w = m.weight;
   if (isGaussian(b))
   {
@@ -367,27 +398,18 @@ SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const Line
                           m.place.elevational * m.place.elevational * m.at.perElevational2 / leftE;
     w.re = m.at.amplitude * expNegative(-0.5f * squared) / quickSqrt(leftL * leftE);
   }
-  // Splitting a point between two samples widens by a sixth of a sample's square, which the pulse takes off again: so
-  // does the density.
-  const float du = glm::dot(b.axis, p.tangentU) * g.samplesPerMm;
-  const float dv = glm::dot(b.axis, p.tangentV) * g.samplesPerMm;
-  const float spread = du * du + dv * dv;
-  const float phaseSquared = spread * g.radPerSample * g.radPerSample;
-  // What the pulse's band leaves of it (eq. 10.6).
-  const float pulse = table.pulseSigmaMm * g.samplesPerMm;
-  const float left = expNegative(-0.5f * phaseSquared * pulse * pulse / (pulse * pulse + spread));
-  if (!(fabsf(coherent) * larger(fabsf(w.re), fabsf(w.im)) * left > faintestAt(lit)))
+  if (!isHeard(coherent * left, w, faintest))
   {
     return;
   }
   const float deviation = quickSqrt(spread + 1.0f / 6.0f);
   if (deviation < surfaceShortestBlob)
   {
-    addBetween(w, { coherent * expNegative(-0.5f * phaseSquared), 0.0f }, lit, m.place.position, g, sum);
+    addBetween(w, { coherent * expNegative(-0.5f * phaseSquared), 0.0f }, heard.lit, m.place.position, g, sum);
   }
   else
   {
-    addDensity(coherent * lit, w, m.place.position, deviation, g, sum);
+    addDensity(coherent * heard.lit, w, m.place.position, deviation, g, sum);
   }
 }
 
