@@ -196,7 +196,7 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, cudaStr
     largest = std::max(largest, m.amplitude);
   }
   // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
-  largest *= makeNestedShare(1.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(beam.largestWeight));
+  largest *= makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(beam.largestWeight));
   nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
 }
 

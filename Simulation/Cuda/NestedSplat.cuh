@@ -65,8 +65,9 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
   const float brickMm = nestedCellMm(launch.level) * float(nestedBrickCells);
   const BrickSight<kind> sight(splat, beam, brickMm);
   const Vec2f halfMm = nestedHalfExtent(beam, launch.level);
+  const float axialMm = 0.5f * brickMm * (fabsf(beam.axis.x) + fabsf(beam.axis.y) + fabsf(beam.axis.z));
   const auto shareOf = [&](const Vec3i& brick) {
-    const NestedShare none{ 0, 0.0f, 0.0f };
+    const NestedShare none{ 0, 0, 0.0f, 0.0f };
     const Vec3f centre = nestedBrickCentre(brick, launch.level);
     const Vec3f end = launch.extentMm + 0.5f * brickMm;
     const bool isInside =
@@ -77,6 +78,11 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     }
     const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, launch.level + 1);
     const float depthMm = glm::dot(centre - beam.origin, beam.axis);
+    // An array echoes from the range.
+    if (kind != BeamKind::Array && !(depthMm + axialMm > chunk.fromMm && depthMm - axialMm < chunk.toMm))
+    {
+      return none;
+    }
     if (!launch.density.takes(launch.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
     {
       return none;
@@ -86,11 +92,8 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
              ? launch.density.share(launch.level, depthMm, relativeWeight(beam, q, depthMm))
              : none;
   };
-  const auto splatCandidate = [&](const Vec3i& brick, float scale, int number) {
-    const Vec3i parent = nestedChild(brick, std::uint32_t(number & 7));
-    const Vec3i cell =
-      nestedChild(parent, childOfRank(nestedHash(launch.seed, parent, launch.level + 1), std::uint32_t(number >> 3)));
-    const NestedCandidate c = nestedCandidate(launch.seed, finestCell(launch.seed, cell, launch.level));
+  const auto splatCandidate = [&](const NestedCell& brick, float scale, int number) {
+    const NestedCandidate c = nestedCandidate(nestedFinestCell(brick, launch.level, number));
     const Vec3f p = c.positionMm;
     const SeenEcho<kind> echo = seenEcho<kind>(splat, beam, chunk, placeInBeam(p.x, p.y, p.z, beam, splat.grid));
     if (isZero(echo.weight))
@@ -123,15 +126,17 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
 
   const CellRows bricks(beam, piece, brickMm, Vec3f(0.0f), launch.extentMm);
   forCells(bricks, [&](bool exists, const Vec3i& own) {
-    const NestedShare share = exists ? shareOf(own) : NestedShare{ 0, 0.0f, 0.0f };
-    forItemsOfWarp(8 * share.ranks, [&](int owner, int number) {
-      const Vec3i brick(__shfl_sync(allLanes, own.x, owner), __shfl_sync(allLanes, own.y, owner),
-                        __shfl_sync(allLanes, own.z, owner));
-      const NestedShare part{ __shfl_sync(allLanes, share.ranks, owner), __shfl_sync(allLanes, share.last, owner),
+    const NestedShare share = exists ? shareOf(own) : NestedShare{ 0, 0, 0.0f, 0.0f };
+    const std::uint32_t ownHash = share.count > 0 ? nestedBrickHash(launch.seed, own, launch.level) : 0u;
+    forItemsOfWarp(share.count, [&](int owner, int number) {
+      const NestedCell brick{ { __shfl_sync(allLanes, own.x, owner), __shfl_sync(allLanes, own.y, owner),
+                                __shfl_sync(allLanes, own.z, owner) },
+                              __shfl_sync(allLanes, ownHash, owner) };
+      const NestedShare part{ 0, __shfl_sync(allLanes, share.whole, owner), __shfl_sync(allLanes, share.last, owner),
                               __shfl_sync(allLanes, share.scale, owner) };
       if (owner >= 0)
       {
-        splatCandidate(brick, part.scaleOf(number >> 3), number);
+        splatCandidate(brick, part.scaleOf(number), number);
       }
     });
   });

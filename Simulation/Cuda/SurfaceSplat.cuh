@@ -134,7 +134,7 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
     {
       const SurfacePiece& item = set.pieces[p];
       const PieceBounds bounds = pieceBounds(item, set.longestStepMm);
-      const bool isCoarse = set.nets.isCoarsest(set.nets.coherent(item));
+      const bool isCoarse = set.nets.isCoarsest(set.nets.coherentCuts(item));
       return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse,
                          surfaceRow(set.media, item.below, item.above), beam, splat.grid, set.table, intensity);
     }
@@ -144,41 +144,48 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       return hearSurface(item.position, item.normal, 0.0f, false, item.row, beam, splat.grid, set.table, intensity);
     }
   };
-  const auto addDiffuseOf = [&](const HeardPiece& heard) {
+  const auto diffusePoints = [&](int p) { return arePieces ? set.nets.diffuseNet(set.pieces[p]).points() : 1; };
+  const auto coherentPoints = [&](int p) { return arePieces ? set.nets.coherentNet(set.pieces[p]).points() : 1; };
+  const auto addDiffuseOf = [&](const HeardPiece& heard, [[maybe_unused]] int number) {
     if constexpr (arePieces)
     {
       const SurfacePiece item = set.pieces[heard.item];
-      const int count = set.nets.diffuse.points(item.axis);
-      for (int n = 0; n < count; ++n)
-      {
-        SurfacePoint point = piecePoint(item, set.nets.diffuse, n);
-        point.row = surfaceRow(set.media, item.below, item.above);
-        const std::uint32_t phase = surfacePhase(set.seed, item.voxel, item.axis, std::uint32_t(n));
-        sincospif(float(phase) * (1.0f / 128.0f), &point.phaseIm, &point.phaseRe);
-        addDiffuse(point, beam, splat.grid, set.table, heard.hearing, sum);
-      }
+      SurfacePoint point = piecePoint(item, set.nets.diffuseNet(item), number);
+      point.row = surfaceRow(set.media, item.below, item.above);
+      const std::uint32_t phase = surfacePhase(set.seed, item.voxel, item.axis, std::uint32_t(number));
+      sincospif(float(phase) * (1.0f / 128.0f), &point.phaseIm, &point.phaseRe);
+      addDiffuse(point, beam, splat.grid, set.table, heard.hearing, sum);
     }
     else
     {
       addDiffuse(set.points[heard.item], beam, splat.grid, set.table, heard.hearing, sum);
     }
   };
-  const auto addCoherentOf = [&](const HeardPiece& heard) {
+  const auto addCoherentOf = [&](const HeardPiece& heard, [[maybe_unused]] int number) {
     if constexpr (arePieces)
     {
       const SurfacePiece item = set.pieces[heard.item];
-      const PieceCuts net = set.nets.coherent(item);
-      const int count = net.points(item.axis);
-      for (int n = 0; n < count; ++n)
-      {
-        SurfacePoint point = piecePoint(item, net, n);
-        point.row = surfaceRow(set.media, item.below, item.above);
-        addCoherent(point, beam, splat.grid, set.table, heard.hearing, sum);
-      }
+      SurfacePoint point = piecePoint(item, set.nets.coherentNet(item), number);
+      point.row = surfaceRow(set.media, item.below, item.above);
+      addCoherent(point, beam, splat.grid, set.table, heard.hearing, sum);
     }
     else
     {
       addCoherent(set.points[heard.item], beam, splat.grid, set.table, heard.hearing, sum);
+    }
+  };
+  // Pieces have different numbers of points: a warp shares out those of 32 pieces evenly.
+  const auto addPoints = [&](const HeardPieces& heard, const auto& points, const auto& add) {
+    const int lane = int(threadIdx.x) % warpLanes;
+    for (int first = int(threadIdx.x) - lane; first < heard.count; first += surfaceThreads)
+    {
+      const int n = first + lane;
+      forItemsOfWarp(n < heard.count ? points(heard.items[n].item) : 0, [&](int owner, int number) {
+        if (owner >= 0)
+        {
+          add(heard.items[first + owner], number);
+        }
+      });
     }
   };
 
@@ -218,14 +225,8 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       coherent.push(heard.coherent, { p, heard });
     }
     __syncthreads();
-    for (int n = int(threadIdx.x); n < diffuse.count; n += surfaceThreads)
-    {
-      addDiffuseOf(diffuse.items[n]);
-    }
-    for (int n = int(threadIdx.x); n < coherent.count; n += surfaceThreads)
-    {
-      addCoherentOf(coherent.items[n]);
-    }
+    addPoints(diffuse, diffusePoints, addDiffuseOf);
+    addPoints(coherent, coherentPoints, addCoherentOf);
   }
 }
 

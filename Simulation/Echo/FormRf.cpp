@@ -67,7 +67,7 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
           if (relativeWeight(b, q, depthMm, nestedHalfExtent(b, level)) >= nestedLeastWeight)
           {
             taken.push_back({ i, density.share(level, depthMm, relativeWeight(b, q, depthMm)) });
-            most = std::max(most, taken.back().share.ranks);
+            most = std::max(most, taken.back().share.count);
           }
         }
       }

@@ -14,40 +14,46 @@ constexpr int cells = NestedScatterers::cellCount;
 constexpr std::uint8_t nowhere = 255;           // never a tissue: a scene has at most 255, from 0
 constexpr double npPerDb = 0.11512925464970229; // ln(10) / 20
 
-/// The candidates of a brick's cells by rank, with the voxel in which each lies.
+/// The candidates of a brick by number, with the voxel in which each lies.
 struct Candidates
 {
   float x[cells], y[cells], z[cells];
   std::int32_t i[cells], j[cells], k[cells]; // cell, then voxel
+  std::uint32_t hash[cells];
   float presence[cells], sign[cells];
 };
 
-/// Slot n holds rank n / 8 of parent n % 8: the bricks' cells are the children of 2^3 cells of the next level.
-SONO_SIMD_CLONES void draw(std::uint64_t seed, int level, const Vec3i brick, int count, const Vec3f perMm,
-                           Candidates& c)
+inline void descend(Candidates& c, int n, std::uint32_t child)
+{
+  const NestedCell to = NestedCell{ { c.i[n], c.j[n], c.k[n] }, c.hash[n] }.child(child);
+  c.i[n] = to.cell.x;
+  c.j[n] = to.cell.y;
+  c.k[n] = to.cell.z;
+  c.hash[n] = to.hash;
+}
+
+/// nestedFinestCell and nestedCandidate, level by level for all.
+SONO_SIMD_CLONES void draw(const NestedCell brick, int level, int count, const Vec3f perMm, Candidates& c)
 {
   for (int n = 0; n < count; ++n)
   {
-    const Vec3i parent = nestedChild(brick, std::uint32_t(n & 7));
-    const Vec3i cell = nestedChild(parent, childOfRank(nestedHash(seed, parent, level + 1), std::uint32_t(n >> 3)));
-    c.i[n] = cell.x;
-    c.j[n] = cell.y;
-    c.k[n] = cell.z;
+    c.i[n] = brick.cell.x;
+    c.j[n] = brick.cell.y;
+    c.k[n] = brick.cell.z;
+    c.hash[n] = brick.hash;
+    descend(c, n, childOfRank(c.hash[n], std::uint32_t(n & 7)));
+    descend(c, n, childOfRank(c.hash[n], std::uint32_t(n >> 3)));
   }
   for (int l = level; l > 0; --l)
   {
     for (int n = 0; n < count; ++n)
     {
-      const Vec3i cell(c.i[n], c.j[n], c.k[n]);
-      const Vec3i child = nestedChild(cell, chosenChild(nestedHash(seed, cell, l)));
-      c.i[n] = child.x;
-      c.j[n] = child.y;
-      c.k[n] = child.z;
+      descend(c, n, chosenChild(c.hash[n]));
     }
   }
   for (int n = 0; n < count; ++n)
   {
-    const NestedCandidate candidate = nestedCandidate(seed, { c.i[n], c.j[n], c.k[n] });
+    const NestedCandidate candidate = nestedCandidate({ { c.i[n], c.j[n], c.k[n] }, c.hash[n] });
     c.x[n] = candidate.positionMm.x;
     c.y[n] = candidate.positionMm.y;
     c.z[n] = candidate.positionMm.z;
@@ -116,14 +122,14 @@ BrickGrid NestedScatterers::grid(int level) const
   return grid;
 }
 
-void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer& buffer) const
+void NestedScatterers::generate(int level, const Vec3i& brick, int candidates, Buffer& buffer) const
 {
   const Vec3i size = scene_.placement().size;
   const std::uint8_t* tissues = scene_.tissueVoxels().data();
-  const int candidates = 8 * ranks;
   std::uint8_t tissue[cells];
   Candidates c;
-  draw(seed_, level, brick, candidates, 1.0f / Vec3f(scene_.placement().spacingMm), c);
+  draw({ brick, nestedBrickHash(seed_, brick, level) }, level, candidates, 1.0f / Vec3f(scene_.placement().spacingMm),
+       c);
   bool hasFibres = false;
   for (int n = 0; n < candidates; ++n)
   {
@@ -136,38 +142,31 @@ void NestedScatterers::generate(int level, const Vec3i& brick, int ranks, Buffer
   }
   buffer.hasFibres = hasFibres && fibres_;
   int count = 0;
-  for (int rank = 0; rank < ranks; ++rank)
+  for (int n = 0; n < candidates; ++n)
   {
-    buffer.end[std::size_t(rank)] = count;
-    for (int n = 8 * rank; n < 8 * rank + 8; ++n)
+    // Written first and counted afterwards: without a branch, which would often be mispredicted.
+    const std::size_t to = std::size_t(count);
+    const NestedMedium& medium = media_[tissue[n]];
+    buffer.before[std::size_t(n)] = count;
+    buffer.x[to] = c.x[n];
+    buffer.y[to] = c.y[n];
+    buffer.z[to] = c.z[n];
+    buffer.amplitude[to] = c.sign[n] * medium.amplitude;
+    if (buffer.hasFibres)
     {
-      // Written first and counted afterwards: without a branch, which would often be mispredicted.
-      const std::size_t to = std::size_t(count);
-      buffer.x[to] = c.x[n];
-      buffer.y[to] = c.y[n];
-      buffer.z[to] = c.z[n];
-      const NestedMedium& medium = media_[tissue[n]];
-      const bool isThere = c.presence[n] < medium.probability;
-      buffer.amplitude[to] = c.sign[n] * medium.amplitude;
-      if (buffer.hasFibres)
-      {
-        const Vec3f fibre = fibres_->at({ c.i[n], c.j[n], c.k[n] }) * fibreScale_[tissue[n]];
-        buffer.fibreX[to] = fibre.x;
-        buffer.fibreY[to] = fibre.y;
-        buffer.fibreZ[to] = fibre.z;
-      }
-      count += isThere;
+      const Vec3f fibre = fibres_->at({ c.i[n], c.j[n], c.k[n] }) * fibreScale_[tissue[n]];
+      buffer.fibreX[to] = fibre.x;
+      buffer.fibreY[to] = fibre.y;
+      buffer.fibreZ[to] = fibre.z;
     }
+    count += c.presence[n] < medium.probability;
   }
-  for (int rank = ranks; rank <= 8; ++rank)
-  {
-    buffer.end[std::size_t(rank)] = count;
-  }
+  buffer.before[std::size_t(candidates)] = count;
 }
 
 ScattererView NestedScatterers::seen(Buffer& buffer, const NestedShare& share, const Vec3f& axis)
 {
-  const int count = buffer.end[std::size_t(share.ranks)];
+  const int count = buffer.before[std::size_t(share.count)];
   float* along = buffer.along.data();
   if (buffer.hasFibres)
   {
@@ -178,7 +177,7 @@ ScattererView NestedScatterers::seen(Buffer& buffer, const NestedShare& share, c
   {
     std::copy_n(buffer.amplitude.data(), count, along);
   }
-  for (int n = buffer.end[std::size_t(share.ranks - 1)]; n < count; ++n)
+  for (int n = buffer.before[std::size_t(share.whole)]; n < count; ++n)
   {
     along[n] *= share.last;
   }

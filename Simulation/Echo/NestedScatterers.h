@@ -28,7 +28,7 @@ public:
     std::array<float, cellCount> x, y, z, amplitude;
     std::array<float, cellCount> fibreX, fibreY, fibreZ; ///< only where `hasFibres`
     std::array<float, cellCount> along;                  ///< amplitudes as one beam sees them
-    std::array<int, 9> end;                              ///< scatterers of the first r ranks, for r in [0, 8]
+    std::array<int, cellCount + 1> before; ///< scatterers among the first n candidates, up to those that were made
     bool hasFibres = false;
   };
 
@@ -44,9 +44,9 @@ public:
   const std::array<float, 256>& fibreScale() const { return fibreScale_; }
   /// Null where no tissue has any.
   const FibreField* fibres() const { return fibres_; }
-  /// Fills the buffer with the scatterers of a brick whose rank is below `ranks`, ascending by rank; amplitudes for one
-  /// candidate a mm^3.
-  void generate(int level, const Vec3i& brick, int ranks, Buffer& buffer) const;
+  /// Fills the buffer with the scatterers among the first so many candidates of a brick, ascending by number;
+  /// amplitudes for one candidate a mm^3.
+  void generate(int level, const Vec3i& brick, int candidates, Buffer& buffer) const;
   /// The scatterers of a share as a beam along `axis` (local, unit) sees them. In the buffer until its next use.
   static ScattererView seen(Buffer& buffer, const NestedShare& share, const Vec3f& axis);
 

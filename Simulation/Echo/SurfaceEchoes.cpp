@@ -43,8 +43,7 @@ std::vector<Tissue> mediaOf(const Scene& scene, const std::vector<TargetSurface>
 
 PieceCuts cutsFor(const Vec3f& spacingMm, double stepMm)
 {
-  const Vec3i cuts = glm::max(Vec3i(glm::ceil(spacingMm / float(stepMm))), Vec3i(1));
-  return { cuts, spacingMm / Vec3f(cuts) };
+  return { glm::max(Vec3i(glm::ceil(spacingMm / float(stepMm))), Vec3i(1)) };
 }
 
 /// What one line hears of a piece.
@@ -114,15 +113,16 @@ int SurfaceEchoes::expand(const SurfacePiece& piece, bool coherent, std::vector<
 {
   points.clear();
   const int row = rows_->row(piece.below, piece.above);
-  const int diffuse = nets_.diffuse.points(piece.axis);
+  const PieceNet diffuseNet = nets_.diffuseNet(piece);
+  const int diffuse = diffuseNet.points();
   for (int n = 0; n < diffuse; ++n)
   {
-    points.push_back(piecePoint(piece, nets_.diffuse, n));
+    points.push_back(piecePoint(piece, diffuseNet, n));
     points.back().row = row;
     setPhases(seed_, piece.voxel, piece.axis, std::uint32_t(n), points.back());
   }
-  const PieceCuts net = nets_.coherent(piece);
-  for (int n = 0; coherent && n < net.points(piece.axis); ++n)
+  const PieceNet net = nets_.coherentNet(piece);
+  for (int n = 0; coherent && n < net.points(); ++n)
   {
     points.push_back(piecePoint(piece, net, n));
     points.back().row = row;
@@ -217,7 +217,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
       }
       const SurfacePiece& piece = *there;
       const PieceBounds bounds = pieceBounds(piece, longestMm);
-      const bool isCoarse = nets_.isCoarsest(nets_.coherent(piece));
+      const bool isCoarse = nets_.isCoarsest(nets_.coherentCuts(piece));
       listeners.clear();
       bool isCoherent = false;
       for (const std::size_t i : seeing)

@@ -9,7 +9,11 @@
 // Scatterers whose density follows the resolution cell (Data/docs/physics.md section 4.7). A cell of level a has the
 // edge 2^a / 32 mm and holds one candidate: that of one of its eight children, chosen by a hash. So the candidates of a
 // coarser level are an eighth of the finer one's, the same wherever the probe stands and whatever it is; and since the
-// eight children have an order, any number of eighths can be had.
+// eight children have an order, their rank, any number of them can be had.
+//
+// Candidates are made by bricks of 4^3 cells. Number n of a brick lies in the parent (a cell of the next level) of rank
+// n % 8, in the cell there of rank n / 8: the first eight are those of the next level, the first is that of the one
+// behind it.
 
 namespace sono {
 
@@ -25,12 +29,15 @@ SONO_HD inline float nestedCellMm(int level)
   return nestedFinestMm * float(1u << level);
 }
 
-/// A hash of a cell and its level: PCG3D (Jarzynski and Olano 2020, "Hash functions for GPU rendering").
-SONO_HD inline std::uint32_t nestedHash(std::uint64_t seed, const Vec3i& cell, int level)
+/// Level from which hashes come down to the cells.
+constexpr int nestedRootLevel = nestedLevels + 2;
+
+/// A hash of a cell of the root's level: PCG3D (Jarzynski and Olano 2020, "Hash functions for GPU rendering").
+SONO_HD inline std::uint32_t nestedRoot(std::uint64_t seed, const Vec3i& cell)
 {
   std::uint32_t x = (std::uint32_t(cell.x) + std::uint32_t(seed)) * 1664525u + 1013904223u;
   std::uint32_t y = (std::uint32_t(cell.y) + std::uint32_t(seed >> 32)) * 1664525u + 1013904223u;
-  std::uint32_t z = (std::uint32_t(cell.z) + 0x9e3779b9u * std::uint32_t(level)) * 1664525u + 1013904223u;
+  std::uint32_t z = std::uint32_t(cell.z) * 1664525u + 1013904223u;
   x += y * z;
   y += z * x;
   z += x * y;
@@ -41,6 +48,18 @@ SONO_HD inline std::uint32_t nestedHash(std::uint64_t seed, const Vec3i& cell, i
   y += z * x;
   z += x * y;
   return z;
+}
+
+/// The hash of a child of a cell, from the cell's: the mixer of MurmurHash3.
+SONO_HD inline std::uint32_t nestedDescend(std::uint32_t hash, std::uint32_t child)
+{
+  hash ^= (child + 1u) * 0x9e3779b9u;
+  hash ^= hash >> 16;
+  hash *= 0x85ebca6bu;
+  hash ^= hash >> 13;
+  hash *= 0xc2b2ae35u;
+  hash ^= hash >> 16;
+  return hash;
 }
 
 /// Child 0 to 7 of a cell, bit 0 along x.
@@ -63,14 +82,41 @@ SONO_HD inline std::uint32_t childOfRank(std::uint32_t hash, std::uint32_t rank)
   return ((rank * odd) & 7u) ^ chosenChild(hash);
 }
 
-/// The cell of level 0 whose candidate a cell holds.
-SONO_HD inline Vec3i finestCell(std::uint64_t seed, Vec3i cell, int level)
+/// The hash of a brick of a level, which is a cell two levels above.
+SONO_HD inline std::uint32_t nestedBrickHash(std::uint64_t seed, const Vec3i& brick, int level)
 {
+  const int up = nestedRootLevel - (level + 2);
+  std::uint32_t hash = nestedRoot(seed, { brick.x >> up, brick.y >> up, brick.z >> up });
+  for (int l = up - 1; l >= 0; --l)
+  {
+    hash = nestedDescend(
+      hash, std::uint32_t(((brick.x >> l) & 1) | (((brick.y >> l) & 1) << 1) | (((brick.z >> l) & 1) << 2)));
+  }
+  return hash;
+}
+
+/// A cell with its hash.
+struct NestedCell
+{
+  Vec3i cell;
+  std::uint32_t hash;
+
+  SONO_HD NestedCell child(std::uint32_t number) const
+  {
+    return { nestedChild(cell, number), nestedDescend(hash, number) };
+  }
+};
+
+/// The cell of level 0 that holds candidate `number` of a brick, 0 to 63.
+SONO_HD inline NestedCell nestedFinestCell(const NestedCell& brick, int level, int number)
+{
+  NestedCell c = brick.child(childOfRank(brick.hash, std::uint32_t(number & 7)));
+  c = c.child(childOfRank(c.hash, std::uint32_t(number >> 3)));
   for (; level > 0; --level)
   {
-    cell = nestedChild(cell, chosenChild(nestedHash(seed, cell, level)));
+    c = c.child(chosenChild(c.hash));
   }
-  return cell;
+  return c;
 }
 
 /// What the scatterers of a tissue are: all of one strength, there with `probability`.
@@ -93,53 +139,42 @@ struct NestedCandidate
   }
 };
 
-/// A pure function of (seed, cell of level 0); local mm. PCG4D (Jarzynski and Olano 2020), upper bits.
-SONO_HD inline NestedCandidate nestedCandidate(std::uint64_t seed, const Vec3i& cell)
+/// Of a cell of level 0; local mm.
+SONO_HD inline NestedCandidate nestedCandidate(const NestedCell& c)
 {
-  std::uint32_t x = std::uint32_t(cell.x) * 1664525u + 1013904223u;
-  std::uint32_t y = std::uint32_t(cell.y) * 1664525u + 1013904223u;
-  std::uint32_t z = std::uint32_t(cell.z) * 1664525u + 1013904223u;
-  std::uint32_t w = (std::uint32_t(seed) ^ (std::uint32_t(seed >> 32) * 0x9e3779b9u)) * 1664525u + 1013904223u;
-  x += y * w;
-  y += z * x;
-  z += x * y;
-  w += y * z;
-  x ^= x >> 16;
-  y ^= y >> 16;
-  z ^= z >> 16;
-  w ^= w >> 16;
-  x += y * w;
-  y += z * x;
-  z += x * y;
-  w += y * z;
-  constexpr float unit = 1.0f / 16777216.0f;
-  return { { (float(cell.x) + float(std::int32_t(x >> 8)) * unit) * nestedFinestMm,
-             (float(cell.y) + float(std::int32_t(y >> 8)) * unit) * nestedFinestMm,
-             (float(cell.z) + float(std::int32_t(z >> 8)) * unit) * nestedFinestMm },
-           float(std::int32_t(w >> 8)) * unit,
-           (w & 0x80u) ? 1.0f : -1.0f };
+  const std::uint32_t other = nestedDescend(c.hash, 8u);
+  const auto at = [](int cell, std::uint32_t bits) {
+    return (float(cell) + (float(std::int32_t(bits & 255u)) + 0.5f) * (1.0f / 256.0f)) * nestedFinestMm;
+  };
+  return { { at(c.cell.x, c.hash), at(c.cell.y, c.hash >> 8), at(c.cell.z, c.hash >> 16) },
+           float(std::int32_t(other >> 8)) * (1.0f / 16777216.0f),
+           (other & 1u) ? 1.0f : -1.0f };
 }
 
-/// A part of a brick's candidates, by rank: whole eighths of them, and of the last eighth the amplitudes times `last`,
-/// so that nothing pops up where the part grows.
+/// A part of a brick's candidates, by number: those below `count`, of which the last ones have their amplitudes times
+/// `last`, so that nothing pops up where the part grows.
 struct NestedShare
 {
-  int ranks;   ///< 1 to 8; 0: none
+  int count;   ///< 1 to 8, or eighths of all: 8 to 64; 0: none
+  int whole;   ///< that do not fade
   float last;  ///< above 0, up to 1
   float scale; ///< of all amplitudes, as 1 / sqrt(density), mm^(3/2)
 
-  SONO_HD float scaleOf(int rank) const { return rank + 1 < ranks ? scale : scale * last; }
+  SONO_HD float scaleOf(int number) const { return number < whole ? scale : scale * last; }
 };
 
-/// Of cells of this edge so many eighths, taken as 1 to 8.
+/// Of cells of this edge so many eighths, taken as 1/8, which is one candidate of a brick, to 8.
 SONO_HD inline NestedShare makeNestedShare(float eighths, float edgeMm)
 {
-  const float n = larger(1.0f, smaller(8.0f, eighths));
-  const int ranks = int(ceilf(n));
-  return { ranks, sqrtf(n - float(ranks - 1)), sqrtf(edgeMm * edgeMm * edgeMm * 8.0f / n) };
+  const float n = larger(0.125f, smaller(8.0f, eighths));
+  const int together = n > 1.0f ? 8 : 1; // that fade in
+  const float steps = n > 1.0f ? n : 8.0f * n;
+  const int last = int(ceilf(steps));
+  return { together * last, together * (last - 1), sqrtf(steps - float(last - 1)),
+           sqrtf(edgeMm * edgeMm * edgeMm * 8.0f / n) };
 }
 
-/// Which bricks a line takes its scatterers from, and how many eighths of them. Trivially copyable; see
+/// Which bricks a line takes its scatterers from, and which part of them. Trivially copyable; see
 /// ScattererDensity, which owns the tables. A brick of level a is a cube of 4^3 cells. A line takes the coarsest bricks
 /// whose whole depth does with their density: each point of space lies in exactly one of them.
 struct DensityView

@@ -265,7 +265,7 @@ SONO_HD inline bool isHeard(float echo, const ComplexWeight& w, float faintest)
 /// What is too faint where so much light falls.
 SONO_HD inline float faintestAt(float lit)
 {
-  return larger(surfaceFaintest, surfaceFaintestLit / lit);
+  return larger(surfaceFaintest, quickDivide(surfaceFaintestLit, lit));
 }
 
 /// An amplitude at a place between two samples.

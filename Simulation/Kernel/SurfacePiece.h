@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/FastMath.h"
 #include "Kernel/Rng.h"
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/Vec.h"
@@ -30,13 +31,43 @@ struct SurfacePiece
   Vec3i voxel; ///< the one below
 };
 
-/// How pieces are cut: `cuts` points of a voxel along each axis, `stepMm` apart.
+/// A component of v along the axis `axis` plus 0, 1 or 2; the other way round, the vector of three such components.
+/// By choice, since a GPU keeps what is indexed in memory.
+template<class T>
+SONO_HD inline T along(const glm::vec<3, T>& v, int axis, int plus)
+{
+  const int a = axis + plus < 3 ? axis + plus : axis + plus - 3;
+  return a == 0 ? v.x : (a == 1 ? v.y : v.z);
+}
+SONO_HD inline Vec3f fromAlong(int axis, float first, float second, float third)
+{
+  return { axis == 0 ? first : (axis == 1 ? third : second), axis == 0 ? second : (axis == 1 ? first : third),
+           axis == 0 ? third : (axis == 1 ? second : first) };
+}
+
+/// How one piece is cut: points along its u and v, their distances.
+struct PieceNet
+{
+  int cutsU;
+  int cutsV;
+  float stepU; ///< mm
+  float stepV;
+
+  SONO_HD int points() const { return cutsU * cutsV; }
+};
+
+/// How pieces are cut: points of a voxel along each axis.
 struct PieceCuts
 {
   Vec3i cuts;
-  Vec3f stepMm;
 
-  SONO_HD int points(int axis) const { return cuts[(axis + 1) % 3] * cuts[(axis + 2) % 3]; }
+  SONO_HD PieceNet of(int axis, const Vec3f& spacingMm) const
+  {
+    const int cutsU = along(cuts, axis, 1);
+    const int cutsV = along(cuts, axis, 2);
+    return { cutsU, cutsV, quickDivide(along(spacingMm, axis, 1), float(cutsU)),
+             quickDivide(along(spacingMm, axis, 2), float(cutsV)) };
+  }
 };
 
 /// How many points a piece is cut into. A blob's own place and tilt count exactly, its curvature does not: the points
@@ -49,7 +80,7 @@ struct PieceNets
   Vec3i most;
   float cutsPerMm; ///< per root of the curvature, 1/mm^1/2
 
-  SONO_HD PieceCuts coherent(const SurfacePiece& piece) const
+  SONO_HD PieceCuts coherentCuts(const SurfacePiece& piece) const
   {
     const float bend = larger(fabsf(piece.bendUU), fabsf(piece.bendVV)) + fabsf(piece.bendUV);
     const Vec3f wanted = spacingMm * (cutsPerMm * sqrtf(bend));
@@ -59,9 +90,14 @@ struct PieceNets
       const int n = wanted[a] < float(most[a]) ? int(ceilf(wanted[a])) : most[a];
       cuts[a] = n > fewest[a] ? n : fewest[a];
     }
-    return { cuts, spacingMm / Vec3f(cuts) };
+    return { cuts };
   }
   SONO_HD bool isCoarsest(const PieceCuts& net) const { return net.cuts == fewest; }
+  SONO_HD PieceNet coherentNet(const SurfacePiece& piece) const
+  {
+    return coherentCuts(piece).of(piece.axis, spacingMm);
+  }
+  SONO_HD PieceNet diffuseNet(const SurfacePiece& piece) const { return diffuse.of(piece.axis, spacingMm); }
 };
 
 /// Deviation of a blob on a square net of step 1: the net shows through by exp(-2 pi^2 0.49) = 6e-5.
@@ -86,43 +122,33 @@ struct PieceBounds
 
 SONO_HD inline PieceBounds pieceBounds(const SurfacePiece& piece, float longestStepMm)
 {
-  Vec3f normal(0.0f);
-  normal[piece.axis] = 1.0f;
-  normal[(piece.axis + 1) % 3] = -piece.slopeU;
-  normal[(piece.axis + 2) % 3] = -piece.slopeV;
-  const float stretch = sqrtf(glm::dot(normal, normal));
-  return { normal / stretch, 0.70710678f * longestStepMm * stretch };
+  const float stretch = sqrtf(1.0f + piece.slopeU * piece.slopeU + piece.slopeV * piece.slopeV);
+  const float perStretch = 1.0f / stretch;
+  return { fromAlong(piece.axis, perStretch, -piece.slopeU * perStretch, -piece.slopeV * perStretch),
+           0.70710678f * longestStepMm * stretch };
 }
 
 /// Point `number` of a piece, all but its row and its phase.
-SONO_HD inline SurfacePoint piecePoint(const SurfacePiece& piece, const PieceCuts& net, int number)
+SONO_HD inline SurfacePoint piecePoint(const SurfacePiece& piece, const PieceNet& net, int number)
 {
-  const int axis = piece.axis;
-  const int u = (axis + 1) % 3;
-  const int v = (axis + 2) % 3;
-  const int i = number % net.cuts[u];
-  const int j = number / net.cuts[u];
-  const float du = (float(i) + 0.5f - 0.5f * float(net.cuts[u])) * net.stepMm[u];
-  const float dv = (float(j) + 0.5f - 0.5f * float(net.cuts[v])) * net.stepMm[v];
+  const int j = int(quickDivide(float(number) + 0.5f, float(net.cutsU)));
+  const int i = number - j * net.cutsU;
+  const float du = (float(i) + 0.5f - 0.5f * float(net.cutsU)) * net.stepU;
+  const float dv = (float(j) + 0.5f - 0.5f * float(net.cutsV)) * net.stepV;
   const float slopeU = piece.slopeU + piece.bendUU * du + piece.bendUV * dv;
   const float slopeV = piece.slopeV + piece.bendUV * du + piece.bendVV * dv;
   const float stretch = sqrtf(1.0f + slopeU * slopeU + slopeV * slopeV);
+  const float perStretch = 1.0f / stretch;
+  const float rise = 0.5f * ((piece.slopeU + slopeU) * du + (piece.slopeV + slopeV) * dv);
+  const float blobU = float(blobPerStep) * net.stepU;
+  const float blobV = float(blobPerStep) * net.stepV;
+  const int axis = piece.axis;
   SurfacePoint point{};
-  point.position = piece.positionMm;
-  point.position[u] += du;
-  point.position[v] += dv;
-  point.position[axis] += 0.5f * ((piece.slopeU + slopeU) * du + (piece.slopeV + slopeV) * dv);
-  point.normal[axis] = 1.0f / stretch;
-  point.normal[u] = -slopeU / stretch;
-  point.normal[v] = -slopeV / stretch;
-  const float blobU = float(blobPerStep) * net.stepMm[u];
-  const float blobV = float(blobPerStep) * net.stepMm[v];
-  point.tangentU = point.tangentV = Vec3f(0.0f);
-  point.tangentU[u] = blobU;
-  point.tangentU[axis] = blobU * slopeU;
-  point.tangentV[v] = blobV;
-  point.tangentV[axis] = blobV * slopeV;
-  point.areaMm2 = piece.share * stretch * net.stepMm[u] * net.stepMm[v];
+  point.position = piece.positionMm + fromAlong(axis, rise, du, dv);
+  point.normal = fromAlong(axis, perStretch, -slopeU * perStretch, -slopeV * perStretch);
+  point.tangentU = fromAlong(axis, blobU * slopeU, blobU, 0.0f);
+  point.tangentV = fromAlong(axis, blobV * slopeV, 0.0f, blobV);
+  point.areaMm2 = piece.share * stretch * net.stepU * net.stepV;
   return point;
 }
 

@@ -22,7 +22,7 @@ using namespace sono::test;
 double eighthsOf(const DensityView& view, int level, float depthMm)
 {
   const NestedShare share = view.share(level, depthMm, 1.0f);
-  return share.ranks - 1 + double(share.last) * double(share.last);
+  return (share.whole + (share.count - share.whole) * double(share.last) * double(share.last)) / 8.0;
 }
 
 Tissue backscattering(const std::string& name, double perCmSr, double exponent, double mean, double sigma,
@@ -164,15 +164,18 @@ TEST(TissueLevels, FewScatterersExceedRayleighAsExpected)
   const double cellMm3 = M_PI * 0.64 * std::sqrt(M_PI) * pulseSigmaMm(2.5, 0.6);
   const ScattererDensity density(s.depthMm, [&](double) { return cellMm3; });
   const int level = density.finest();
-  const double perMm3 = eighthsOf(density.view(), level, 1.0f) / 8.0 / std::pow(double(nestedCellMm(level)), 3.0);
-  const double scatterers = probability * perMm3 * cellMm3;
+  const NestedShare share = density.view().share(level, 1.0f, 1.0f);
+  const double fades = double(share.last) * double(share.last);
+  const double squares = share.whole + (share.count - share.whole) * fades;
+  const double fourths = share.whole + (share.count - share.whole) * fades * fades;
+  const double inCell = squares / 64.0 / std::pow(double(nestedCellMm(level)), 3.0) * cellMm3; // candidates
   const Moments m = momentsOf(formTissue(*scene, grid(40, 5.0, 1.5), s), 3.0, 60.0);
-  const double excess = 1.0 / (2.0 * std::sqrt(2.0) * scatterers);
+  const double excess = (fourths / squares / probability - 2.0) / (2.0 * std::sqrt(2.0) * inCell);
   EXPECT_NEAR((m.secondMoment() - 2.0) / excess, 1.0, 0.1);
 }
 
-/// Candidates of a region, by the cells of one level: the chosen ones of all cells, or the first ranks.
-std::vector<Vec3f> candidatesOf(int level, int ranks, int edgeMm)
+/// Candidates of a region, by the bricks of one level: the first so many of each.
+std::vector<Vec3f> candidatesOf(int level, int count, int edgeMm)
 {
   Tissue tissue = backscattering("tissue", 1.0, 0.0, 1.0, 0.0, 1.0);
   const auto scene = uniformBox(Vec3i(edgeMm), tissue);
@@ -182,8 +185,8 @@ std::vector<Vec3f> candidatesOf(int level, int ranks, int edgeMm)
   std::vector<Vec3f> out;
   for (int i = 0; i < bricks * bricks * bricks; ++i)
   {
-    nested.generate(level, { i % bricks, (i / bricks) % bricks, i / (bricks * bricks) }, ranks, buffer);
-    for (int n = 0; n < buffer.end[std::size_t(ranks)]; ++n)
+    nested.generate(level, { i % bricks, (i / bricks) % bricks, i / (bricks * bricks) }, count, buffer);
+    for (int n = 0; n < buffer.before[std::size_t(count)]; ++n)
     {
       out.push_back({ buffer.x[std::size_t(n)], buffer.y[std::size_t(n)], buffer.z[std::size_t(n)] });
     }
@@ -196,26 +199,27 @@ std::vector<Vec3f> candidatesOf(int level, int ranks, int edgeMm)
 TEST(NestedCells, ACoarserLevelIsAnEighthOfTheFinerOne)
 {
   const auto order = [](const Vec3f& a, const Vec3f& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
-  for (const int level : { 2, 3, 4 })
+  for (const int level : { 1, 2, 3 })
   {
-    const auto fine = candidatesOf(level, 8, 16);
+    const auto fine = candidatesOf(level, 64, 16);
     EXPECT_EQ(double(fine.size()), std::pow(16.0 / double(nestedCellMm(level)), 3.0));
     std::vector<Vec3f> last;
-    for (int ranks = 1; ranks <= 8; ++ranks)
+    for (const int count : { 1, 2, 3, 4, 5, 6, 7, 8, 16, 24, 32, 40, 48, 56, 64 })
     {
-      const auto some = candidatesOf(level, ranks, 16);
-      EXPECT_EQ(some.size() * 8, fine.size() * std::size_t(ranks));
+      const auto some = candidatesOf(level, count, 16);
+      EXPECT_EQ(some.size() * 64, fine.size() * std::size_t(count));
       EXPECT_TRUE(std::includes(some.begin(), some.end(), last.begin(), last.end(), order));
       last = some;
     }
-    EXPECT_EQ(candidatesOf(level, 1, 16), candidatesOf(level + 1, 8, 16));
+    EXPECT_EQ(candidatesOf(level, 8, 16), candidatesOf(level + 1, 64, 16));
+    EXPECT_EQ(candidatesOf(level, 1, 16), candidatesOf(level + 2, 64, 16));
   }
 }
 
 TEST(NestedCells, PlacesAreUniformInTheCell)
 {
   const int level = 5; // 1 mm: five choices and the place in the finest cell
-  const auto places = candidatesOf(level, 8, 40);
+  const auto places = candidatesOf(level, 64, 40);
   for (int axis = 0; axis < 3; ++axis)
   {
     std::vector<double> histogram(64);
@@ -234,18 +238,19 @@ TEST(NestedCells, PlacesAreUniformInTheCell)
 
 TEST(NestedCells, PresenceAndSignAreFairAndIndependentOfThePlace)
 {
-  // Of neighbouring cells, whose numbers differ in a bit or two.
-  constexpr int edge = 64;
   std::array<double, 16 * 2 * 8> histogram{};
-  for (int i = 0; i < edge * edge * edge; ++i)
+  constexpr int edge = 16; // bricks of 4^3 cells of level 0
+  for (int i = 0; i < 64 * edge * edge * edge; ++i)
   {
-    const Vec3i cell(i % edge, (i / edge) % edge, i / (edge * edge));
-    const NestedCandidate c = nestedCandidate(7, cell);
-    const Vec3f upper = glm::floor(2.0f * (c.positionMm / nestedFinestMm - Vec3f(cell)));
+    const int n = i / 64;
+    const Vec3i brick(n % edge, (n / edge) % edge, n / (edge * edge));
+    const NestedCell cell = nestedFinestCell({ brick, nestedBrickHash(7, brick, 0) }, 0, i % 64);
+    const NestedCandidate c = nestedCandidate(cell);
+    const Vec3f upper = glm::floor(2.0f * (c.positionMm / nestedFinestMm - Vec3f(cell.cell)));
     const int octant = int(upper.x) + 2 * int(upper.y) + 4 * int(upper.z);
     histogram[std::size_t((int(c.presence * 16.0f) * 2 + (c.sign > 0.0f ? 1 : 0)) * 8 + octant)] += 1.0;
   }
-  const double expected = double(edge * edge * edge) / double(histogram.size());
+  const double expected = double(64 * edge * edge * edge) / double(histogram.size());
   double chiSquared = 0.0;
   for (const double n : histogram)
   {
@@ -323,21 +328,25 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
   for (std::size_t line = 0; line < lines.size(); ++line)
   {
     std::vector<PointScatterer> points;
-    for (int n = 0; n < 8 * side * side * side; ++n)
+    for (int n = 0; n < side * side * side; ++n)
     {
-      const Vec3i brick((n / 8) % side, (n / 8 / side) % side, n / 8 / (side * side));
-      const Vec3i parent = nestedChild(brick, std::uint32_t(n % 8));
+      const Vec3i brick(n % side, (n / side) % side, n / (side * side));
       const Vec3d off = (Vec3d(brick) + 0.5) * (4.0 * h) - lines[line].originMm;
       const double squared =
         std::pow(glm::dot(off, lines[line].lateral), 2) + std::pow(glm::dot(off, lines[line].elevation), 2);
       const double share = std::min(1.0, double(nestedFullWeight) * std::exp(-0.5 * squared));
-      const double eighths = std::clamp(8.0 * needed * share * h * h * h, 1.0, 8.0);
-      const int ranks = int(std::ceil(eighths));
+      const double eighths = std::clamp(8.0 * needed * share * h * h * h, 0.125, 8.0);
       const double perMm3 = eighths / 8.0 / (h * h * h);
-      for (int rank = 0; rank < ranks; ++rank)
+      for (int number = 0; number < 64; ++number)
       {
-        const Vec3i cell = nestedChild(parent, childOfRank(nestedHash(s.seed, parent, level + 1), std::uint32_t(rank)));
-        const NestedCandidate c = nestedCandidate(s.seed, finestCell(s.seed, cell, level));
+        // Up to one eighth the candidates come one by one, then eight by eight.
+        const double there = eighths <= 1.0 ? 8.0 * eighths - number : eighths - number / 8;
+        if (there <= 0.0)
+        {
+          continue;
+        }
+        const NestedCandidate c =
+          nestedCandidate(nestedFinestCell({ brick, nestedBrickHash(s.seed, brick, level) }, level, number));
         const bool upper = c.positionMm.z < 15.0f;
         if (glm::any(glm::greaterThanEqual(c.positionMm, Vec3f(30.0f))) || c.presence >= (upper ? 0.7f : 0.5f))
         {
@@ -345,7 +354,7 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
         }
         const double backscatter = 0.1 * (upper ? 1e-4 * std::pow(3.6, 1.4) : 2e-3);
         const double amplitude = std::sqrt(backscatter / (perMm3 * (upper ? 0.7 : 0.5))) * (1.54 / 3.6) / (2.0 * M_PI);
-        const double last = rank + 1 < ranks ? 1.0 : std::sqrt(eighths - rank);
+        const double last = std::sqrt(std::min(1.0, there));
         points.push_back({ Vec3d(c.positionMm), float(double(c.sign) * amplitude * last) });
       }
     }
