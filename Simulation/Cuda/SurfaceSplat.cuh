@@ -12,7 +12,7 @@
 namespace sono {
 
 constexpr int surfaceThreads = 128;
-constexpr int surfaceSlices = 8; // blocks of a line at most
+constexpr int surfaceSlices = 16; // blocks of a line at most
 
 struct SurfaceLaunch
 {
