@@ -26,7 +26,7 @@ parser.add_argument("--pose", help="where the probe stands: file.json or file.js
 parser.add_argument("--output", default="ultrasound.png", help="picture: .png, .tif, .exr or .jpg")
 parser.add_argument("--spacing", type=float, default=1.0, help="voxel size of the bundled thorax in mm")
 parser.add_argument("--lines", type=int, default=128, help="scan lines")
-parser.add_argument("--paths", type=int, default=1000, help="paths per scan line")
+parser.add_argument("--paths", type=int, default=256, help="paths per scan line")
 args = parser.parse_args()
 if args.labels and not args.pose:
     parser.error("--labels needs --pose, as only the bundled thorax brings a pose along")
@@ -64,9 +64,8 @@ probe = UltrasoundProbe(Positionmm=pose["position"], Axial=pose["axial"], Latera
                         Depthmm=pose.get("depth_mm", 160), Sectordeg=pose.get("sector_deg", 90),
                         LineCount=args.lines)
 scene = timed(UltrasoundScene(Input=anatomy, BuildSurfaces=0))  # no surfaces: nothing is shown in 3-D here
-# Smooth walls spread a beam by a few degrees; sixteen centimetres of chest cross more than seven boundaries.
-traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.paths, MaxCollisions=20, Coherencemm=20,
-                                   LobeSigmadeg=6))
+# Sixteen centimetres of chest cross more than seven boundaries.
+traced = timed(UltrasoundRayTracer(Scene=scene, Probe=probe, PathsperLine=args.paths, MaxCollisions=20, Coherencemm=20))
 rf = timed(UltrasoundImageFormation(Input=traced))
 bmode = timed(UltrasoundBMode(Input=rf, TGCdBpercm=3))
 picture = timed(ScanConverter(Input=bmode))
