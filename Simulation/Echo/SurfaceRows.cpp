@@ -18,6 +18,10 @@ constexpr double pi = 3.14159265358979323846;
 constexpr int nodes = 162;
 constexpr double perTangent = 32.0; // up to 78.7 degrees
 constexpr double mixtureUpTo = 10.0;
+constexpr double bandReach = 2.8; // deviations of the pulse's spectrum
+/// Of the centre frequency (chosen); what a Gaussian spectrum has below, no transducer passes. A wall along the beam
+/// would echo by that alone, and the more so the wider the band is.
+constexpr double leastShare = 0.28;
 constexpr double nothing = -80.0;    // log of an amplitude
 constexpr double leastBeside = 3e-3; // coherent power that counts beside the diffuse one
 constexpr double largePiece = 16.0;  // squares of its blob
@@ -46,17 +50,16 @@ public:
   /// The tilt in the lateral or the elevational direction.
   double crossSection(double tangent, bool lateral) const
   {
+    constexpr int bandNodes = 9;
+    const double lowest = std::max(-bandReach, (leastShare - 1.0) / bandShare_); // deviations from the centre
     double sum = 0.0;
     double weights = 0.0;
-    for (int i = -4; i <= 4; ++i)
+    for (int i = 0; i < bandNodes; ++i)
     {
-      const double x = 0.7 * i;
+      const double x = lowest + (bandReach - lowest) * i / (bandNodes - 1);
       const double share = 1.0 + x * bandShare_; // of the centre frequency
-      if (share > 0.1)
-      {
-        weights += std::exp(-x * x);
-        sum += std::exp(-x * x) * at(share * share, tangent, lateral);
-      }
+      weights += std::exp(-x * x);
+      sum += std::exp(-x * x) * at(share * share, tangent, lateral);
     }
     return sum / weights;
   }
@@ -188,10 +191,12 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
         const double r = surfaceReflection(out, float(std::sqrt(cosSquared)));
         const double depth = std::pow(0.5 * beam.lateralSigmaMm * tangent, 2);
         const double pulse = pulseSigmaMm_ * pulseSigmaMm_;
+        const double echoed = pulse / (pulse + depth); // its frequency, of the centre's
         const double power =
           r * r * pulse / (pulse + depth) *
           std::exp(-2.0 * out.roughness * cosSquared - radPerMm * radPerMm * depth * pulse / (pulse + depth));
-        return power > leastBeside * diffuse * diffuse * pi * beam.lateralSigmaMm * beam.elevationalSigmaMm;
+        return echoed > leastShare &&
+               power > leastBeside * diffuse * diffuse * pi * beam.lateralSigmaMm * beam.elevationalSigmaMm;
       };
       for (int n = 0; n < nodes - 1; ++n)
       {
