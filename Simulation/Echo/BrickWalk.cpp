@@ -16,7 +16,8 @@ struct BeamCulling
   float axial;  ///< half a brick's extent along the beam's three directions
   float lateral;
   float elevation;
-  Vec2f widening{ 1.0f }; ///< of a beam of an aperture, by its angle
+  Vec2f perWidening{ 1.0f }; ///< of a beam of an aperture or an array, by its angle
+  ArraySightView array{};    ///< of a beam of an array
 };
 
 float halfExtent(const Vec3f& direction, float edge)
@@ -63,7 +64,8 @@ std::vector<BeamCulling> makeBeamCulling(const std::vector<BeamReach>& group, fl
       const float margin = group[i].marginMm;
       beams.push_back({ group[i], i, seenRadius(group[i], edge, 0.0f, group[i].depthMm) + margin,
                         halfExtent(b.axis, edge) + margin, halfExtent(b.lateral, edge) + margin,
-                        halfExtent(b.elevation, edge) + margin, wideningOf(group[i]) });
+                        halfExtent(b.elevation, edge) + margin, 1.0f / wideningOf(group[i]),
+                        group[i].array ? group[i].array->view() : ArraySightView{} });
     }
   }
   return beams;
@@ -86,15 +88,15 @@ bool sees(const BeamCulling& s, const Vec3f& centre)
   }
   if (s.reach.array)
   {
-    return s.reach.array->sees(std::max(0.0f, std::fabs(lateral) - s.lateral) / s.widening.x,
-                               std::max(0.0f, std::fabs(elevational) - s.elevation) / s.widening.y, r - s.axial,
-                               r + s.axial);
+    return s.array.sees(std::max(0.0f, std::fabs(lateral) - s.lateral) * s.perWidening.x,
+                        std::max(0.0f, std::fabs(elevational) - s.elevation) * s.perWidening.y, r - s.axial,
+                        r + s.axial);
   }
   if (s.reach.table)
   {
-    const Vec2f seen = s.reach.table->widest(r - s.axial, r + s.axial) * s.widening;
-    const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / seen.x;
-    const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / seen.y;
+    const Vec2f seen = s.reach.table->widest(r - s.axial, r + s.axial);
+    const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) * s.perWidening.x / seen.x;
+    const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) * s.perWidening.y / seen.y;
     return dl * dl + de * de < s.reach.share * s.reach.share;
   }
   const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / b.lateralSigmaMm;
