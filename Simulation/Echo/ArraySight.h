@@ -27,11 +27,6 @@ class ArraySight
 public:
   explicit ArraySight(const ArrayField& field);
 
-  /// Whether the beam may count at distances from the axis of at least these, straight ahead, between two ranges.
-  bool sees(float lateralMm, float elevationalMm, float fromMm, float toMm) const
-  {
-    return view().sees(lateralMm, elevationalMm, fromMm, toMm);
-  }
   /// For lookups while this lives, and the same for copies of its values that lie elsewhere.
   ArraySightView view() const { return view(lateral_.values.data(), elevational_.values.data()); }
   ArraySightView view(const float* lateral, const float* elevational) const;

@@ -21,7 +21,7 @@ constexpr double mixtureUpTo = 10.0;
 constexpr double bandReach = 2.8; // deviations of the pulse's spectrum
 /// Of the centre frequency (chosen); what a Gaussian spectrum has below, no transducer passes. A wall along the beam
 /// would echo by that alone, and the more so the wider the band is.
-constexpr double leastShare = 0.19;
+constexpr double leastShare = 0.16;
 constexpr double nothing = -80.0;    // log of an amplitude
 constexpr double leastBeside = 3e-3; // coherent power that counts beside the diffuse one
 constexpr double largePiece = 16.0;  // squares of its blob
