@@ -94,6 +94,22 @@ double diffusePower(const EchoSettings& s, double roughnessMm, double correlatio
   return r0 * r0 * sum;
 }
 
+/// The mean over the pulse's band.
+double diffuseBandPower(const EchoSettings& s, double roughnessMm, double correlationMm)
+{
+  const double band = 1.0 / (2.0 * wavenumber(s) * pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth));
+  double sum = 0.0;
+  double weights = 0.0;
+  for (double x = -3.5; x < 3.55; x += 0.1)
+  {
+    EchoSettings at = s;
+    at.centreFrequencyMHz *= 1.0 + x * band;
+    sum += std::exp(-x * x) * diffusePower(at, roughnessMm, correlationMm);
+    weights += std::exp(-x * x);
+  }
+  return sum / weights;
+}
+
 /// Mean square of the echo of normal heights of the correlation exp(-d^2 / l^2), drawn on a net of 0.05 mm and summed
 /// with their slopes, of a plane at this tilt (rad).
 double drawnPower(const EchoSettings& s, double tilt, double roughnessMm, double correlationMm, int surfaces)
@@ -195,8 +211,12 @@ TEST(RoughSurface, HasTheMeanSquareOfKirchhoffsIntegral)
       squares += std::norm(v) / rf.lineCount;
       mean += v / double(rf.lineCount);
     }
-    const double coherent = r0 * coherentShare(s, c.roughnessMm, 1.0);
-    const double expected = diffusePower(s, c.roughnessMm, c.correlationMm) + coherent * coherent;
+    // A sample sums the band's amplitudes.
+    const double g = std::pow(2.0 * wavenumber(s) * c.roughnessMm, 2);
+    const double band = 1.0 / (2.0 * wavenumber(s) * pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth));
+    const double spread = 1.0 + g * band * band;
+    const double coherent = r0 * std::exp(-0.5 * g / spread) / std::sqrt(spread);
+    const double expected = diffuseBandPower(s, c.roughnessMm, c.correlationMm) + coherent * coherent;
     EXPECT_NEAR(10.0 * std::log10(squares / expected), 0.0, 0.5) << c.roughnessMm << ", " << c.correlationMm;
     // 1600 independent ones of this mean square leave a mean of 1/40 of its root.
     EXPECT_NEAR(std::abs(mean), coherent, 4.0 * std::sqrt(expected) / 40.0);
