@@ -19,7 +19,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double blobPerLambda = 0.3;
 constexpr double mostTurnRad = 0.12;
 constexpr double blobPerSigma = 0.5;
-constexpr double widestPerSigma = 0.7;
+constexpr double widestPerSigma = 0.75;
 /// A triangle's longest edge for such a blob, three times as wide as the triangle.
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.

@@ -103,6 +103,15 @@ private:
   double beamE_;
 };
 
+/// Half the log of a coherent echo's loss of power across a surface of this roughness, 2 k h: the mean of exp(-(2 k
+/// h)^2) over the pulse's band, whose lower half loses far less than its centre.
+double coherentLoss(double heightRad, double bandShare)
+{
+  const double g = heightRad * heightRad;
+  const double spread = 1.0 + g * bandShare * bandShare;
+  return 0.5 * (g / spread + 0.5 * std::log(spread));
+}
+
 double logAmplitude(double crossSection, double scale)
 {
   return crossSection > 0.0 ? std::max(nothing, 0.5 * std::log(crossSection) + std::log(scale)) : nothing;
@@ -170,8 +179,8 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
       const double r =
         std::abs(behind.impedanceMRayl - before.impedanceMRayl) / (behind.impedanceMRayl + before.impedanceMRayl);
       out.logDiffuse = float(std::max(nothing, std::log(std::max(r, 1e-300))));
-      const double h = 0.5 * radPerMm * rougher(before, behind).roughnessMm;
-      out.roughness = float(2.0 * h * h);
+      out.roughness =
+        float(coherentLoss(radPerMm * rougher(before, behind).roughnessMm, 1.0 / (radPerMm * pulseSigmaMm_)));
       out.tau = float(behind.tau);
       out.gamma = float(behind.gamma);
       out.profile = profileOf[std::size_t(ownsRoughness ? a : b)];

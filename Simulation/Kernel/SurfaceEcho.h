@@ -36,7 +36,7 @@ struct SurfaceRow
   float impedanceBehind;
   float speedRatio; ///< behind over before
   float logDiffuse; ///< log |r| across it
-  float roughness;  ///< 2 (k h)^2
+  float roughness;  ///< 2 (k h)^2, averaged over the band
   float tau;        ///< of the tissue behind: exponents of the intensity and of cos t
   float gamma;
   float reach;         ///< tangent beyond which its diffuse echo does not count; < 0: it never does

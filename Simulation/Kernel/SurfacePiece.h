@@ -100,8 +100,10 @@ struct PieceNets
   SONO_HD PieceNet diffuseNet(const SurfacePiece& piece) const { return diffuse.of(piece.axis, spacingMm); }
 };
 
-/// Deviation of a blob on a square net of step 1: the net shows through by exp(-2 pi^2 0.49) = 6e-5.
-constexpr double blobPerStep = 0.7;
+/// Deviation of a blob on a square net of step 1: the net shows through by exp(-2 pi^2 0.76^2) = 1e-5. Where a plane's
+/// slope turns the phase by a cycle in a step (28 degrees for 0.5 mm and 2.5 MHz), that is in phase with an echo of
+/// 3e-4.
+constexpr double blobPerStep = 0.76;
 
 /// Which of 256 directions of the unit circle is the random phase of a point's diffuse echo: a function of the seed and
 /// of the place in the world, as scatterers' amplitudes are. `kind` is the axis of a label's columns, or 3 for targets.

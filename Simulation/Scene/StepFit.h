@@ -3,52 +3,87 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
-// Least-squares fits of planes, balls and quadratics to a staircase's heights, voxels (SurfacePieces).
+// Fits of planes, balls and quadratics to a staircase's heights, voxels (SurfacePieces): by least squares, and then
+// into the middle of what the rounding of the steps allows.
 
 namespace sono::stepfit {
+
+using Floats = float __attribute__((vector_size(32)));
+constexpr int lanes = 8;
+constexpr Floats ramp = { 0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f };
+
+inline void load(const float* from, Floats& to)
+{
+  std::memcpy(&to, from, sizeof to);
+}
+
+inline double sumOf(const Floats& v)
+{
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+
+inline float largestOf(const Floats& v)
+{
+  return std::max(std::max(std::max(v[0], v[1]), std::max(v[2], v[3])),
+                  std::max(std::max(v[4], v[5]), std::max(v[6], v[7])));
+}
 
 /// Sums of weight x^n, and of weight height x^n.
 struct RowSums
 {
-  double x[5] = {};
-  double height[3] = {};
+  double x[5];
+  double height[3];
 
-  void add(double at, double h, double weight)
+  /// Of `count` places from `first` on, a step of 1 apart: weights, and products of weight and height. The arrays go on
+  /// to a multiple of `lanes` with weights of 0.
+  RowSums(float first, int count, const float* weight, const float* weighted)
   {
-    const double w1 = weight * at;
-    const double w2 = w1 * at;
-    x[0] += weight;
-    x[1] += w1;
-    x[2] += w2;
-    x[3] += w2 * at;
-    x[4] += w2 * at * at;
-    height[0] += weight * h;
-    height[1] += w1 * h;
-    height[2] += w2 * h;
+    Floats s[8] = {};
+    Floats at = ramp + first;
+    for (int n = 0; n < count; n += lanes, at += float(lanes))
+    {
+      Floats w;
+      Floats wh;
+      load(weight + n, w);
+      load(weighted + n, wh);
+      const Floats square = at * at;
+      const Floats w2 = w * square;
+      s[0] += w;
+      s[1] += w * at;
+      s[2] += w2;
+      s[3] += w2 * at;
+      s[4] += w2 * square;
+      s[5] += wh;
+      s[6] += wh * at;
+      s[7] += wh * square;
+    }
+    for (int i = 0; i < 8; ++i)
+    {
+      (i < 5 ? x[i] : height[i - 5]) = sumOf(s[i]);
+    }
   }
 };
 
-/// Weights of a window's columns, (2 R + 1)^2: round, and smooth to the rim so that a terrace's harmonics are not let
-/// through.
+/// Weights of a window's columns, (2 R + 1)^2: round, and falling to the rim, so that what enters a window comes
+/// gently. Not faster: the steps that tell a slope best are the outer ones.
 struct Window
 {
   std::vector<float> weight;
   std::vector<float> strictness; ///< what of a column's excess counts
-
-  std::vector<RowSums> rows; ///< of columns of height 0
+  float total = 0.0f;            ///< of the weights
 
   explicit Window(int radius)
-    : rows(std::size_t(2 * radius + 1))
   {
     for (int j = -radius; j <= radius; ++j)
     {
       for (int i = -radius; i <= radius; ++i)
       {
         const double q = std::max(0.0, 1.0 - double(i * i + j * j) / ((radius + 1.0) * (radius + 1.0)));
-        weight.push_back(float(q * q * q * q));
-        rows[std::size_t(j + radius)].add(i, 0.0, weight.back());
+        weight.push_back(float(q));
+        total += weight.back();
         strictness.push_back(float(std::min(1.0, 2.0 * q * q)));
       }
     }
@@ -181,41 +216,39 @@ public:
   {
   }
 
-  /// Data at one y: `count` places x from `first` on, a step of 1 apart, their heights and weights. The arrays go on to
-  /// a multiple of four with weights of 0.
-  void addRow(double first, double y, int count, const float* height, const float* weight)
+  /// Data at one y: `count` places x from `first` on, a step of 1 apart: the heights of z^2, weights, and products of
+  /// weight and the height to fit. The arrays go on to a multiple of `lanes` with weights of 0.
+  void addRow(float first, float y, int count, const float* height, const float* weight, const float* weighted)
   {
-    Doubles s[9] = {}; // sums of w, w x, w x^2, w q, w x q, w q^2, w h, w x h, w q h with q = x^2 + h^2
-    Doubles x = Doubles{ 0.0, 1.0, 2.0, 3.0 } + first;
-    for (int n = 0; n < count; n += 4, x += 4.0)
+    Floats s[9] = {}; // sums of w, w x, w x^2, w q, w x q, w q^2, w h, w x h, w q h with q = x^2 + h^2
+    Floats x = ramp + first;
+    const float u2 = float(u_ * u_);
+    for (int n = 0; n < count; n += lanes, x += float(lanes))
     {
-      const Doubles h = { height[n], height[n + 1], height[n + 2], height[n + 3] };
-      const Doubles w = { weight[n], weight[n + 1], weight[n + 2], weight[n + 3] };
-      const Doubles q = x * x * (u_ * u_) + h * h;
-      const Doubles wx = w * x;
-      const Doubles wq = w * q;
+      Floats h;
+      Floats w;
+      Floats wh;
+      load(height + n, h);
+      load(weight + n, w);
+      load(weighted + n, wh);
+      const Floats q = x * x * u2 + h * h;
+      const Floats wx = w * x;
+      const Floats wq = w * q;
       s[0] += w;
       s[1] += wx;
       s[2] += wx * x;
       s[3] += wq;
       s[4] += wx * q;
       s[5] += wq * q;
-      s[6] += w * h;
-      s[7] += wx * h;
-      s[8] += wq * h;
+      s[6] += wh;
+      s[7] += wh * x;
+      s[8] += wh * q;
     }
     double t[9];
     for (int i = 0; i < 9; ++i)
     {
-      t[i] = (s[i][0] + s[i][1]) + (s[i][2] + s[i][3]);
+      t[i] = sumOf(s[i]);
     }
-    addSums(t, y * v_);
-  }
-
-  void add(double x, double y, double h, double w)
-  {
-    const double q = x * x * u_ * u_ + h * h;
-    const double t[9] = { w, w * x, w * x * x, w * q, w * x * q, w * q * q, w * h, w * x * h, w * q * h };
     addSums(t, y * v_);
   }
 
@@ -253,8 +286,6 @@ public:
   }
 
 private:
-  using Doubles = double __attribute__((vector_size(32)));
-
   /// Of one y; x in columns.
   void addSums(const double* t, double y)
   {
@@ -280,6 +311,34 @@ private:
   double a_[4][5] = {};
 };
 
+/// How the steps of a row pull at a shape, with stiffness and force: a step is no measurement with noise, it says for
+/// certain that the surface lies within half a voxel. So least squares of the distances follow the rounding, which of a
+/// plane is a wave as long as a window; the barrier -log(1 - e^2), e the distance over half a voxel, does not. Beyond
+/// `wall` it goes on as a parabola, so that a shape may start outside. A ball is linear in its terms by the height of
+/// the step in place of its own.
+inline void pull(const Shape& shape, int radius, int j, const float* height, const float* weight, float* stiffness,
+                 float* force)
+{
+  constexpr float wall = 0.95f;
+  const float k0 = shape.q.at(0.0f, float(j));
+  const float k1 = shape.q.c1 + shape.q.c5 * float(j);
+  const float k2 = shape.q.c3;
+  const float bulge = shape.bulge;
+  for (int n = 0; n < 2 * radius + 1; ++n)
+  {
+    const float i = float(n - radius);
+    const float h = height[n];
+    const float perHalf = 1.0f / std::max(0.1f, 0.5f - bulge * h);
+    const float e = (h - (k0 + i * (k1 + i * k2) + bulge * h * h)) * perHalf;
+    const float within = std::min(wall, std::fabs(e));
+    const float perRoom = 1.0f / (1.0f - within * within);
+    const float second = 2.0f * (1.0f + within * within) * perRoom * perRoom;
+    const float first = 2.0f * within * perRoom + second * (std::fabs(e) - within);
+    stiffness[n] = weight[n] * second * perHalf * perHalf;
+    force[n] = weight[n] * std::copysign(first, e) * perHalf;
+  }
+}
+
 inline float smoothStep(float from, float to, float at)
 {
   const float x = std::min(1.0f, std::max(0.0f, (at - from) / (to - from)));
@@ -290,6 +349,12 @@ inline Quadratic mix(const Quadratic& a, const Quadratic& b, float share)
 {
   const auto m = [share](float x, float y) { return x + share * (y - x); };
   return { m(a.c0, b.c0), m(a.c1, b.c1), m(a.c2, b.c2), m(a.c3, b.c3), m(a.c4, b.c4), m(a.c5, b.c5) };
+}
+
+inline void add(Quadratic& sum, const Quadratic& a, float share)
+{
+  sum = { sum.c0 + share * a.c0, sum.c1 + share * a.c1, sum.c2 + share * a.c2,
+          sum.c3 + share * a.c3, sum.c4 + share * a.c4, sum.c5 + share * a.c5 };
 }
 
 } // namespace sono::stepfit

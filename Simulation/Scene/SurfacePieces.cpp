@@ -13,20 +13,22 @@ namespace {
 
 using namespace stepfit;
 
-constexpr int widest = 24; // voxels to each side of a column
+constexpr int widest = 40;     // voxels to each side of a column
+constexpr int widestBent = 24; // the terraces of a slope of a degree are wider, those of what is bent are not
 constexpr int allColumns = 2 * widest + 1;
-constexpr std::array<int, 7> windows{ 2, 3, 5, 8, 12, 17, widest };
+constexpr std::array<int, 8> windows{ 2, 3, 5, 8, 12, 17, 24, widest };
 /// Voxels that a column's step may lie further from a fit than half a voxel, a step's rounding: up to the first a
 /// window counts fully, from the second on not at all.
 constexpr float freeExcess = 0.05f;
 constexpr float mostExcess = 0.15f;
+/// The same of a least-squares fit that is not worth settling; Newton's steps that settle one, and one too small to
+/// go on.
+constexpr float hopelessExcess = 0.25f;
+constexpr int rounds = 2;
+constexpr float settledStep = 1e-3f; // voxels
 /// A window needs this share of its columns, and that to count fully.
 constexpr float fewestSeen = 0.5f;
 constexpr float enoughSeen = 0.75f;
-/// An edge between two steps tells the height to within half the slope across it, a step to within half a voxel. By
-/// their variances edges weigh 1 / slope^2: at most as at the first slope, nothing from the second on.
-constexpr float flattestEdge = 0.05f;
-constexpr float steepestEdge = 0.5f;
 constexpr std::int16_t unknown = -32768; // step of a column outside of the volume
 constexpr int mostStep = 2;              // voxels from a column's step to its neighbour's
 constexpr float leastFacing = 0.5f;      // of a normal along the column: some axis has 0.577
@@ -44,12 +46,6 @@ const Window& windowOf(int radius)
     return made;
   }();
   return all[std::size_t(radius)];
-}
-
-float edgeWeight(float slope)
-{
-  constexpr float least = flattestEdge * flattestEdge;
-  return std::max(0.0f, 1.0f / (slope * slope + least) - 1.0f / (steepestEdge * steepestEdge + least));
 }
 
 /// Steps of the columns around a face, relative to its own: how many voxels along the axis they lie further.
@@ -123,35 +119,47 @@ public:
   bool smoothest(const Vec3i& voxel, int axis, const Vec3f& spacing, Quadratic& out)
   {
     step(0, 0) = 0;
-    std::array<Quadratic, windows.size()> fits{};
-    std::array<float, windows.size()> agreement{};
+    const float u = spacing[(axis + 1) % 3] / spacing[axis];
+    const float v = spacing[(axis + 2) % 3] / spacing[axis];
+    std::array<float, windows.size()> seen{};
+    std::array<Start, windows.size()> starts{};
     std::size_t count = 0;
-    std::size_t slopes = 0;
     int gathered = 0;
-    for (int misses = 0; count < windows.size() && misses < 2; ++count)
+    int misses = 0;
+    bool isFlat = true;
+    for (; count < windows.size() && misses < 2 && (isFlat || windows[count] <= widestBent); ++count)
     {
       const int radius = windows[count];
       gather(voxel, axis, gathered + 1, radius);
       gathered = radius;
-      const float seen = smoothStep(fewestSeen, enoughSeen, knownShare(radius));
-      if (!(seen > 0.0f) ||
-          !smoothest(radius, axis, spacing, count > 0 ? &fits[slopes] : nullptr, fits[count], agreement[count]))
+      seen[count] = smoothStep(fewestSeen, enoughSeen, knownShare(radius));
+      if (!(seen[count] > 0.0f) || !leastSquares(radius, u, v, starts[count]))
       {
         break;
       }
-      agreement[count] *= seen;
-      misses = agreement[count] > 0.0f ? 0 : misses + (radius < 8 ? 1 : 2);
-      slopes = agreement[count] > 0.0f ? count : slopes;
+      isFlat = starts[count].kind == Kind::Plane;
+      misses = starts[count].kind != Kind::None ? 0 : misses + (radius < 8 ? 1 : 2);
     }
     if (count == 0)
     {
       return false;
     }
     // Each window in front of those within it as far as it agrees: all is continuous along the surface.
-    out = fits[0];
-    for (std::size_t w = 1; w < count; ++w)
+    out = {};
+    float left = 1.0f;
+    for (std::size_t w = count; w-- > 0 && left > 0.0f;)
     {
-      out = mix(out, fits[w], agreement[w]);
+      if (w == 0 || starts[w].kind != Kind::None)
+      {
+        Quadratic fit;
+        const float agreement = settle(windows[w], u, v, starts[w], fit);
+        const float share = w == 0 ? left : left * seen[w] * agreement;
+        if (share > 0.0f)
+        {
+          add(out, fit, share);
+          left -= share;
+        }
+      }
     }
     return true;
   }
@@ -191,161 +199,224 @@ private:
   /// Of a window's weight.
   float knownShare(int radius) const
   {
-    const float* weight = windowOf(radius).weight.data();
-    float known = 0.0f;
-    float all = 0.0f;
+    Floats known{};
+    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      for (int i = -radius; i <= radius; ++i, ++weight)
+      loadRow(radius, j, row);
+      for (int n = 0; n < 2 * radius + 1; n += lanes)
       {
-        all += *weight;
-        known += step(i, j) == unknown ? 0.0f : *weight;
+        Floats w;
+        load(row.weight + n, w);
+        known += w;
       }
     }
-    return known / all;
+    return float(sumOf(known)) / windowOf(radius).total;
   }
 
-  /// The smoothest of plane, ball and quadratic; false where there are too few data. `known` tells the slopes, or is
-  /// null.
-  bool smoothest(int radius, int axis, const Vec3f& spacing, const Quadratic* known, Quadratic& out,
-                 float& agreement) const
+  enum class Kind
   {
-    const NormalEquations equations = equationsOf(radius, known);
-    Shape plane;
+    Plane,
+    Ball,
+    Bent,
+    None
+  };
+
+  /// The smoothest shape whose least squares lie near enough to the steps to be settled; of none, the last.
+  struct Start
+  {
+    Shape shape;
+    Kind kind;
+  };
+
+  /// False where there are too few data.
+  bool leastSquares(int radius, float u, float v, Start& start) const
+  {
+    const NormalEquations equations = equationsOf(radius);
+    Shape plane{};
     if (!equations.solve(3, plane.q))
     {
       return false;
     }
-    out = plane.q;
-    agreement = agrees(plane, radius);
-    if (agreement >= 1.0f)
+    Shape ball{};
+    Shape bent{};
+    if (isNear(plane, radius))
     {
-      return true;
+      start = { plane, Kind::Plane };
     }
-    BallEquations ofBall(spacing[(axis + 1) % 3] / spacing[axis], spacing[(axis + 2) % 3] / spacing[axis]);
-    for (int j = -radius; j <= radius; ++j)
+    else if (fitBall(radius, u, v, ball) && isNear(ball, radius))
     {
-      const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
-      const float* weight = windowOf(radius).weight.data() + (2 * radius + 1) * (j + radius);
-      const int pitch = 2 * radius + 1;
-      float heights[allColumns + 3];
-      float weights[allColumns + 3];
-      for (int n = 0; n < pitch; ++n)
-      {
-        const bool isKnown = steps[n] != unknown;
-        heights[n] = isKnown ? float(steps[n]) : 0.0f;
-        weights[n] = isKnown ? weight[n] : 0.0f;
-      }
-      for (int n = pitch; n < pitch + 3; ++n)
-      {
-        heights[n] = weights[n] = 0.0f;
-      }
-      ofBall.addRow(-radius, j, pitch, heights, weights);
-      if (known)
-      {
-        forEdges(
-          radius, j, *known, [&](float x, float h, float w) { ofBall.add(x, j, h, w); },
-          [&](float x, float h, float w) { ofBall.add(x, j + 0.5, h, w); });
-      }
+      start = { ball, Kind::Ball };
     }
-    Shape ball;
-    const float ballAgrees = ofBall.solve(ball) ? agrees(ball, radius) : 0.0f;
-    if (ballAgrees > 0.0f)
+    else if (equations.solve(terms, bent.q))
     {
-      out = agreement > 0.0f ? mix(ball.osculating(), out, agreement) : ball.osculating();
-      agreement = std::max(agreement, ballAgrees);
+      start = { bent, isNear(bent, radius) ? Kind::Bent : Kind::None };
     }
-    Shape bent;
-    if (agreement < 1.0f && equations.solve(terms, bent.q))
+    else
     {
-      const float bentAgrees = agrees(bent, radius);
-      out = mix(bent.q, out, agreement);
-      agreement = std::max(agreement, bentAgrees);
+      start = { plane, Kind::None };
     }
     return true;
   }
 
-  /// Of steps, and where the slopes are known of the edges between them.
-  NormalEquations equationsOf(int radius, const Quadratic* known) const
+  bool isNear(const Shape& shape, int radius) const { return excess(shape, radius, hopelessExcess) < hopelessExcess; }
+
+  /// The smoothest of plane, ball and quadratic, each in front of the next as far as it agrees; how well they do.
+  float settle(int radius, float u, float v, const Start& start, Quadratic& out) const
+  {
+    Shape shape = start.shape;
+    out = shape.q;
+    float agreement = 0.0f;
+    if (start.kind == Kind::None)
+    {
+      return agreement;
+    }
+    if (start.kind == Kind::Plane)
+    {
+      agreement = settled(radius, shape, [&] { return settleQuadratic(radius, 3, shape); });
+      out = shape.q;
+    }
+    if (start.kind == Kind::Ball ||
+        (start.kind == Kind::Plane && agreement < 1.0f && fitBall(radius, u, v, shape) && isNear(shape, radius)))
+    {
+      const float ballAgrees = settled(radius, shape, [&] { return settleBall(radius, u, v, shape); });
+      if (ballAgrees > 0.0f)
+      {
+        out = agreement > 0.0f ? mix(shape.osculating(), out, agreement) : shape.osculating();
+        agreement = std::max(agreement, ballAgrees);
+      }
+    }
+    Shape bent{};
+    if (agreement < 1.0f && equationsOf(radius).solve(terms, bent.q))
+    {
+      const float bentAgrees =
+        isNear(bent, radius) ? settled(radius, bent, [&] { return settleQuadratic(radius, terms, bent); }) : 0.0f;
+      out = mix(bent.q, out, agreement);
+      agreement = std::max(agreement, bentAgrees);
+    }
+    return agreement;
+  }
+
+  /// Moves a shape from the least squares' place into the middle of what the steps allow, round by round, and tells how
+  /// well it agrees.
+  template<class F>
+  float settled(int radius, const Shape& shape, const F& round) const
+  {
+    for (int n = 0; n < rounds && round() > settledStep; ++n)
+    {
+    }
+    return agrees(shape, radius);
+  }
+
+  /// A row of columns of a window, on to whole vectors; weights are 0 where there is no step.
+  struct Row
+  {
+    float height[allColumns + lanes];
+    float weight[allColumns + lanes];
+    float stiffness[allColumns + lanes];
+    float force[allColumns + lanes];
+  };
+
+  void loadRow(int radius, int j, Row& row) const
+  {
+    const int pitch = 2 * radius + 1;
+    const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
+    const float* weight = windowOf(radius).weight.data() + pitch * (j + radius);
+    for (int n = 0; n < pitch; ++n)
+    {
+      const bool isKnown = steps[n] != unknown;
+      row.height[n] = isKnown ? float(steps[n]) : 0.0f;
+      row.weight[n] = isKnown ? weight[n] : 0.0f;
+    }
+    for (int n = pitch; n < pitch + lanes; ++n)
+    {
+      row.height[n] = row.weight[n] = row.stiffness[n] = row.force[n] = 0.0f;
+    }
+  }
+
+  /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
+  float settleQuadratic(int radius, int count, Shape& shape) const
   {
     NormalEquations equations;
-    const Window& window = windowOf(radius);
-    const int pitch = 2 * radius + 1;
+    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
-      const float* weight = window.weight.data() + pitch * (j + radius);
-      const bool isFull = std::find(steps, steps + pitch, unknown) == steps + pitch;
-      RowSums columns;
-      if (isFull)
-      {
-        columns = window.rows[std::size_t(j + radius)];
-        for (int n = 0; n < pitch; ++n)
-        {
-          const float x = float(n - radius);
-          const float wh = weight[n] * float(steps[n]);
-          columns.height[0] += wh;
-          columns.height[1] += wh * x;
-          columns.height[2] += wh * x * x;
-        }
-      }
-      else
-      {
-        for (int n = 0; n < pitch; ++n)
-        {
-          if (steps[n] != unknown)
-          {
-            columns.add(n - radius, steps[n], weight[n]);
-          }
-        }
-      }
-      equations.addRow(j, columns.x, columns.height);
-      if (known)
-      {
-        RowSums edges;
-        RowSums next;
-        forEdges(
-          radius, j, *known, [&](float x, float h, float w) { edges.add(x, h, w); },
-          [&](float x, float h, float w) { next.add(x, h, w); });
-        equations.addRow(j, edges.x, edges.height);
-        equations.addRow(j + 0.5, next.x, next.height);
-      }
+      loadRow(radius, j, row);
+      pull(shape, radius, j, row.height, row.weight, row.stiffness, row.force);
+      const RowSums sums(-radius, 2 * radius + 1, row.stiffness, row.force);
+      equations.addRow(j, sums.x, sums.height);
+    }
+    Quadratic d{};
+    if (!equations.solve(count, d))
+    {
+      return 0.0f;
+    }
+    Quadratic& q = shape.q;
+    q = { q.c0 + d.c0, q.c1 + d.c1, q.c2 + d.c2, q.c3 + d.c3, q.c4 + d.c4, q.c5 + d.c5 };
+    return stepOf(d, radius);
+  }
+
+  static float stepOf(const Quadratic& d, int radius)
+  {
+    const float r = float(radius);
+    return std::fabs(d.c0) + r * (std::fabs(d.c1) + std::fabs(d.c2)) +
+           r * r * (std::fabs(d.c3) + std::fabs(d.c4) + std::fabs(d.c5));
+  }
+
+  bool fitBall(int radius, float u, float v, Shape& ball) const
+  {
+    BallEquations equations(u, v);
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      weigh(row, 2 * radius + 1);
+      equations.addRow(-radius, j, 2 * radius + 1, row.height, row.weight, row.force);
+    }
+    return equations.solve(ball);
+  }
+
+  float settleBall(int radius, float u, float v, Shape& ball) const
+  {
+    BallEquations equations(u, v);
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      pull(ball, radius, j, row.height, row.weight, row.stiffness, row.force);
+      equations.addRow(-radius, j, 2 * radius + 1, row.height, row.stiffness, row.force);
+    }
+    Shape d{};
+    if (!equations.solve(d))
+    {
+      return 0.0f;
+    }
+    Quadratic& q = ball.q;
+    q = { q.c0 + d.q.c0, q.c1 + d.q.c1, q.c2 + d.q.c2, q.c3 + d.q.c3, q.c4 + d.q.c4, 0.0f };
+    ball.bulge += d.bulge;
+    return stepOf(d.q, radius);
+  }
+
+  /// Least squares of the steps alone.
+  NormalEquations equationsOf(int radius) const
+  {
+    NormalEquations equations;
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      weigh(row, 2 * radius + 1);
+      const RowSums sums(-radius, 2 * radius + 1, row.weight, row.force);
+      equations.addRow(j, sums.x, sums.height);
     }
     return equations;
   }
 
-  /// The edges between the steps of a window: f(x, height, weight) of those within a row, g of those from it to the
-  /// next.
-  template<class F, class G>
-  void forEdges(int radius, int j, const Quadratic& known, const F& f, const G& g) const
+  static void weigh(Row& row, int count)
   {
-    const int pitch = 2 * radius + 1;
-    const float* weight = windowOf(radius).weight.data() + pitch * (j + radius);
-    const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
-    for (int n = 0; n + 1 < pitch; ++n)
+    for (int n = 0; n < count; ++n)
     {
-      if (steps[n] != steps[n + 1] && steps[n] != unknown && steps[n + 1] != unknown)
-      {
-        const float i = float(n - radius);
-        const float w = edgeWeight(known.c1 + known.c3 * (2.0f * i + 1.0f) + known.c5 * float(j));
-        if (w > 0.0f)
-        {
-          f(i + 0.5f, 0.5f * float(steps[n] + steps[n + 1]), 0.5f * (weight[n] + weight[n + 1]) * w);
-        }
-      }
-    }
-    const std::int16_t* next = steps + allColumns;
-    for (int n = 0; j < radius && n < pitch; ++n)
-    {
-      if (steps[n] != next[n] && steps[n] != unknown && next[n] != unknown)
-      {
-        const float i = float(n - radius);
-        const float w = edgeWeight(known.c2 + known.c4 * float(2 * j + 1) + known.c5 * i);
-        if (w > 0.0f)
-        {
-          g(i, 0.5f * float(steps[n] + next[n]), 0.5f * (weight[n] + weight[n + pitch]) * w);
-        }
-      }
+      row.force[n] = row.weight[n] * row.height[n];
     }
   }
 
@@ -359,7 +430,7 @@ private:
   float excess(const Shape& shape, int radius, float enough) const
   {
     const int pitch = 2 * radius + 1;
-    float largest = 0.0f;
+    Floats largest{};
     for (int n = 0; n < pitch; ++n)
     {
       const int j = (n & 1) ? -(n + 1) / 2 : n / 2; // the middle first, where most misfits show
@@ -367,7 +438,7 @@ private:
       const std::int16_t* steps = &steps_[std::size_t(widest - radius + allColumns * (j + widest))];
       const float k0 = shape.q.at(0.0f, float(j));
       const float k1 = shape.q.c1 + shape.q.c5 * float(j);
-      float row[allColumns];
+      float row[allColumns + lanes];
       for (int m = 0; m < pitch; ++m)
       {
         const float i = float(m - radius);
@@ -376,16 +447,19 @@ private:
         const float e = (std::fabs(float(steps[m]) - z) - 0.5f) * strictness[m];
         row[m] = steps[m] == unknown ? 0.0f : e;
       }
-      for (int m = 0; m < pitch; ++m)
+      std::fill(row + pitch, row + pitch + lanes, 0.0f);
+      for (int m = 0; m < pitch; m += lanes)
       {
-        largest = row[m] > largest ? row[m] : largest;
+        Floats e;
+        load(row + m, e);
+        largest = e > largest ? e : largest;
       }
-      if (largest >= enough)
+      if (largestOf(largest) >= enough)
       {
         break;
       }
     }
-    return largest;
+    return largestOf(largest);
   }
 
   std::int16_t& step(int i, int j) { return steps_[std::size_t(i + widest + allColumns * (j + widest))]; }

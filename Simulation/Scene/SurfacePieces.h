@@ -13,9 +13,9 @@ namespace sono {
 
 /// The boundaries of a label map as smooth pieces. Voxels are a staircase, and its terraces would echo like a grating:
 /// where steps of half a wavelength matter, no smoothing by a voxel or two suffices. So a piece's place comes from the
-/// smoothest surface that the labels allow: a plane, a ball or a quadratic, fitted to the steps of the columns around
-/// and to the edges between them, in the widest window, up to 24 voxels to each side, from which no step lies further
-/// than its rounding. Windows and shapes give way to each other gradually, so that the surface has no steps of its own.
+/// smoothest surface that the labels allow: a plane, a ball or a quadratic, in the middle of what the steps of the
+/// columns around leave free, in the widest window, up to 40 voxels to each side, from which no step lies further than
+/// its rounding. Windows and shapes give way to each other gradually, so that the surface has no steps of its own.
 /// Small windows at rims and thin parts leave those as they are; a lone voxel keeps its faces.
 ///
 /// Faces between voxels of different tissues are looked up brick by brick, pieces are fitted one by one, when first

@@ -41,17 +41,18 @@ TEST_P(TiltedPlane, OfATarget)
 
 TEST_P(TiltedPlane, OfLabels)
 {
-  if (GetParam() == 7.0 || GetParam() == 30.0)
+  for (const double offsetMm : { 0.03, 0.17, 0.28 })
   {
-    GTEST_SKIP() << "slopes near 1/8 and 4/7 voxels: seen 1.1 and 1.8 dB off (physics.md 10.6)";
-  }
-  for (const double roughnessMm : roughnessesAt(GetParam()))
-  {
-    EXPECT_NEAR(planeOfLabelsErrorDb(GetParam(), roughnessMm), 0.0, 1.0) << roughnessMm << " mm rough";
+    for (const double roughnessMm : roughnessesAt(GetParam()))
+    {
+      EXPECT_NEAR(planeOfLabelsErrorDb(GetParam(), roughnessMm, offsetMm), 0.0, 1.0)
+        << roughnessMm << " mm rough, moved by " << offsetMm;
+    }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Degrees, TiltedPlane, testing::Values(0.0, 2.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 40.0));
+INSTANTIATE_TEST_SUITE_P(Degrees, TiltedPlane,
+                         testing::Values(0.0, 1.0, 2.0, 5.0, 7.0, 8.0, 10.0, 15.0, 20.0, 25.0, 28.0, 30.0, 40.0));
 
 class Ball : public testing::TestWithParam<double>
 {
@@ -66,13 +67,12 @@ TEST_P(Ball, OfATarget)
 
 TEST_P(Ball, OfLabels)
 {
-  if (GetParam() == 5.0)
+  for (const double offsetMm : { 0.0, 0.13, 0.38 })
   {
-    GTEST_SKIP() << "a ball of 10 voxels' radius was seen up to 1.2 dB off (physics.md 10.6)";
+    const BallErrors errors = ballOfLabelsErrors(GetParam(), offsetMm);
+    EXPECT_NEAR(errors.frontDb, 0.0, 1.0) << "moved by " << offsetMm;
+    EXPECT_NEAR(errors.backDb, 0.0, 1.0) << "moved by " << offsetMm;
   }
-  const BallErrors errors = ballOfLabelsErrors(GetParam());
-  EXPECT_NEAR(errors.frontDb, 0.0, 1.0);
-  EXPECT_NEAR(errors.backDb, 0.0, 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(RadiusMm, Ball, testing::Values(5.0, 10.0, 20.0, 50.0));
@@ -92,6 +92,22 @@ double diffusePower(const EchoSettings& s, double roughnessMm, double correlatio
                                (1.0 + 4.0 * k * k * s.elevationalSigmaMm * s.elevationalSigmaMm * alpha));
   }
   return r0 * r0 * sum;
+}
+
+/// The mean over the pulse's band.
+double diffuseBandPower(const EchoSettings& s, double roughnessMm, double correlationMm)
+{
+  const double band = 1.0 / (2.0 * wavenumber(s) * pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth));
+  double sum = 0.0;
+  double weights = 0.0;
+  for (double x = -3.5; x < 3.55; x += 0.1)
+  {
+    EchoSettings at = s;
+    at.centreFrequencyMHz *= 1.0 + x * band;
+    sum += std::exp(-x * x) * diffusePower(at, roughnessMm, correlationMm);
+    weights += std::exp(-x * x);
+  }
+  return sum / weights;
 }
 
 /// Mean square of the echo of normal heights of the correlation exp(-d^2 / l^2), drawn on a net of 0.05 mm and summed
@@ -195,8 +211,12 @@ TEST(RoughSurface, HasTheMeanSquareOfKirchhoffsIntegral)
       squares += std::norm(v) / rf.lineCount;
       mean += v / double(rf.lineCount);
     }
-    const double coherent = r0 * coherentShare(s, c.roughnessMm, 1.0);
-    const double expected = diffusePower(s, c.roughnessMm, c.correlationMm) + coherent * coherent;
+    // A sample sums the band's amplitudes.
+    const double g = std::pow(2.0 * wavenumber(s) * c.roughnessMm, 2);
+    const double band = 1.0 / (2.0 * wavenumber(s) * pulseSigmaMm(s.centreFrequencyMHz, s.fractionalBandwidth));
+    const double spread = 1.0 + g * band * band;
+    const double coherent = r0 * std::exp(-0.5 * g / spread) / std::sqrt(spread);
+    const double expected = diffuseBandPower(s, c.roughnessMm, c.correlationMm) + coherent * coherent;
     EXPECT_NEAR(10.0 * std::log10(squares / expected), 0.0, 0.5) << c.roughnessMm << ", " << c.correlationMm;
     // 1600 independent ones of this mean square leave a mean of 1/40 of its root.
     EXPECT_NEAR(std::abs(mean), coherent, 4.0 * std::sqrt(expected) / 40.0);

@@ -33,16 +33,22 @@ public:
   void add(const std::string& where, double decibels)
   {
     std::fprintf(stderr, "%s %s: %.3f dB\n", name_.c_str(), where.c_str(), decibels);
-    worst_ = std::max(worst_, std::abs(decibels));
+    if (std::abs(decibels) > worst_)
+    {
+      worst_ = std::abs(decibels);
+      where_ = where;
+    }
   }
   double print() const
   {
     printFigure(name_, worst_, "dB");
+    std::fprintf(stderr, "%s is worst at %s\n", name_.c_str(), where_.c_str());
     return worst_;
   }
 
 private:
   std::string name_;
+  std::string where_;
   double worst_ = 0.0;
 };
 
