@@ -31,12 +31,12 @@ double blobMm(const EchoSettings& s, const BeamExtent& beam)
                   blobPerSigma * std::min(beam.lateralSigmaMm, beam.elevationalSigmaMm));
 }
 
-std::vector<Tissue> mediaOf(const Scene& scene, const std::vector<TargetSurface>* targets)
+SurfaceMedia mediaOf(const Scene& scene, const std::vector<TargetSurface>* targets)
 {
-  std::vector<Tissue> media = scene.tissues();
+  SurfaceMedia media{ scene.tissues(), int(scene.tissues().size()), scene.outsideIndex() };
   for (std::size_t t = 0; targets && t < targets->size(); ++t)
   {
-    media.push_back((*targets)[t].tissue);
+    media.all.push_back((*targets)[t].tissue);
   }
   return media;
 }
@@ -97,7 +97,7 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   const float widestMm =
     float(blobPerStep) * std::max({ spacing.x / float(nets_.fewest.x), spacing.y / float(nets_.fewest.y),
                                     spacing.z / float(nets_.fewest.z) });
-  rows_ = sharedSurfaceRows(mediaOf(scene, targets), scene.outsideIndex(), settings, beam, blobMm_, widestMm);
+  rows_ = sharedSurfaceRows(mediaOf(scene, targets), settings, beam, blobMm_, widestMm);
   if (targets && !targets->empty())
   {
     targets_ = std::make_unique<TargetPieces>(scene, *targets, *rows_, edgePerBlob * blobMm_, seed_);

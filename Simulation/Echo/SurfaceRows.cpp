@@ -125,13 +125,14 @@ BeamExtent beamExtent(const BeamModel& beams)
   return { beams.focusAreaMm2(), focus.lateralSigmaMm, focus.elevationalSigmaMm };
 }
 
-SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings,
-                         const BeamExtent& beam, double finestMm, double widestMm)
-  : count_(int(media.size()))
+SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& settings, const BeamExtent& beam,
+                         double finestMm, double widestMm)
+  : count_(int(surfaceMedia.all.size()))
   , perBeamArea_(1.0 / beam.areaMm2)
   , pulseSigmaMm_(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth))
-  , rows_(2 * media.size() * media.size())
+  , rows_(2 * surfaceMedia.all.size() * surfaceMedia.all.size())
 {
+  const std::vector<Tissue>& media = surfaceMedia.all;
   const double radPerMm = 4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs; // 2 k
   const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
   // Media of the same roughness share a profile.
@@ -166,7 +167,7 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
       out.coherentReach = -1.0f;
       out.finestReach = -1.0f;
       out.roughCosine = 2.0f;
-      if (a == b || a == coupling)
+      if (a == b || a == surfaceMedia.coupling)
       {
         continue;
       }
@@ -194,6 +195,8 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
           std::exp(-out.roughness * cosine * cosine - 0.5 * radPerMm * radPerMm * spread * pulse / (pulse + spread));
         return coherent * largePiece * blobMm * blobMm * perBeamArea_ > surfaceFaintest;
       };
+      // All facets of a wire echo, however they face.
+      const bool isOfTarget = std::max(a, b) >= surfaceMedia.tissues;
       // A plane's coherent echo, eq. 10.6, for a beam half as wide as at its focus, against its diffuse one.
       const auto isHeardBeside = [&](double diffuse, double tangent) {
         const double cosSquared = 1.0 / (1.0 + tangent * tangent);
@@ -204,7 +207,7 @@ SurfaceRows::SurfaceRows(const std::vector<Tissue>& media, int coupling, const E
         const double power =
           r * r * pulse / (pulse + depth) *
           std::exp(-2.0 * out.roughness * cosSquared - radPerMm * radPerMm * depth * pulse / (pulse + depth));
-        return echoed > leastShare &&
+        return (echoed > leastShare || isOfTarget) &&
                power > leastBeside * diffuse * diffuse * pi * beam.lateralSigmaMm * beam.elevationalSigmaMm;
       };
       for (int n = 0; n < nodes - 1; ++n)
@@ -239,12 +242,12 @@ SurfaceTable SurfaceRows::view(double slackMm) const
   return table;
 }
 
-std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const std::vector<Tissue>& media, int coupling,
-                                                     const EchoSettings& settings, const BeamExtent& beam,
-                                                     double finestMm, double widestMm)
+std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, const EchoSettings& settings,
+                                                     const BeamExtent& beam, double finestMm, double widestMm)
 {
   // All that the constructor looks at.
-  std::vector<double> key{ double(coupling),
+  std::vector<double> key{ double(media.coupling),
+                           double(media.tissues),
                            settings.centreFrequencyMHz,
                            settings.fractionalBandwidth,
                            beam.areaMm2,
@@ -252,7 +255,7 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const std::vector<Tissue>& 
                            beam.elevationalSigmaMm,
                            finestMm,
                            widestMm };
-  for (const Tissue& t : media)
+  for (const Tissue& t : media.all)
   {
     key.insert(key.end(), { t.impedanceMRayl, t.soundSpeedMPerS, t.tau, t.gamma, t.roughnessMm, t.correlationMm });
   }
@@ -266,7 +269,7 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const std::vector<Tissue>& 
   {
     return found->second;
   }
-  auto rows = std::make_shared<const SurfaceRows>(media, coupling, settings, beam, finestMm, widestMm);
+  auto rows = std::make_shared<const SurfaceRows>(media, settings, beam, finestMm, widestMm);
   kept.emplace_front(std::move(key), rows);
   if (kept.size() > most)
   {

@@ -21,14 +21,21 @@ struct BeamExtent
 /// At the beam's focus.
 BeamExtent beamExtent(const BeamModel& beams);
 
+/// What surfaces lie between: a scene's tissues, then the media of targets.
+struct SurfaceMedia
+{
+  std::vector<Tissue> all;
+  int tissues;  ///< those of the scene
+  int coupling; ///< beyond it nothing echoes as seen from there; -1: none
+};
+
 /// The table of all boundaries between some media (Data/docs/physics.md sections 10.3 to 10.5).
 class SurfaceRows
 {
 public:
-  /// Beyond `coupling`, the index of a medium, nothing echoes as seen from there; -1: none. Pieces have blobs of
-  /// `finestMm` to `widestMm`, and areas of about their squares.
-  SurfaceRows(const std::vector<Tissue>& media, int coupling, const EchoSettings& settings, const BeamExtent& beam,
-              double finestMm, double widestMm);
+  /// Pieces have blobs of `finestMm` to `widestMm`, and areas of about their squares.
+  SurfaceRows(const SurfaceMedia& media, const EchoSettings& settings, const BeamExtent& beam, double finestMm,
+              double widestMm);
 
   int count() const { return count_; } ///< of the media
   /// From medium a onto b.
@@ -50,8 +57,7 @@ private:
 };
 
 /// The same; those made last are kept, since they take tens of milliseconds and the next image wants the same.
-std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const std::vector<Tissue>& media, int coupling,
-                                                     const EchoSettings& settings, const BeamExtent& beam,
-                                                     double finestMm, double widestMm);
+std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, const EchoSettings& settings,
+                                                     const BeamExtent& beam, double finestMm, double widestMm);
 
 } // namespace sono

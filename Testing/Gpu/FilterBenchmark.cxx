@@ -107,6 +107,7 @@ void measure(sono::Device device)
   sono::Simulator simulator(sono::makePhantomScene(sono::makeThoraxPhantom(1.0)));
   sono::ImageInput input;
   input.pose = pose;
+  input.settings.echo.aperture = sono::ProbeSettings().aperture();
   input.settings.matchStages();
   input.settings.setDevice(device);
 
