@@ -65,7 +65,6 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
   const float brickMm = nestedCellMm(launch.level) * float(nestedBrickCells);
   const BrickSight<kind> sight(splat, beam, brickMm);
   const Vec2f halfMm = nestedHalfExtent(beam, launch.level);
-  const float axialMm = 0.5f * brickMm * (fabsf(beam.axis.x) + fabsf(beam.axis.y) + fabsf(beam.axis.z));
   const auto shareOf = [&](const Vec3i& brick) {
     const NestedShare none{ 0, 0, 0.0f, 0.0f };
     const Vec3f centre = nestedBrickCentre(brick, launch.level);
@@ -76,13 +75,13 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     {
       return none;
     }
-    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, launch.level + 1);
-    const float depthMm = glm::dot(centre - beam.origin, beam.axis);
     // An array echoes from the range.
-    if (kind != BeamKind::Array && !(depthMm + axialMm > chunk.fromMm && depthMm - axialMm < chunk.toMm))
+    if (kind != BeamKind::Array && !(sight.isBelow(centre, chunk.fromMm) && sight.isAbove(centre, chunk.toMm)))
     {
       return none;
     }
+    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, launch.level + 1);
+    const float depthMm = glm::dot(centre - beam.origin, beam.axis);
     if (!launch.density.takes(launch.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
     {
       return none;

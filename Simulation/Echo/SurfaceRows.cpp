@@ -38,9 +38,9 @@ const Tissue& rougher(const Tissue& a, const Tissue& b)
 class Roughness
 {
 public:
-  Roughness(const Tissue& tissue, double radPerMm, const BeamExtent& beam, double pulseMm)
+  Roughness(const Tissue& tissue, double radPerMm, const BeamExtent& beam, double bandShare)
     : heightRad_(radPerMm * tissue.roughnessMm)
-    , bandShare_(1.0 / (radPerMm * pulseMm))
+    , bandShare_(bandShare)
     , perCorrelation_(std::pow(2.0 / (radPerMm * tissue.correlationMm), 2))
     , beamL_(1.0 / std::pow(radPerMm * beam.lateralSigmaMm, 2))
     , beamE_(1.0 / std::pow(radPerMm * beam.elevationalSigmaMm, 2))
@@ -134,6 +134,7 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
 {
   const std::vector<Tissue>& media = surfaceMedia.all;
   const double radPerMm = 4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs; // 2 k
+  const double bandShare = 1.0 / (radPerMm * pulseSigmaMm_);                                 // s_f / f0
   const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
   // Media of the same roughness share a profile.
   std::vector<int> profileOf;
@@ -148,7 +149,7 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
     if (same == owner.end())
     {
       owner.push_back(int(m));
-      const Roughness roughness(media[m], radPerMm, beam, pulseSigmaMm_);
+      const Roughness roughness(media[m], radPerMm, beam, bandShare);
       for (int n = 0; n < nodes; ++n)
       {
         const double tangent = n / perTangent;
@@ -180,8 +181,7 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
       const double r =
         std::abs(behind.impedanceMRayl - before.impedanceMRayl) / (behind.impedanceMRayl + before.impedanceMRayl);
       out.logDiffuse = float(std::max(nothing, std::log(std::max(r, 1e-300))));
-      out.roughness =
-        float(coherentLoss(radPerMm * rougher(before, behind).roughnessMm, 1.0 / (radPerMm * pulseSigmaMm_)));
+      out.roughness = float(coherentLoss(radPerMm * rougher(before, behind).roughnessMm, bandShare));
       out.tau = float(behind.tau);
       out.gamma = float(behind.gamma);
       out.profile = profileOf[std::size_t(ownsRoughness ? a : b)];

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-// Fits of planes, balls and quadratics to a staircase's heights, voxels (SurfacePieces): by least squares, and then
+// Fits of planes, balls and quadratics to a staircase's heights, voxels (StepMap): by least squares, and then
 // into the middle of what the rounding of the steps allows.
 
 namespace sono::stepfit {

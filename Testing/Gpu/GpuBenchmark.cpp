@@ -88,10 +88,12 @@ std::vector<ProbePose> sweepOf(int count)
   return poses;
 }
 
+/// As in ParaView, where nobody turned a knob.
 ImageInput a4c()
 {
   ImageInput input;
   input.pose = thoraxPhantomA4C().orthonormalized();
+  input.settings.echo.aperture = ProbeSettings().aperture(); // of a P4-2
   input.settings.matchStages();
   input.settings.setDevice(Device::Cuda);
   return input;
@@ -213,9 +215,9 @@ void measureKinds(Simulator& simulator)
   input.settings.tracing.model = InterfaceModel::Amadou2024;
   measureKind(simulator, "gpu_amadou", input);
   input = a4c();
-  input.settings.echo.aperture = { 20.455, 14.0, 65.0, 60.0, 0.295, false }; // of a P4-2
+  input.settings.echo.aperture = {};
   input.settings.matchStages();
-  measureKind(simulator, "gpu_aperture", input);
+  measureKind(simulator, "gpu_one_width", input);
   ArrayAperture aperture;
   aperture.fractionalBandwidth = 0.74;
   input.settings.echo.arrayField = std::make_shared<const ArrayField>(aperture, input.settings.echo.depthMm);
@@ -239,7 +241,10 @@ void measureSweeps(Simulator& simulator)
     print(("gpu_sweep_" + std::to_string(images) + "_wall_images_per_s").c_str(), 1e3 * images / ms, "1/s");
   }
   simulator.sweep(sweepOf(16), settings, false, sink);
-  print("gpu_images_per_s", 16e3 / computing(DeviceImager::instance().lastTimes()), "1/s");
+  const DeviceTimes times = DeviceImager::instance().lastTimes();
+  print("gpu_images_per_s", 16e3 / computing(times), "1/s");
+  print("gpu_batch_trace_ms", times.trace / 16.0, "ms");
+  print("gpu_batch_echo_ms", times.echo / 16.0, "ms");
 }
 
 void measureCole()

@@ -82,7 +82,7 @@ inline double rfDifference(const RfLines& a, const RfLines& b)
 /// The aperture of a P4-2.
 inline BeamAperture namedAperture()
 {
-  return { 20.455, 14.0, 65.0, 60.0, 0.295, false };
+  return ProbeSettings().aperture();
 }
 
 /// Its computed beam.

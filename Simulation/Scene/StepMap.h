@@ -1,0 +1,474 @@
+#pragma once
+
+#include "Kernel/Vec.h"
+#include "Scene/StepFit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+// The staircase of voxels around a face, and the smoothest surface that it allows (SurfacePieces).
+
+namespace sono::stepfit {
+
+constexpr int widest = 40;     // voxels to each side of a column
+constexpr int widestBent = 24; // the terraces of a slope of a degree are wider, those of what is bent are not
+constexpr int allColumns = 2 * widest + 1;
+constexpr std::array<int, 8> windows{ 2, 3, 5, 8, 12, 17, 24, widest };
+/// Voxels that a column's step may lie further from a fit than half a voxel, a step's rounding: up to the first a
+/// window counts fully, from the second on not at all.
+constexpr float freeExcess = 0.05f;
+constexpr float mostExcess = 0.15f;
+/// The same of a least-squares fit that is not worth settling; Newton's steps that settle one, and one too small to
+/// go on.
+constexpr float hopelessExcess = 0.25f;
+constexpr int rounds = 2;
+constexpr float settledStep = 1e-3f; // voxels
+/// A window needs this share of its columns, and that to count fully.
+constexpr float fewestSeen = 0.5f;
+constexpr float enoughSeen = 0.75f;
+constexpr std::int16_t unknown = -32768; // step of a column outside of the volume
+constexpr int mostStep = 2;              // voxels from a column's step to its neighbour's
+
+inline const Window& windowOf(int radius)
+{
+  static const std::vector<Window> all = [] {
+    std::vector<Window> made;
+    for (int r = 0; r <= widest; ++r)
+    {
+      made.emplace_back(r);
+    }
+    return made;
+  }();
+  return all[std::size_t(radius)];
+}
+
+/// Steps of the columns around a face, relative to its own: how many voxels along the axis they lie further.
+class StepMap
+{
+public:
+  StepMap(const std::uint8_t* tissues, const Vec3i& size)
+    : tissues_(tissues)
+    , size_(size)
+    , pitch_{ 1, size.x, std::ptrdiff_t(size.x) * size.y }
+  {
+  }
+
+  std::uint8_t at(const Vec3i& v) const { return tissues_[v.x + pitch_[1] * v.y + pitch_[2] * v.z]; }
+  bool contains(const Vec3i& v) const
+  {
+    return unsigned(v.x) < unsigned(size_.x) && unsigned(v.y) < unsigned(size_.y) && unsigned(v.z) < unsigned(size_.z);
+  }
+
+  /// Fills the rings [first, last] around the face above `voxel`, those before them being filled: a column is known
+  /// where it has a step from the same tissue to the same other one, near that of its neighbour further in.
+  void gather(const Vec3i& voxel, int axis, int first, int last)
+  {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const std::uint8_t below = at(voxel);
+    Vec3i next = voxel;
+    ++next[axis];
+    const std::uint8_t above = at(next);
+    const std::ptrdiff_t base = voxel.x + pitch_[1] * voxel.y + pitch_[2] * voxel.z;
+    for (int r = first; r <= last; ++r)
+    {
+      const auto find = [&](int i, int j) {
+        step(i, j) = unknown;
+        const int from = step(i == r ? r - 1 : (i == -r ? 1 - r : i), j == r ? r - 1 : (j == -r ? 1 - r : j));
+        if (from == unknown || unsigned(voxel[u] + i) >= unsigned(size_[u]) ||
+            unsigned(voxel[v] + j) >= unsigned(size_[v]))
+        {
+          return;
+        }
+        for (int n = 0; n <= 2 * mostStep; ++n)
+        {
+          const int h = from + ((n & 1) ? (n + 1) / 2 : -n / 2);
+          const int place = voxel[axis] + h;
+          if (place < 0 || place + 1 >= size_[axis])
+          {
+            continue;
+          }
+          const std::uint8_t* t = tissues_ + base + i * pitch_[u] + j * pitch_[v] + h * pitch_[axis];
+          if (t[0] == below && t[pitch_[axis]] == above)
+          {
+            step(i, j) = std::int16_t(h);
+            return;
+          }
+        }
+      };
+      for (int n = -r; n <= r; ++n)
+      {
+        find(n, -r);
+        find(n, r);
+        if (n > -r && n < r)
+        {
+          find(-r, n);
+          find(r, n);
+        }
+      }
+    }
+  }
+
+  /// The smoothest surface that the labels allow; false where they show none.
+  bool smoothest(const Vec3i& voxel, int axis, const Vec3f& spacing, Quadratic& out)
+  {
+    step(0, 0) = 0;
+    const float u = spacing[(axis + 1) % 3] / spacing[axis];
+    const float v = spacing[(axis + 2) % 3] / spacing[axis];
+    std::array<float, windows.size()> seen{};
+    std::array<Start, windows.size()> starts{};
+    std::size_t count = 0;
+    int gathered = 0;
+    int misses = 0;
+    bool isFlat = true;
+    for (; count < windows.size() && misses < 2 && (isFlat || windows[count] <= widestBent); ++count)
+    {
+      const int radius = windows[count];
+      gather(voxel, axis, gathered + 1, radius);
+      gathered = radius;
+      seen[count] = smoothStep(fewestSeen, enoughSeen, knownShare(radius));
+      if (!(seen[count] > 0.0f) || !leastSquares(radius, u, v, starts[count]))
+      {
+        break;
+      }
+      isFlat = starts[count].kind == Kind::Plane;
+      misses = starts[count].kind != Kind::None ? 0 : misses + (radius < 8 ? 1 : 2);
+    }
+    if (count == 0)
+    {
+      return false;
+    }
+    // Each window in front of those within it as far as it agrees: all is continuous along the surface.
+    out = {};
+    float left = 1.0f;
+    for (std::size_t w = count; w-- > 0 && left > 0.0f;)
+    {
+      if (w == 0 || starts[w].kind != Kind::None)
+      {
+        Quadratic fit;
+        const float agreement = settle(windows[w], u, v, starts[w], fit);
+        const float share = w == 0 ? left : left * seen[w] * agreement;
+        if (share > 0.0f)
+        {
+          add(out, fit, share);
+          left -= share;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// From the mean place of the tissue below to that of the one above, in the 5 x 5 x 4 voxels around a face; in
+  /// voxels, any length.
+  Vec3f coarseNormal(const Vec3i& voxel, int axis) const
+  {
+    Vec3i low = voxel - 2;
+    Vec3i high = voxel + 2;
+    low[axis] = voxel[axis] - 1;
+    Vec3i next = voxel;
+    ++next[axis];
+    const std::uint8_t below = at(voxel);
+    const std::uint8_t above = at(next);
+    Vec3f middle(voxel);
+    middle[axis] += 0.5f;
+    low = glm::max(low, Vec3i(0));
+    high = glm::min(high, size_ - 1);
+    Vec3f sum(0.0f);
+    for (int k = low.z; k <= high.z; ++k)
+    {
+      for (int j = low.y; j <= high.y; ++j)
+      {
+        for (int i = low.x; i <= high.x; ++i)
+        {
+          const std::uint8_t t = at(Vec3i(i, j, k));
+          const float sign = t == above ? 1.0f : (t == below ? -1.0f : 0.0f);
+          sum += sign * (Vec3f(i, j, k) - middle);
+        }
+      }
+    }
+    return sum;
+  }
+
+private:
+  /// Of a window's weight.
+  float knownShare(int radius) const
+  {
+    Floats known{};
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      for (int n = 0; n < 2 * radius + 1; n += lanes)
+      {
+        Floats w;
+        load(row.weight + n, w);
+        known += w;
+      }
+    }
+    return float(sumOf(known)) / windowOf(radius).total;
+  }
+
+  enum class Kind
+  {
+    Plane,
+    Ball,
+    Bent,
+    None
+  };
+
+  /// The smoothest shape whose least squares lie near enough to the steps to be settled; of none, the last. The
+  /// equations are those of a quadratic.
+  struct Start
+  {
+    NormalEquations equations;
+    Shape shape;
+    Kind kind;
+  };
+
+  /// False where there are too few data.
+  bool leastSquares(int radius, float u, float v, Start& start) const
+  {
+    const NormalEquations equations = equationsOf(radius);
+    Shape plane{};
+    if (!equations.solve(3, plane.q))
+    {
+      return false;
+    }
+    Shape ball{};
+    Shape bent{};
+    if (isNear(plane, radius))
+    {
+      start = { equations, plane, Kind::Plane };
+    }
+    else if (fitBall(radius, u, v, ball) && isNear(ball, radius))
+    {
+      start = { equations, ball, Kind::Ball };
+    }
+    else if (equations.solve(terms, bent.q))
+    {
+      start = { equations, bent, isNear(bent, radius) ? Kind::Bent : Kind::None };
+    }
+    else
+    {
+      start = { equations, plane, Kind::None };
+    }
+    return true;
+  }
+
+  bool isNear(const Shape& shape, int radius) const { return excess(shape, radius, hopelessExcess) < hopelessExcess; }
+
+  /// The smoothest of plane, ball and quadratic, each in front of the next as far as it agrees; how well they do.
+  float settle(int radius, float u, float v, const Start& start, Quadratic& out) const
+  {
+    Shape shape = start.shape;
+    out = shape.q;
+    float agreement = 0.0f;
+    if (start.kind == Kind::None)
+    {
+      return agreement;
+    }
+    if (start.kind == Kind::Plane)
+    {
+      agreement = settled(radius, shape, [&] { return settleQuadratic(radius, 3, shape); });
+      out = shape.q;
+    }
+    if (start.kind == Kind::Ball ||
+        (start.kind == Kind::Plane && agreement < 1.0f && fitBall(radius, u, v, shape) && isNear(shape, radius)))
+    {
+      const float ballAgrees = settled(radius, shape, [&] { return settleBall(radius, u, v, shape); });
+      if (ballAgrees > 0.0f)
+      {
+        out = agreement > 0.0f ? mix(shape.osculating(), out, agreement) : shape.osculating();
+        agreement = std::max(agreement, ballAgrees);
+      }
+    }
+    Shape bent{};
+    if (agreement < 1.0f && start.equations.solve(terms, bent.q))
+    {
+      const float bentAgrees =
+        isNear(bent, radius) ? settled(radius, bent, [&] { return settleQuadratic(radius, terms, bent); }) : 0.0f;
+      out = mix(bent.q, out, agreement);
+      agreement = std::max(agreement, bentAgrees);
+    }
+    return agreement;
+  }
+
+  /// Moves a shape from the least squares' place into the middle of what the steps allow, round by round, and tells how
+  /// well it agrees.
+  template<class F>
+  float settled(int radius, const Shape& shape, const F& round) const
+  {
+    for (int n = 0; n < rounds && round() > settledStep; ++n)
+    {
+    }
+    return agrees(shape, radius);
+  }
+
+  /// A row of columns of a window, on to whole vectors; weights are 0 where there is no step.
+  struct Row
+  {
+    float height[allColumns + lanes];
+    float weight[allColumns + lanes];
+    float stiffness[allColumns + lanes];
+    float force[allColumns + lanes];
+  };
+
+  void loadRow(int radius, int j, Row& row) const
+  {
+    const int pitch = 2 * radius + 1;
+    const std::int16_t* steps = stepsOf(radius, j);
+    const float* weight = windowOf(radius).weight.data() + pitch * (j + radius);
+    for (int n = 0; n < pitch; ++n)
+    {
+      const bool isKnown = steps[n] != unknown;
+      row.height[n] = isKnown ? float(steps[n]) : 0.0f;
+      row.weight[n] = isKnown ? weight[n] : 0.0f;
+    }
+    for (int n = pitch; n < pitch + lanes; ++n)
+    {
+      row.height[n] = row.weight[n] = row.stiffness[n] = row.force[n] = 0.0f;
+    }
+  }
+
+  /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
+  float settleQuadratic(int radius, int count, Shape& shape) const
+  {
+    NormalEquations equations;
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      pull(shape, radius, j, row.height, row.weight, row.stiffness, row.force);
+      const RowSums sums(-radius, 2 * radius + 1, row.stiffness, row.force);
+      equations.addRow(j, sums.x, sums.height);
+    }
+    Quadratic d{};
+    if (!equations.solve(count, d))
+    {
+      return 0.0f;
+    }
+    add(shape.q, d, 1.0f);
+    return stepOf(d, radius);
+  }
+
+  static float stepOf(const Quadratic& d, int radius)
+  {
+    const float r = float(radius);
+    return std::fabs(d.c0) + r * (std::fabs(d.c1) + std::fabs(d.c2)) +
+           r * r * (std::fabs(d.c3) + std::fabs(d.c4) + std::fabs(d.c5));
+  }
+
+  bool fitBall(int radius, float u, float v, Shape& ball) const
+  {
+    BallEquations equations(u, v);
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      weigh(row, 2 * radius + 1);
+      equations.addRow(-radius, j, 2 * radius + 1, row.height, row.weight, row.force);
+    }
+    return equations.solve(ball);
+  }
+
+  float settleBall(int radius, float u, float v, Shape& ball) const
+  {
+    BallEquations equations(u, v);
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      pull(ball, radius, j, row.height, row.weight, row.stiffness, row.force);
+      equations.addRow(-radius, j, 2 * radius + 1, row.height, row.stiffness, row.force);
+    }
+    Shape d{};
+    if (!equations.solve(d))
+    {
+      return 0.0f;
+    }
+    add(ball.q, d.q, 1.0f);
+    ball.bulge += d.bulge;
+    return stepOf(d.q, radius);
+  }
+
+  /// Least squares of the steps alone.
+  NormalEquations equationsOf(int radius) const
+  {
+    NormalEquations equations;
+    Row row;
+    for (int j = -radius; j <= radius; ++j)
+    {
+      loadRow(radius, j, row);
+      weigh(row, 2 * radius + 1);
+      const RowSums sums(-radius, 2 * radius + 1, row.weight, row.force);
+      equations.addRow(j, sums.x, sums.height);
+    }
+    return equations;
+  }
+
+  static void weigh(Row& row, int count)
+  {
+    for (int n = 0; n < count; ++n)
+    {
+      row.force[n] = row.weight[n] * row.height[n];
+    }
+  }
+
+  /// 1 where no column's step lies further from the fit than its rounding, less to 0 where one does; smoothly.
+  float agrees(const Shape& shape, int radius) const
+  {
+    return 1.0f - smoothStep(freeExcess, mostExcess, excess(shape, radius, mostExcess));
+  }
+
+  /// The largest distance from the fit beyond a step's rounding, voxels; not much more is looked at than `enough`.
+  float excess(const Shape& shape, int radius, float enough) const
+  {
+    const int pitch = 2 * radius + 1;
+    Floats largest{};
+    for (int n = 0; n < pitch; ++n)
+    {
+      const int j = (n & 1) ? -(n + 1) / 2 : n / 2; // the middle first, where most misfits show
+      const float* strictness = windowOf(radius).strictness.data() + pitch * (j + radius);
+      const std::int16_t* steps = stepsOf(radius, j);
+      const float k0 = shape.q.at(0.0f, float(j));
+      const float k1 = shape.q.c1 + shape.q.c5 * float(j);
+      float row[allColumns + lanes];
+      for (int m = 0; m < pitch; ++m)
+      {
+        const float i = float(m - radius);
+        const float k = k0 + i * (k1 + i * shape.q.c3);
+        const float z = 2.0f * k / (1.0f + std::sqrt(std::max(0.0f, 1.0f - 4.0f * shape.bulge * k)));
+        const float e = (std::fabs(float(steps[m]) - z) - 0.5f) * strictness[m];
+        row[m] = steps[m] == unknown ? 0.0f : e;
+      }
+      std::fill(row + pitch, row + pitch + lanes, 0.0f);
+      for (int m = 0; m < pitch; m += lanes)
+      {
+        Floats e;
+        load(row + m, e);
+        largest = e > largest ? e : largest;
+      }
+      if (largestOf(largest) >= enough)
+      {
+        break;
+      }
+    }
+    return largestOf(largest);
+  }
+
+  static std::size_t indexOf(int i, int j) { return std::size_t(i + widest + allColumns * (j + widest)); }
+  std::int16_t& step(int i, int j) { return steps_[indexOf(i, j)]; }
+  /// Of a window's row, from its first column on.
+  const std::int16_t* stepsOf(int radius, int j) const { return &steps_[indexOf(-radius, j)]; }
+
+  const std::uint8_t* tissues_;
+  Vec3i size_;
+  std::ptrdiff_t pitch_[3];
+  std::array<std::int16_t, std::size_t(allColumns) * allColumns> steps_; // what is not gathered is not read
+};
+
+} // namespace sono::stepfit
