@@ -38,6 +38,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <initializer_list>
 #include <iterator>
 #include <utility>
 
@@ -103,12 +104,24 @@ Progress UltrasoundStages::progress(vtkAlgorithm* stage, double from, double to)
   return partOf(progressOf(owner_), from, to);
 }
 
-/// While VTK prepares the request for data. Once between two such requests, for it may be that none follows.
-void UltrasoundStages::beginTrace(vtkInformationVector** input)
+UltrasoundStages::Inputs UltrasoundStages::inputsOf(vtkInformationVector** input)
 {
-  const int ports[] = { Filter::LABELS_OR_SCENE, Filter::TARGETS };
-  if (!std::exchange(isAsked_, false) ||
-      !std::all_of(std::begin(ports), std::end(ports), [&](int port) { return isUpToDate(owner_, port); }))
+  Inputs inputs;
+  for (int i = 0; i < int(inputs.size()); ++i)
+  {
+    inputs[i] = vtkDataObject::GetData(input[i]);
+  }
+  return inputs;
+}
+
+/// While VTK prepares the request for data. Once between two such requests, for it may be that none follows.
+void UltrasoundStages::begin(vtkInformationVector** input)
+{
+  const auto areUpToDate = [&](std::initializer_list<int> ports) {
+    return std::all_of(ports.begin(), ports.end(), [&](int port) { return isUpToDate(owner_, port); });
+  };
+  const bool wholeImage = std::exchange(isImageAsked_, false);
+  if (!std::exchange(isAsked_, false) || !areUpToDate({ Filter::LABELS_OR_SCENE, Filter::TARGETS }))
   {
     return;
   }
@@ -118,7 +131,15 @@ void UltrasoundStages::beginTrace(vtkInformationVector** input)
     if (blocks && vtkSonoSceneHandle::Get(blocks) == simulator_.scene())
     {
       vtkDataObject* surfaces = vtkDataObject::GetData(input[Filter::TARGETS]);
-      simulator_.begin({ field_.pose, settings_, targets(surfaces, blocks), nullptr });
+      ImageInput image{ field_.pose, settings_, targets(surfaces, blocks), nullptr };
+      // A file's pulse is read again when the image is made.
+      const bool whole = wholeImage && std::string(formation->GetPulseFileName()).empty() &&
+                         areUpToDate({ Filter::PULSE_ECHO_FIELD, Filter::SCATTERERS });
+      if (whole)
+      {
+        readEchoInputs(inputsOf(input), image);
+      }
+      simulator_.begin(image, whole);
     }
   }
   catch (const std::exception&) // make() meets it again, and lets it be said
@@ -132,7 +153,7 @@ void UltrasoundStages::announce(vtkInformationVector** input, vtkInformationVect
   formation->SetDevice(tracer->GetDevice()); // what it says when it is asked
   field_ = probe->Probe();
   settings_ = imageSettings(field_, *tracer, *formation, *bmode, pixelMmOf(field_, converter->GetPixelMm()));
-  beginTrace(input);
+  begin(input);
   const vtkSmartPointer<vtkFieldData> before = acquisition_;
   acquisition_ = vtkSmartPointer<vtkFieldData>::New();
   writeProbe(field_, acquisition_, before);
@@ -275,6 +296,7 @@ void UltrasoundStages::makeErrorMap(const ImageInput& image, const TracedResult&
 
 void UltrasoundStages::makeImage(const ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat)
 {
+  isImageAsked_ = true;
   const ImageResult made = simulator_.image(image, progress(converter, 0.0, 1.0));
   // All else before the picture, which may have to be waited for.
   placeImage(made, image.pose, world);
@@ -297,11 +319,7 @@ void UltrasoundStages::makeImage(const ImageInput& image, vtkDataArray* errors, 
 
 void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformationVector* output)
 {
-  Inputs inputs; // others may be connected meanwhile
-  for (int i = 0; i < int(inputs.size()); ++i)
-  {
-    inputs[i] = vtkDataObject::GetData(input[i]);
-  }
+  const Inputs inputs = inputsOf(input); // others may be connected meanwhile
   vtkDataObject* made = vtkDataObject::GetData(output, port);
   vtkFieldData* fields = made->GetFieldData();
   if (port == Filter::PROBE)

@@ -83,7 +83,8 @@ private:
 
   /// The part of the whole's progress that a stage reports, with its text.
   Progress progress(vtkAlgorithm* stage, double from, double to);
-  void beginTrace(vtkInformationVector** input);
+  static Inputs inputsOf(vtkInformationVector** input);
+  void begin(vtkInformationVector** input);
   const std::vector<TargetSurface>& targets(vtkDataObject* input, vtkMultiBlockDataSet* blocks);
   TracedResult trace(const ImageInput& image);
   void readEchoInputs(const Inputs& inputs, ImageInput& image);
@@ -111,7 +112,8 @@ private:
   vtkMTimeType pulseTime_ = 0; ///< of the stage when it was read; 0: it is to be read
   // The last results, and the arrays that stay as long as they do.
   TracedResult traced_;
-  bool isAsked_ = false; ///< for what is traced, since the last announcement
+  bool isAsked_ = false;      ///< for what is traced, since the last announcement
+  bool isImageAsked_ = false; ///< for an image, the same
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;
   ImageResult errorMap_;

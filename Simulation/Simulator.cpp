@@ -395,7 +395,7 @@ TracedResult Simulator::traced(const ImageInput& input, const Progress& progress
   return trace(makeScanLines(input.settings.geometry, input.pose), input.settings.tracing, input.targets, progress);
 }
 
-void Simulator::begin(const ImageInput& input)
+void Simulator::begin(const ImageInput& input, bool wholeImage)
 {
   const TraceSettings& tracing = input.settings.tracing;
   const auto& before = last_->traced.from;
@@ -418,6 +418,10 @@ void Simulator::begin(const ImageInput& input)
     const auto end = std::chrono::steady_clock::now() + longestBegun;
     input.settings.requireMatch();
     trace(lines, tracing, input.targets, [end](double) { return std::chrono::steady_clock::now() < end; });
+    if (wholeImage && !input.settings.geometry.isVolume() && chooseDevice(input.settings.echo.device).cuda)
+    {
+      image(input);
+    }
   }
   catch (const Aborted&) // left to traced(), which can be stopped
   {

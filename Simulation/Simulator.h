@@ -83,9 +83,9 @@ public:
   RfResult rf(const ImageInput& input, const Progress& progress = {});
   BModeResult bmode(const ImageInput& input, const Progress& progress = {});
   ImageResult image(const ImageInput& input, const Progress& progress = {});
-  /// Has a GPU begin what traced() will be asked for, so that it is under way by then. Does nothing on the CPU, nor
-  /// where more is to be done than can be left to run without a stop.
-  void begin(const ImageInput& input);
+  /// Has a GPU begin what traced(), or with `wholeImage` image(), will be asked for, so that it is under way by then.
+  /// Does nothing on the CPU, nor where more is to be done than can be left to run without a stop.
+  void begin(const ImageInput& input, bool wholeImage);
   ///@}
 
   /// An image of each pose, to the sink, in the order of the poses and on the calling thread. On a GPU a group of poses

@@ -84,8 +84,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   DeviceImager& imager = DeviceImager::instance();
   const int together =
     std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
-  std::shared_ptr<const EchoJob> echoJob; // these two are made while the first lines are traced
-  std::shared_ptr<const BModeJob> bmodeJob;
+  std::shared_ptr<const BModeJob> bmodeJob; // made while the first lines are traced
   SweptPictures before;
   std::shared_ptr<DeviceImager::Download> download;
   const auto deliver = [&] {
@@ -101,14 +100,17 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     const int count = std::min(together, int(poses.size()) - first);
     const LineRange range{ first * perImage, count * perImage };
     const auto traced = imager.trace(traceJob, range);
-    if (!echoJob)
+    // For the lines of one group at a time: the device has work while the next one's is made.
+    const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
+    const auto firstLine = lines.begin() + range.first;
+    const std::vector<ScanLine> groupLines(firstLine, firstLine + range.count);
+    const EchoSetup setup(sources, groupLines, settings.echo);
+    const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
+    if (!bmodeJob)
     {
-      const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
-      const EchoSetup setup(sources, lines, settings.echo);
-      echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
       bmodeJob = std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
     }
-    const auto rf = imager.formRf(echoJob, range, traced.get(), false);
+    const auto rf = imager.formRf(echoJob, { 0, range.count }, traced.get(), false);
     const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
     const auto labels =
       withLabels ? imager.slice(makeLabelJob(scene, poses.data() + first, count, layout), *picture) : nullptr;

@@ -36,7 +36,7 @@ constexpr int interactiveEdgeVoxels = 512;
 
 /// Images of a sweep that go through the stages together: enough to fill a GPU, and few enough that the host takes over
 /// those of one group while the next is computed. On a GPU a group takes at most this share of the memory.
-constexpr int imagesTogether = 24;
+constexpr int imagesTogether = 16;
 constexpr double groupShareOfDeviceMemory = 0.25;
 
 /// Freed memory that is kept for the next results: the device's, and the host's that the device writes to.

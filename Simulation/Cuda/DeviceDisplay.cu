@@ -269,7 +269,7 @@ GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines,
     rank_.resize(sizeof(RankState) * std::size_t(images));
     rank_.clear(stream);
     auto* states = reinterpret_cast<RankState*>(rank_.data());
-    const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 4096, 264))), images);
+    const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 2048, 528))), images);
     const int first = settings_.firstReferenceSample;
     const std::size_t counted = std::size_t(lines) * (samples - first);
     const auto rank = std::uint32_t(referenceRank(counted));

@@ -87,7 +87,8 @@ private:
   void splatPoints(int first, int count, cudaStream_t stream);
   void uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
                     Traffic& traffic);
-  void uploadNested(const NestedJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic);
+  void uploadNested(const NestedJob& job, const BeamJob& beam, const std::vector<Beam>& sceneBeams, cudaStream_t stream,
+                    Traffic& traffic);
   void uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic);
   void splatNested(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
@@ -115,10 +116,11 @@ private:
   std::shared_ptr<const ArrayField> arraySource_;
   DeviceArray<float> arrayLateral_, arrayElevational_, sightLateral_, sightElevational_;
 
+  DeviceArray<Beam> sceneBeams_;
+
   bool tissues_ = false;
   std::uint64_t sceneId_ = 0;
   DeviceArray<std::uint8_t> voxels_;
-  DeviceArray<Beam> sceneBeams_;
   DeviceArray<ScatteringMedium> media_;
   DeviceArray<NestedMedium> nestedMedia_;
   Sight tissueSight_;
@@ -146,7 +148,6 @@ private:
   std::vector<SurfaceGroup> pieceGroups_;
   DeviceArray<SurfacePiece> devicePieces_;
   DeviceArray<SurfaceGroup> devicePieceGroups_;
-  DeviceArray<Beam> surfaceBeams_;
   DeviceArray<SurfaceRow> surfaceRows_;
   DeviceArray<float> diffuseL_, diffuseE_;
   SurfaceSet pieceSet_{};
@@ -171,8 +172,9 @@ private:
   DeviceArray<float2> givenEcho_;
   TracedOnDevice given_;
 
-  DeviceArray<float2> sum_;  ///< lines x sumCount
-  DeviceArray<float> turns_; ///< the same: of the downshift's phase
+  DeviceArray<float2> sum_;    ///< lines x sumCount, without nested scatterers
+  DeviceArray<int> nestedSum_; ///< lines x sumCount x (re, im), in units of 1 / nestedScale_
+  DeviceArray<float> turns_;   ///< the same: of the downshift's phase
   DeviceArray<float2> iq_;
   DeviceArray<float> envelope_;
 };

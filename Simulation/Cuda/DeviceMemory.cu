@@ -138,6 +138,36 @@ cudaStream_t deviceStream()
   return stream;
 }
 
+cudaStream_t besideStream()
+{
+  static const cudaStream_t stream = openStream();
+  return stream;
+}
+
+namespace {
+
+/// `later` goes on after all that `earlier` was asked for.
+cudaError_t follow(cudaStream_t later, cudaStream_t earlier)
+{
+  static cudaEvent_t event = nullptr; // one caller at a time, as all of the imager
+  cudaError_t error = event ? cudaSuccess : cudaEventCreateWithFlags(&event, cudaEventDisableTiming);
+  error = error ? error : cudaEventRecord(event, earlier);
+  return error ? error : cudaStreamWaitEvent(later, event);
+}
+
+} // namespace
+
+Beside::Beside(cudaStream_t stream)
+  : stream_(stream)
+{
+  check(follow(besideStream(), stream_), "computing");
+}
+
+Beside::~Beside()
+{
+  follow(stream_, besideStream()); // an error stays for the next call to find
+}
+
 cudaStream_t copyStream()
 {
   static const cudaStream_t stream = openStream();

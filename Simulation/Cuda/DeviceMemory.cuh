@@ -53,10 +53,25 @@ std::size_t sharedMemoryFor(Kernel kernel)
   return known[kernel] = std::size_t(most) - attributes.sharedSizeBytes;
 }
 
-/// The stream on which everything is computed, allocated and freed, in the order of the calls; and one for copies to
-/// the host beside it.
+/// The stream on which everything is computed, allocated and freed, in the order of the calls; one for what may be
+/// computed beside it (see Beside); and one for copies to the host.
 cudaStream_t deviceStream();
+cudaStream_t besideStream();
 cudaStream_t copyStream();
+
+/// While it lives, work may be asked for beside another stream, in memory that is there already. It begins after all
+/// that the other stream was asked for before, which goes on after it.
+class Beside
+{
+public:
+  explicit Beside(cudaStream_t stream);
+  ~Beside();
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+
+private:
+  cudaStream_t stream_;
+};
 
 /// Memory for what the device does from now on; free means when all that was asked for before is done. From a pool, so
 /// that both cost little. Throws Error naming the bytes when there is no room.

@@ -10,7 +10,8 @@ namespace sono {
 
 namespace {
 
-constexpr int launchWarps = 4096;              // few lines of many paths are cut into so many warps, to fill a device
+constexpr int launchWarps = 4096; // few lines of many paths are cut into so many warps, to fill a device
+constexpr int fewWarps = 2048;    // of a launch: all at once on a large device, however many registers they take
 constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
 constexpr double binsPerLaunch = 6.25e7;       // 1 GB of sums
 constexpr int fewPaths = 1024;                 // of a line: nothing is lost of their sums, so nothing need be folded
@@ -42,21 +43,30 @@ int ceilDiv(int a, int b)
   return (a + b - 1) / b;
 }
 
+std::size_t sharedBesideBins(const TraceView& view, int warps)
+{
+  return std::size_t(warps * warpLanes) * sizeof(StagedSegment) +
+         std::size_t(scrambleCount(view)) * sizeof(BounceScramble);
+}
+
 template<class Targets>
 void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
-  const std::size_t scrambleBytes = std::size_t(scrambleCount(launch.view)) * sizeof(BounceScramble);
-  const std::size_t bytes = scrambleBytes + (inShared ? blockWarps * launch.binCount * sizeof(float2) : 0);
-  const auto kernel = !inShared   ? tracePaths<false, true, Targets>
-                      : manyPaths ? tracePaths<true, true, Targets>
-                                  : tracePaths<true, false, Targets>;
+  const std::size_t bytes =
+    sharedBesideBins(launch.view, launch.warps) + (inShared ? launch.warps * launch.binCount * sizeof(float2) : 0);
+  const int blocks = launch.batches * launch.slices;
+  const bool few = lines * blocks * launch.warps <= fewWarps;
+  const auto kernel = !inShared   ? tracePaths<false, true, blocksOfMany, Targets>
+                      : manyPaths ? tracePaths<true, true, blocksOfMany, Targets>
+                      : few       ? tracePaths<true, false, blocksOfFew, Targets>
+                                  : tracePaths<true, false, blocksOfMany, Targets>;
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)), "preparing to trace");
   if (!launch.view.startsApart)
   {
     startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
   }
-  kernel<<<dim3(launch.batches * launch.slices, lines), blockPaths, bytes, stream>>>(launch);
-  const int parts = manyPaths ? launch.slices * blockWarps : launch.slices;
+  kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
+  const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
   check(cudaGetLastError(), "tracing");
 }
@@ -114,37 +124,35 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const int batches = std::min(batchCount, paths_);
   const int longest = ceilDiv(paths_, batches);
   // The cut depends on the job alone, and so does the result.
-  const int wanted = std::max(1, launchWarps / (blockWarps * std::max(1, batches * linesPerImage_)));
-  const int slices = std::max(1, std::min(wanted, ceilDiv(longest, blockPaths)));
-  const std::size_t scrambleBytes = std::size_t(scrambleCount(view_)) * sizeof(BounceScramble);
-  const std::size_t binBytes = blockWarps * bins * sizeof(float2);
-  const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, BvhTargets>));
-  const bool inShared = binBytes + scrambleBytes <= sharedLimit;
+  const int warps = std::min(blockWarps, ceilDiv(longest, warpLanes));
+  const int wanted = std::max(1, launchWarps / (warps * std::max(1, batches * linesPerImage_)));
+  const int slices = std::max(1, std::min(wanted, ceilDiv(longest, warps * warpLanes)));
+  const std::size_t binBytes = warps * bins * sizeof(float2);
+  const std::size_t sharedLimit =
+    std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, blocksOfMany, BvhTargets>));
+  const bool inShared = binBytes + sharedBesideBins(view_, warps) <= sharedLimit;
   const bool manyPaths = !inShared || paths_ > fewPaths;
-  const int parts = manyPaths ? slices * blockWarps : slices;
+  const int parts = manyPaths ? slices * warps : slices;
 
   starts_.resize(lineCount * sizeof(LineStart));
-  shared_.resize(lineCount * bins);
-  shared_.clear(stream);
+  shared_.resize(view_.startsApart ? 0 : lineCount * bins);
   intensity_.resize(lineCount * bins);
   error_.resize(lineCount * bins);
   attenuation_.resize(lineCount * bins);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
-  echo_.clear(stream);
-  if (manyPaths)
-  {
-    echoRest_.resize(echo_.size());
-    echoRest_.clear(stream);
-  }
+  echoRest_.resize(manyPaths ? echo_.size() : 0);
   segments_.resize(1);
-  segments_.clear(stream);
-
   const double partsOfLine = double(batches) * parts * double(bins);
   const double fitting = std::min(
     { 32768.0, bouncesPerLaunch / (double(paths_) * std::max(1, view_.maxCollisions)), binsPerLaunch / partsOfLine });
   const int perLaunch = std::max(1, std::min(count, int(fitting)));
   sums_.resize(std::size_t(perLaunch) * batches * parts * bins);
   bins_.resize(inShared ? 0 : sums_.size());
+  shared_.clear(stream);
+  echo_.clear(stream);
+  echoRest_.clear(stream);
+  segments_.clear(stream);
+
   for (int from = 0; from < count; from += perLaunch)
   {
     const int lines = std::min(perLaunch, count - from);
@@ -155,7 +163,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      { cells_, targets },
                      lines_.data() + first + from,
                      reinterpret_cast<LineStart*>(starts_.data()) + from,
-                     shared_.data() + skip * bins,
+                     view_.startsApart ? nullptr : shared_.data() + skip * bins,
                      sums_.data(),
                      bins_.data(),
                      intensity_.data() + skip * bins,
@@ -169,6 +177,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      paths_,
                      batches,
                      slices,
+                     warps,
                      binCount_,
                      binMm_,
                      frequencyMHz_,

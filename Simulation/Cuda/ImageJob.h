@@ -95,7 +95,6 @@ struct SightJob
 /// Procedural scatterers of a volume of tissues.
 struct TissueJob
 {
-  std::vector<Beam> beams;           ///< local mm of the volume
   SharedVector<std::uint8_t> voxels; ///< belong to the scene where it made the job, which it must outlive
   std::uint64_t sceneId = 0;         ///< the voxels are kept on the device while it is the same
   Vec3i size{ 0 };
@@ -109,7 +108,6 @@ struct TissueJob
 /// Nested scatterers of a volume of tissues (see NestedScatterers).
 struct NestedJob
 {
-  std::vector<Beam> beams;           ///< local mm of the volume
   SharedVector<std::uint8_t> voxels; ///< belong to the scene where it made the job, which it must outlive
   std::uint64_t sceneId = 0;         ///< the voxels and fibres are kept on the device while it is the same
   Vec3i size{ 0 };
@@ -145,7 +143,6 @@ struct TargetPointJob
 /// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
 struct SurfaceJob
 {
-  std::vector<Beam> beams;               ///< local mm of the volume
   const SurfacePieces* pieces = nullptr; ///< belong to the scene, which the job must not outlive
   std::vector<int> blocks;               ///< of theirs, that a beam may see
   std::uint64_t sceneId = 0;             ///< the pieces are kept on the device while it is the same
@@ -193,6 +190,7 @@ struct EchoJob
   std::optional<Downshift> downshift; ///< nothing where attenuation leaves the frequency alone
   std::vector<float> boundaryLevel;   ///< of each sample; empty: 1
   BeamJob beam;
+  std::vector<Beam> sceneBeams;       ///< of the lines, local mm of the scene's volume; empty without a scene
   std::optional<TissueJob> tissues;   ///< of Amadou2024
   std::optional<NestedJob> nested;    ///< of Acoustic
   std::optional<SurfaceJob> surfaces; ///< the same

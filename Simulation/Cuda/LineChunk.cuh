@@ -25,8 +25,26 @@ struct ShortSums
       value_[i] = 0;
     }
   }
+  __device__ int samples() const { return chunkSamples; }
   __device__ void add(int i, float value) { atomicAdd(value_ + i, __float2int_rn(value)); }
   __device__ float value(int i, float perUnit) const { return float(value_[i]) * perUnit; }
+};
+
+/// The same of any number of samples, in a block's dynamic shared memory.
+struct WindowSums
+{
+  int* value_;
+  int samples_;
+
+  __device__ void clear()
+  {
+    for (int i = threadIdx.x; i < 2 * samples_; i += blockDim.x)
+    {
+      value_[i] = 0;
+    }
+  }
+  __device__ int samples() const { return samples_; }
+  __device__ void add(int i, float value) { atomicAdd(value_ + i, __float2int_rn(value)); }
 };
 
 /// The same for any number of amplitudes, each below 2^31 units: 64 bits in two halves, each added to by a native
@@ -44,6 +62,7 @@ struct LongSums
       high[i] = 0u;
     }
   }
+  __device__ int samples() const { return chunkSamples; }
   __device__ void add(int i, float value)
   {
     const int v = __float2int_rn(value);
@@ -60,12 +79,12 @@ struct LongSums
   }
 };
 
-/// Adds a scatterer to the sums of a chunk that begins at sample `first`.
+/// Adds a scatterer to sums that begin at sample `first`.
 template<class Sums>
 __device__ void addScatterer(Sums& sums, const ScattererSplit& split, int first, float scale)
 {
   const int at = 2 * (int(split.sample) - first);
-  if (at >= 0 && at + 3 < 2 * chunkSamples)
+  if (at >= 0 && at + 3 < 2 * sums.samples())
   {
 #pragma unroll
     for (int c = 0; c < 4; ++c)
@@ -76,7 +95,7 @@ __device__ void addScatterer(Sums& sums, const ScattererSplit& split, int first,
   }
   for (int c = 0; c < 4; ++c)
   {
-    if (at + c >= 0 && at + c < 2 * chunkSamples)
+    if (at + c >= 0 && at + c < 2 * sums.samples())
     {
       sums.add(at + c, split.added[c] * scale);
     }

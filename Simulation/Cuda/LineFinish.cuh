@@ -9,7 +9,9 @@ namespace sono {
 
 struct FinishLaunch
 {
-  const float2* sum;       // or null: no scatterers
+  const float2* sum; // or null: no scatterers but nested ones
+  const int* nested; // (re, im) of those; or null
+  float nestedPerUnit;
   const EchoSum* surfaces; // (re, im) of surfaces, intensity included; or null
   float surfacePerUnit;
   TracedOnDevice traced;
@@ -65,7 +67,7 @@ __device__ inline float exponentAt(const FinishLaunch& launch, const float* bins
   return shiftingExponent(launch.downshift, valueAt(bins, binPlace(launch, s)));
 }
 
-constexpr int turnThreads = 256;
+constexpr int turnThreads = 1024;
 
 /// A block adds up the turns of the downshift's phase along a line, whole ones left out; each thread has neighbouring
 /// samples.
@@ -117,6 +119,11 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   if (launch.sum)
   {
     v = launch.sum[at];
+  }
+  if (launch.nested)
+  {
+    v.x += float(launch.nested[2 * at]) * launch.nestedPerUnit;
+    v.y += float(launch.nested[2 * at + 1]) * launch.nestedPerUnit;
   }
   const TracedOnDevice& traced = launch.traced;
   if (traced.intensity)
@@ -188,6 +195,7 @@ __global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch laun
     windowRe[j + 1] = re[padded(base + j)];
     windowIm[j + 1] = im[padded(base + j)];
   }
+#pragma unroll outputsOfThread
   for (int k = 0; k < taps; ++k)
   {
 #pragma unroll

@@ -66,6 +66,20 @@ Beam forDevice(Beam beam)
   return beam;
 }
 
+std::vector<Beam> makeSceneBeams(const EchoSetup& setup)
+{
+  constexpr int together = 128;
+  std::vector<Beam> beams(setup.lines.size());
+  const int count = int(beams.size());
+  parallelFor((count + together - 1) / together, {}, [&](int group) {
+    for (int l = group * together; l < std::min(count, (group + 1) * together); ++l)
+    {
+      beams[std::size_t(l)] = setup.sceneBeam(l);
+    }
+  });
+  return beams;
+}
+
 SightJob makeSight(const FieldSight& sight)
 {
   SightJob job;
@@ -80,10 +94,6 @@ TissueJob makeTissues(const EchoSetup& setup)
 {
   const Scene& scene = *setup.sources.scene;
   TissueJob job;
-  for (std::size_t l = 0; l < setup.lines.size(); ++l)
-  {
-    job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
-  }
   job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
   job.sceneId = scene.id();
   job.size = scene.placement().size;
@@ -102,10 +112,6 @@ NestedJob makeNested(const EchoSetup& setup)
 {
   const Scene& scene = *setup.sources.scene;
   NestedJob job;
-  for (std::size_t l = 0; l < setup.lines.size(); ++l)
-  {
-    job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
-  }
   job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
   job.sceneId = scene.id();
   job.size = scene.placement().size;
@@ -145,7 +151,7 @@ float widestGapMm(const std::vector<BeamReach>& beams)
 
 /// The blocks of pieces that some beam may see; their pieces are made where they are not there yet. Blocks are much
 /// larger than what lies between neighbouring lines: some of the lines tell.
-std::vector<int> seenBlocks(const EchoSetup& setup)
+std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sceneBeams)
 {
   constexpr int groupLines = 8;
   constexpr int every = 4;
@@ -156,8 +162,8 @@ std::vector<int> seenBlocks(const EchoSetup& setup)
   const auto beamsOf = [&](int step) {
     std::vector<BeamReach> beams;
     const auto add = [&](int l) {
-      beams.push_back(
-        { setup.sceneBeam(l), setup.finisher.reachMm(l), nullptr, setup.beams.reachTable(), setup.beams.arraySight() });
+      beams.push_back({ sceneBeams[std::size_t(l)], setup.finisher.reachMm(l), nullptr, setup.beams.reachTable(),
+                        setup.beams.arraySight() });
     };
     for (int l = 0; l < lineCount - 1; l += step)
     {
@@ -233,16 +239,12 @@ TargetPointJob makeTargetPoints(const TargetPieces& targets)
   return job;
 }
 
-SurfaceJob makeSurfaces(const EchoSetup& setup)
+SurfaceJob makeSurfaces(const EchoSetup& setup, const std::vector<Beam>& sceneBeams)
 {
   const SurfaceEchoes& surfaces = *setup.surfaces;
   SurfaceJob job;
-  for (std::size_t l = 0; l < setup.lines.size(); ++l)
-  {
-    job.beams.push_back(forDevice(setup.sceneBeam(int(l))));
-  }
   job.pieces = &surfaces.pieces();
-  job.blocks = seenBlocks(setup);
+  job.blocks = seenBlocks(setup, sceneBeams);
   job.sceneId = setup.sources.scene->id();
   job.longestStepMm = surfaces.longestStepMm();
   job.nets = surfaces.nets();
@@ -326,6 +328,10 @@ EchoJob makeEchoJob(const EchoSetup& setup)
     job.downshift = pulseDownshift(setup.settings);
   }
   job.beam = makeBeam(setup);
+  if (setup.sources.scene)
+  {
+    job.sceneBeams = makeSceneBeams(setup);
+  }
   if (setup.level)
   {
     for (int s = 0; s < job.sumCount; ++s)
@@ -344,12 +350,13 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   }
   if (setup.surfaces)
   {
-    job.surfaces = makeSurfaces(setup);
+    job.surfaces = makeSurfaces(setup, job.sceneBeams);
     if (job.surfaces->blocks.empty() && !job.surfaces->targets)
     {
       job.surfaces.reset();
     }
   }
+  std::transform(job.sceneBeams.begin(), job.sceneBeams.end(), job.sceneBeams.begin(), forDevice);
   if (setup.sources.points && setup.sources.points->count() > 0)
   {
     job.points = makePoints(setup);

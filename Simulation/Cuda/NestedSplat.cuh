@@ -9,10 +9,22 @@
 
 namespace sono {
 
+/// A level in use.
+struct NestedLevel
+{
+  BeamSightView sight;     // of a field
+  const BeamPiece* pieces; // of each chunk
+  int level;
+  float fromMm; // between which bricks of the level may be taken
+  float toMm;
+};
+
 struct NestedLaunch
 {
   SplatLaunch splat;
   TracedOnDevice traced;
+  NestedLevel levels[nestedLevels];
+  int* sums; // lines x sumCount x (re, im)
   const std::uint8_t* voxels;
   Vec3i size;
   Vec3f perMm;
@@ -22,21 +34,34 @@ struct NestedLaunch
   FibreView fibres;
   DensityView density;
   std::uint64_t seed;
-  int level;
-  float fromMm; // between which bricks of the level may be taken
-  float toMm;
 };
 
-/// A block adds what the bricks of one level echo into a chunk of a line. Lanes of a warp look at rows of bricks, then
-/// at their bricks, then at the bricks' candidates, each time as many at once as there are.
+/// How far what a brick of a level holds may lie in front of its middle or behind it, mm.
+SONO_HD inline float nestedHaloMm(int level)
+{
+  return 0.8660254f * nestedCellMm(level) * float(nestedBrickCells);
+}
+
+/// Samples of the window that the bricks of a chunk of a line echo into. An array's echo from the range: they are asked
+/// for by every chunk.
+SONO_HD inline int nestedHaloSamples(BeamKind kind, int level, float samplesPerMm)
+{
+  return kind == BeamKind::Array ? 0 : int(nestedHaloMm(level) * samplesPerMm) + 2;
+}
+
+/// A block adds what the bricks of one level whose middles lie in a chunk of a line echo. Lanes of a warp look at rows
+/// of bricks, then at their bricks, then at the bricks' candidates, each time as many at once as there are.
 template<BeamKind kind>
 __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch launch)
 {
-  __shared__ ShortSums sums;
+  extern __shared__ int window[];
   __shared__ NestedMedium media[256];
   __shared__ float fibreScale[256];
   __shared__ BeamTables tables;
-  const SplatLaunch& splat = launch.splat;
+  const NestedLevel& own = launch.levels[blockIdx.z];
+  SplatLaunch splat = launch.splat;
+  splat.sight = own.sight;
+  splat.pieces = own.pieces;
   const Chunk chunk = chunkOf(splat);
   const Beam beam = wholeBeam(splat, chunk.line, tables);
   const float deepestMm = float(splat.sumCount) * splat.sampleMm;
@@ -48,8 +73,9 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     piece.lateralMm *= nestedReach;
     piece.elevationalMm *= nestedReach;
   }
-  piece.fromMm = fmaxf(piece.fromMm, launch.fromMm);
-  piece.toMm = fminf(piece.toMm, fminf(launch.toMm, litToMm));
+  piece.fromMm = fmaxf(piece.fromMm, own.fromMm);
+  // The middle of a brick whose front is lit may lie in the dark.
+  piece.toMm = fminf(piece.toMm, fminf(own.toMm, litToMm + nestedHaloMm(own.level)));
   if (!(piece.fromMm < piece.toMm))
   {
     return; // all of the block
@@ -59,15 +85,24 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     media[m] = launch.media[m];
     fibreScale[m] = launch.fibreScale[m];
   }
+  const int halo = nestedHaloSamples(kind, own.level, splat.grid.samplesPerMm);
+  Chunk seen = chunk; // with all that its bricks hold
+  seen.first = chunk.first - halo;
+  seen.count = chunk.count + 2 * halo;
+  WindowSums sums{ window, seen.count };
   sums.clear();
   __syncthreads();
 
-  const float brickMm = nestedCellMm(launch.level) * float(nestedBrickCells);
+  const float brickMm = nestedCellMm(own.level) * float(nestedBrickCells);
   const BrickSight<kind> sight(splat, beam, brickMm);
-  const Vec2f halfMm = nestedHalfExtent(beam, launch.level);
+  const Vec2f halfMm = nestedHalfExtent(beam, own.level);
+  const bool isFirst = chunk.first == 0;
+  const bool isLast = chunk.first + chunk.count == splat.sumCount;
+  const float firstMm = float(chunk.first) * splat.sampleMm;
+  const float endMm = float(chunk.first + chunk.count) * splat.sampleMm;
   const auto shareOf = [&](const Vec3i& brick) {
     const NestedShare none{ 0, 0, 0.0f, 0.0f };
-    const Vec3f centre = nestedBrickCentre(brick, launch.level);
+    const Vec3f centre = nestedBrickCentre(brick, own.level);
     const Vec3f end = launch.extentMm + 0.5f * brickMm;
     const bool isInside =
       brick.x >= 0 && brick.y >= 0 && brick.z >= 0 && centre.x < end.x && centre.y < end.y && centre.z < end.z;
@@ -75,26 +110,25 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     {
       return none;
     }
-    // An array echoes from the range.
-    if (kind != BeamKind::Array && !(sight.isBelow(centre, chunk.fromMm) && sight.isAbove(centre, chunk.toMm)))
-    {
-      return none;
-    }
-    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, launch.level + 1);
-    const float depthMm = glm::dot(centre - beam.origin, beam.axis);
-    if (!launch.density.takes(launch.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
-    {
-      return none;
-    }
     const Vec3f q = centre - beam.origin;
+    const float depthMm = glm::dot(q, beam.axis);
+    if (kind != BeamKind::Array && !((isFirst || depthMm >= firstMm) && (isLast || depthMm < endMm)))
+    {
+      return none;
+    }
+    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, own.level + 1);
+    if (!launch.density.takes(own.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
+    {
+      return none;
+    }
     return relativeWeight(beam, q, depthMm, halfMm) >= nestedLeastWeight
-             ? launch.density.share(launch.level, depthMm, relativeWeight(beam, q, depthMm))
+             ? launch.density.share(own.level, depthMm, relativeWeight(beam, q, depthMm))
              : none;
   };
   const auto splatCandidate = [&](const NestedCell& brick, float scale, int number) {
-    const NestedCandidate c = nestedCandidate(nestedFinestCell(brick, launch.level, number));
+    const NestedCandidate c = nestedCandidate(nestedFinestCell(brick, own.level, number));
     const Vec3f p = c.positionMm;
-    const SeenEcho<kind> echo = seenEcho<kind>(splat, beam, chunk, placeInBeam(p.x, p.y, p.z, beam, splat.grid));
+    const SeenEcho<kind> echo = seenEcho<kind>(splat, beam, seen, placeInBeam(p.x, p.y, p.z, beam, splat.grid));
     if (isZero(echo.weight))
     {
       return;
@@ -119,18 +153,18 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
       const float cosine = glm::dot(launch.fibres.at(voxel), beam.axis) * fibreScale[tissue];
       amplitude *= expNegative(-cosine * cosine);
     }
-    addScatterer(sums, splitScatterer(times(echo.weight, amplitude), echo.position, splat.grid), chunk.first,
+    addScatterer(sums, splitScatterer(times(echo.weight, amplitude), echo.position, splat.grid), seen.first,
                  splat.scale);
   };
 
   const CellRows bricks(beam, piece, brickMm, Vec3f(0.0f), launch.extentMm);
-  forCells(bricks, [&](bool exists, const Vec3i& own) {
-    const NestedShare share = exists ? shareOf(own) : NestedShare{ 0, 0, 0.0f, 0.0f };
-    const std::uint32_t ownHash = share.count > 0 ? nestedBrickHash(launch.seed, own, launch.level) : 0u;
+  forCells(bricks, [&](bool exists, const Vec3i& lanes) {
+    const NestedShare share = exists ? shareOf(lanes) : NestedShare{ 0, 0, 0.0f, 0.0f };
+    const std::uint32_t lanesHash = share.count > 0 ? nestedBrickHash(launch.seed, lanes, own.level) : 0u;
     forItemsOfWarp(share.count, [&](int owner, int number) {
-      const NestedCell brick{ { __shfl_sync(allLanes, own.x, owner), __shfl_sync(allLanes, own.y, owner),
-                                __shfl_sync(allLanes, own.z, owner) },
-                              __shfl_sync(allLanes, ownHash, owner) };
+      const NestedCell brick{ { __shfl_sync(allLanes, lanes.x, owner), __shfl_sync(allLanes, lanes.y, owner),
+                                __shfl_sync(allLanes, lanes.z, owner) },
+                              __shfl_sync(allLanes, lanesHash, owner) };
       const NestedShare part{ 0, __shfl_sync(allLanes, share.whole, owner), __shfl_sync(allLanes, share.last, owner),
                               __shfl_sync(allLanes, share.scale, owner) };
       if (owner >= 0)
@@ -140,7 +174,16 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     });
   });
   __syncthreads();
-  writeChunk(splat, chunk, sums, true);
+  int* to = launch.sums + 2 * std::size_t(chunk.line) * splat.sumCount;
+  for (int i = threadIdx.x; i < 2 * sums.samples(); i += blockThreads)
+  {
+    const int sample = seen.first + i / 2;
+    const int value = window[i];
+    if (value != 0 && sample >= 0 && sample < splat.sumCount)
+    {
+      atomicAdd(to + 2 * seen.first + i, value);
+    }
+  }
 }
 
 } // namespace sono

@@ -170,11 +170,6 @@ public:
   {
     return glm::dot(centre - beam_.origin, beam_.axis) < depthMm + axial_;
   }
-  /// Whether it ends below one.
-  __device__ bool isBelow(const Vec3f& centre, float depthMm) const
-  {
-    return glm::dot(centre - beam_.origin, beam_.axis) > depthMm - axial_;
-  }
   __device__ bool meets(const Vec3f& centre) const
   {
     if (kind != BeamKind::Field && kind != BeamKind::Array)

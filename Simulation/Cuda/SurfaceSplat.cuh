@@ -31,8 +31,9 @@ struct LineSurfaceSum
   SONO_HD void add([[maybe_unused]] int sample, [[maybe_unused]] float re, [[maybe_unused]] float im)
   {
 #if defined(__CUDA_ARCH__)
-    atomicAdd(sums + 2 * sample, EchoSum(__float2ll_rn(re * scale)));
-    atomicAdd(sums + 2 * sample + 1, EchoSum(__float2ll_rn(im * scale)));
+    // One value fits into 32 bits, which are made faster.
+    atomicAdd(sums + 2 * sample, EchoSum((long long)(__float2int_rn(re * scale))));
+    atomicAdd(sums + 2 * sample + 1, EchoSum((long long)(__float2int_rn(im * scale))));
 #endif
   }
 };
@@ -129,14 +130,23 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
   }
   LineSurfaceSum sum{ launch.sums + 2 * std::size_t(line) * splat.sumCount, splat.scale };
 
+  const int lane = int(threadIdx.x) % warpLanes;
+  const int warp = int(threadIdx.x) / warpLanes;
+
+  const SurfaceHearing nothing{ 0.0f, 0.0f, false, false };
   const auto hear = [&](int p) {
     if constexpr (arePieces)
     {
       const SurfacePiece& item = set.pieces[p];
+      const int row = surfaceRow(set.media, item.below, item.above);
+      if (!mayFaceSurface(fromAlong(item.axis, 1.0f, -item.slopeU, -item.slopeV), row, beam, set.table))
+      {
+        return nothing;
+      }
       const PieceBounds bounds = pieceBounds(item, set.longestStepMm);
       const bool isCoarse = set.nets.isCoarsest(set.nets.coherentCuts(item));
-      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse,
-                         surfaceRow(set.media, item.below, item.above), beam, splat.grid, set.table, intensity);
+      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse, row, beam, splat.grid, set.table,
+                         intensity);
     }
     else
     {
@@ -174,16 +184,16 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       addCoherent(set.points[heard.item], beam, splat.grid, set.table, heard.hearing, sum);
     }
   };
-  // Pieces have different numbers of points: a warp shares out those of 32 pieces evenly.
+  // Pieces have different numbers of points: warps take turns with the pieces, and a warp shares out the points of its
+  // own evenly.
   const auto addPoints = [&](const HeardPieces& heard, const auto& points, const auto& add) {
-    const int lane = int(threadIdx.x) % warpLanes;
-    for (int first = int(threadIdx.x) - lane; first < heard.count; first += surfaceThreads)
+    for (int first = warp; first < heard.count; first += surfaceThreads)
     {
-      const int n = first + lane;
+      const int n = first + lane * warps;
       forItemsOfWarp(n < heard.count ? points(heard.items[n].item) : 0, [&](int owner, int number) {
         if (owner >= 0)
         {
-          add(heard.items[first + owner], number);
+          add(heard.items[first + owner * warps], number);
         }
       });
     }
@@ -191,8 +201,6 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
 
   // The block looks at groups until enough pieces are heard, then all its threads work on those.
   const GroupSight<kind> sight(launch, beam, litToMm + surfaceCrossingMm + set.marginMm);
-  const int lane = int(threadIdx.x) % warpLanes;
-  const int warp = int(threadIdx.x) / warpLanes;
   // Neighbouring groups go to different warps: lines hear them together.
   const int stride = int(gridDim.y) * warps;
   int base = int(blockIdx.y) * warps + warp - stride * warpLanes;
@@ -220,7 +228,7 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       near &= near - 1u;
       ++looked;
       const int p = group.first + lane;
-      const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, 0.0f, false, false };
+      const SurfaceHearing heard = lane < group.count ? hear(p) : nothing;
       diffuse.push(heard.diffuse, { p, heard });
       coherent.push(heard.coherent, { p, heard });
     }

@@ -15,8 +15,10 @@ namespace sono {
 
 constexpr int blockWarps = 4;
 constexpr int blockPaths = blockWarps * warpLanes;
-constexpr int blocksAtOnce =
-  8; // on a multiprocessor, where more bins do not fit: all of an image's warps at once, worth some spilled registers
+// Blocks of 128 threads on a multiprocessor for which registers are shared out. With many warps it is worth some
+// spilled registers to have eight, for the bins of more do not fit; few warps are faster with all they can use.
+constexpr int blocksOfMany = 8;
+constexpr int blocksOfFew = 4;
 constexpr unsigned allLanes = 0xffffffffu;
 constexpr int restBits = 28; // of what rounding leaves of an echo
 
@@ -28,9 +30,10 @@ struct TraceLaunch
   CellSpace<Targets, RowCells> space;
   const TraceLine* lines; // of the launch
   LineStart* starts;      // where paths do not start apart
-  float2* shared; // what all paths of a line leave: lines x bins; as all bins, the intensity and what is absorbed of it
-  double2* sums;  // of parts of batches: lines x batches x parts x bins
-  float2* bins;   // of the warps, where they do not lie in shared memory
+  float2* shared; // what all paths of a line leave: lines x bins; as all bins, the intensity and what is absorbed of
+                  // it; null: nothing
+  double2* sums; // of parts of batches: lines x batches x parts x bins
+  float2* bins;  // of the warps, where they do not lie in shared memory
   float* intensity;
   float* error;
   float* attenuation;
@@ -42,6 +45,7 @@ struct TraceLaunch
   int paths;
   int batches;
   int slices; // of a batch, each traced by one block
+  int warps;  // of a block: no more than have paths
   int binCount;
   float binMm;
   double frequencyMHz;
@@ -194,22 +198,23 @@ __device__ inline void foldBins(int binCount, int lane, float2* bins, double2* s
 /// is added to the warp's bins by all its lanes, one segment after the other. As on the CPU (LineTally), a long sum of
 /// floats would lose its last digits: where there are many paths, warps fold their bins into doubles of their own,
 /// which are added up in the end, and keep what rounding leaves of echoes. No sum depends on which warp is first.
-template<bool BinsInShared, bool ManyPaths, class Targets>
-__global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaunch<Targets> launch)
+template<bool BinsInShared, bool ManyPaths, int Blocks, class Targets>
+__global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Targets> launch)
 {
   extern __shared__ float2 dynamic[];
-  __shared__ StagedSegment staged[blockWarps][warpLanes];
   const int slice = blockIdx.x % launch.slices;
   const int batch = blockIdx.x / launch.slices;
   const int line = blockIdx.y;
   const int lane = threadIdx.x % warpLanes;
   const int warp = threadIdx.x / warpLanes;
 
-  // Bins of the block's warps, then the batch's scrambles.
-  const int slots = BinsInShared ? blockWarps : 0;
-  auto* scrambles = reinterpret_cast<BounceScramble*>(dynamic + std::size_t(slots) * launch.binCount);
+  // Bins of the block's warps, then their segments, then the batch's scrambles.
+  const int slots = BinsInShared ? launch.warps : 0;
+  auto* segmentsOfWarps = reinterpret_cast<StagedSegment*>(dynamic + std::size_t(slots) * launch.binCount);
+  auto* scrambles = reinterpret_cast<BounceScramble*>(segmentsOfWarps + launch.warps * warpLanes);
+  StagedSegment* staged = segmentsOfWarps + warp * warpLanes;
   const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
-  const std::size_t warpRow = (row * blockWarps + warp) * launch.binCount;
+  const std::size_t warpRow = (row * launch.warps + warp) * launch.binCount;
   float2* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
   for (int b = lane; b < launch.binCount; b += warpLanes)
   {
@@ -220,7 +225,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     }
   }
   const std::uint32_t lineKey = launch.keyOf(line);
-  for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockPaths)
+  for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
     scrambles[b] = makeScramble(launch.view, lineKey, std::uint32_t(batch), b);
   }
@@ -228,10 +233,11 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
 
   const PathRange range = batchRange(launch.paths, launch.batches, batch);
   const int end = range.last - range.first;
-  const int step = launch.slices * blockPaths;
+  const int step = launch.slices * int(blockDim.x);
   TraceLine beam = launch.lines[line];
-  LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, beam, staged[warp][lane]);
-  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * blockPaths + int(threadIdx.x) - step), scrambles };
+  LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, beam, staged[lane]);
+  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * int(blockDim.x) + int(threadIdx.x) - step),
+               scrambles };
   PathState path;
   bool walks = false;
   bool active = launch.view.startsApart || launch.starts[line].meets; // until the lane has no more paths
@@ -255,7 +261,7 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     untilFold -= __popc(waiting);
     for (; waiting; waiting &= waiting - 1)
     {
-      depositByWarp(staged[warp][__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
+      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
     }
     if (ManyPaths && untilFold <= 0)
     {
@@ -279,10 +285,10 @@ __global__ void __launch_bounds__(blockPaths, blocksAtOnce) tracePaths(TraceLaun
     return;
   }
   __syncthreads();
-  for (int b = threadIdx.x; b < launch.binCount; b += blockPaths)
+  for (int b = threadIdx.x; b < launch.binCount; b += blockDim.x)
   {
     double2 sum{ 0.0, 0.0 };
-    for (int g = 0; g < blockWarps; ++g)
+    for (int g = 0; g < launch.warps; ++g)
     {
       const float2 bin = dynamic[std::size_t(g) * launch.binCount + b];
       sum.x += double(bin.x);
@@ -310,10 +316,11 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   }
   const std::size_t at = std::size_t(line) * launch.binCount + b;
   launch.error[at] = 0.0f;
-  launch.intensity[at] = launch.shared[at].x;
+  const float2 shared = launch.shared ? launch.shared[at] : float2{ 0.0f, 0.0f };
+  launch.intensity[at] = shared.x;
   if (!launch.view.startsApart && !launch.starts[line].meets)
   {
-    launch.attenuation[at] = attenuationOf(launch.shared[at].x, double(launch.shared[at].y), launch.frequencyMHz);
+    launch.attenuation[at] = attenuationOf(shared.x, double(shared.y), launch.frequencyMHz);
     return;
   }
   double means[batchCount];
@@ -341,8 +348,7 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
     spread += (means[batch] - mean) * (means[batch] - mean);
   }
   launch.intensity[at] += float(mean);
-  launch.attenuation[at] =
-    attenuationOf(launch.intensity[at], double(launch.shared[at].y) + absorbed, launch.frequencyMHz);
+  launch.attenuation[at] = attenuationOf(launch.intensity[at], double(shared.y) + absorbed, launch.frequencyMHz);
   launch.error[at] = launch.batches > 1 ? float(sqrt(spread / (double(launch.batches) * (launch.batches - 1)))) : 0.0f;
 }
 

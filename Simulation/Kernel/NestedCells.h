@@ -110,13 +110,23 @@ struct NestedCell
 /// The cell of level 0 that holds candidate `number` of a brick, 0 to 63.
 SONO_HD inline NestedCell nestedFinestCell(const NestedCell& brick, int level, int number)
 {
-  NestedCell c = brick.child(childOfRank(brick.hash, std::uint32_t(number & 7)));
-  c = c.child(childOfRank(c.hash, std::uint32_t(number >> 3)));
-  for (; level > 0; --level)
+  static_assert(nestedLevels + 2 <= 10, "the way down takes a bit of each coordinate, and ten of them a word's third");
+  std::uint32_t hash = brick.hash;
+  std::uint32_t way = 0u; // x from bit 0 on, y from bit 10, z from bit 20
+  const auto descend = [&](std::uint32_t child) {
+    way = 2u * way + ((child * 0x40201u) & 0x100401u);
+    hash = nestedDescend(hash, child);
+  };
+  descend(childOfRank(hash, std::uint32_t(number & 7)));
+  descend(childOfRank(hash, std::uint32_t(number >> 3)));
+  for (int l = level; l > 0; --l)
   {
-    c = c.child(chosenChild(c.hash));
+    descend(chosenChild(hash));
   }
-  return c;
+  const int scale = 4 << level;
+  return { { brick.cell.x * scale + int(way & 1023u), brick.cell.y * scale + int((way >> 10) & 1023u),
+             brick.cell.z * scale + int(way >> 20) },
+           hash };
 }
 
 /// What the scatterers of a tissue are: all of one strength, there with `probability`.

@@ -1,0 +1,405 @@
+#include "Cuda/DeviceEcho.cuh"
+
+#include "Cuda/SplatKernels.cuh"
+
+#include <algorithm>
+#include <cmath>
+
+// What a job brings to the device: only what is not there already.
+
+namespace sono {
+
+namespace {
+
+/// An ellipse around a rectangle is so much larger.
+constexpr float aroundRectangle = 1.4143f;
+
+/// Sets what an array's beam sees of a chunk whose echoes come from ranges between the piece's two depths: whole bricks
+/// (their diagonal is `brickMm` long), and depths that are less than the range to the side. Lines are up to `widening`
+/// times wider than straight ahead.
+void widenByRange(const BeamReachTable& reach, float brickMm, const Vec2f& widening, BeamPiece& piece)
+{
+  const int last = int(reach.lateralMm.size()) - 1;
+  const int to = std::clamp(int((piece.toMm + brickMm) / reach.stepMm), 0, last);
+  const float firstMm = piece.fromMm;
+  Vec2f widest(0.0f);
+  for (int n = to; n >= 0; --n)
+  {
+    const Vec2f seen(reach.lateralMm[std::size_t(n)] + brickMm, reach.elevationalMm[std::size_t(n)] + brickMm);
+    // What a brick in this step shows may lie a brick deeper.
+    const float deepestMm = n == last ? piece.toMm : float(n + 1) * reach.stepMm + brickMm;
+    if (glm::length(Vec3f(seen * widening, deepestMm)) >= firstMm)
+    {
+      widest = glm::max(widest, seen);
+      piece.fromMm = std::min(piece.fromMm, float(n) * reach.stepMm - brickMm);
+    }
+  }
+  piece.lateralMm = aroundRectangle * widest.x;
+  piece.elevationalMm = aroundRectangle * widest.y;
+}
+
+/// The unit of 64-bit sums: the largest single amplitude becomes 2^30, which leaves room for 2^32 of them.
+float scaleFor(float largest)
+{
+  return largest > 0.0f ? std::ldexp(1.0f, 30 - std::ilogb(largest)) : 1.0f;
+}
+
+} // namespace
+
+/// The table of the beam's kind, kept on the device while it is the same.
+void DeviceEcho::uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  kind_ = job.kind;
+  reach_ = job.reach;
+  if (job.field)
+  {
+    if (fieldSource_ != job.field->values)
+    {
+      fieldSource_ = nullptr; // stays so when the upload fails
+      fieldValues_.upload(*job.field->values, stream, traffic);
+      fieldSource_ = job.field->values;
+    }
+    field_ = job.field->view;
+    field_.values = fieldValues_.data();
+  }
+  if (job.array)
+  {
+    if (arraySource_ != job.array->field)
+    {
+      arraySource_ = nullptr;
+      arrayLateral_.upload(job.array->field->lateral(), stream, traffic);
+      arrayElevational_.upload(job.array->field->elevational(), stream, traffic);
+      sightLateral_.upload(job.array->sight->lateral(), stream, traffic);
+      sightElevational_.upload(job.array->sight->elevational(), stream, traffic);
+      arraySource_ = job.array->field;
+    }
+    array_ = job.array->field->view(arrayLateral_.data(), arrayElevational_.data());
+    arraySight_ = job.array->sight->view(sightLateral_.data(), sightElevational_.data());
+  }
+}
+
+void DeviceEcho::uploadFieldSight(const std::optional<SightJob>& job, Sight& sight, cudaStream_t stream,
+                                  Traffic& traffic)
+{
+  if (job)
+  {
+    sight.seen.upload(job->seen, stream, traffic);
+    sight.view = job->view;
+    sight.view.seen = sight.seen.data();
+  }
+}
+
+/// Of each chunk the ellipse around the axis that holds all that a beam straight ahead sees.
+void DeviceEcho::uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm,
+                             Sight& sight, cudaStream_t stream, Traffic& traffic)
+{
+  sigmas_ = Vec2f(beams.front().lateralSigmaMm, beams.front().elevationalSigmaMm);
+  uploadFieldSight(job, sight, stream, traffic);
+  Vec2f widening(1.0f);
+  for (const Beam& beam : beams)
+  {
+    widening = kind_ == BeamKind::Array ? glm::max(widening, 1.0f / Vec2f(beam.lateralCosine, beam.elevationalCosine))
+                                        : widening;
+  }
+  std::vector<BeamPiece> pieces;
+  for (int c = 0; c < chunks(); ++c)
+  {
+    const int last = std::min((c + 1) * chunkSamples, sumCount_);
+    BeamPiece piece{ float((c * chunkSamples - 1) * sampleMm_), float(last * sampleMm_), 0.0f, 0.0f };
+    Vec2f halfAxes = beamCutSigma * sigmas_;
+    if (job)
+    {
+      halfAxes = aroundRectangle * Vec2f(job->lateralMm, job->elevationalMm);
+    }
+    else if (reach_)
+    {
+      halfAxes = reach_->widest(piece.fromMm, piece.toMm);
+    }
+    piece.lateralMm = halfAxes.x;
+    piece.elevationalMm = halfAxes.y;
+    if (kind_ == BeamKind::Array)
+    {
+      widenByRange(*reach_, std::sqrt(3.0f) * brickMm, widening, piece);
+    }
+    pieces.push_back(piece);
+  }
+  sight.pieces.upload(pieces, stream, traffic);
+}
+
+void DeviceEcho::uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
+                              Traffic& traffic)
+{
+  if (sceneId_ != sceneId)
+  {
+    sceneId_ = 0; // stays so when the upload fails
+    voxels_.upload(voxels, stream, traffic);
+    sceneId_ = sceneId;
+  }
+}
+
+void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, const std::vector<Beam>& sceneBeams,
+                              cudaStream_t stream, Traffic& traffic)
+{
+  uploadVoxels(*job.voxels, job.sceneId, stream, traffic);
+  if (job.fibres && fibresSceneId_ != job.sceneId)
+  {
+    fibresSceneId_ = 0; // stays so when the upload fails
+    fibreWords_.upload(job.fibres->packed(), stream, traffic);
+    fibresSceneId_ = job.sceneId;
+  }
+  fibres_ = job.fibres ? job.fibres->view() : FibreView{};
+  fibres_.packed = job.fibres ? fibreWords_.data() : nullptr;
+  nestedMedia_.upload(job.media.data(), job.media.size(), stream, traffic);
+  fibreScale_.upload(job.fibreScale.data(), job.fibreScale.size(), stream, traffic);
+  perMm3_.upload(job.perMm3, stream, traffic);
+  coarseEnough_.upload(job.coarseEnough, stream, traffic);
+  density_ = job.density;
+  density_.perMm3 = perMm3_.data();
+  density_.coarseEnough = coarseEnough_.data();
+  nestedRanges_ = job.ranges;
+  nestedSights_.resize(job.ranges.size());
+  for (std::size_t n = 0; n < job.ranges.size(); ++n)
+  {
+    const auto sight = job.sights.empty() ? std::nullopt : std::optional<SightJob>(job.sights[n]);
+    const float brickMm = nestedCellMm(density_.finest + int(n)) * float(nestedBrickCells);
+    uploadSight(sight, sceneBeams, brickMm, nestedSights_[n], stream, traffic);
+  }
+  size_ = job.size;
+  spacing_ = job.spacing;
+  seed_ = job.seed;
+  float largest = 0.0f;
+  for (const NestedMedium& m : job.media)
+  {
+    largest = std::max(largest, m.amplitude);
+  }
+  // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
+  largest *= makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(beam.largestWeight));
+  nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
+}
+
+namespace {
+
+/// Adds items [first, end), all of a brick, as groups.
+template<class Item, class Bounds>
+void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t end, const Vec3f& brickMm,
+               const Bounds& ballOf, std::vector<SurfaceGroup>& groups)
+{
+  while (first < end)
+  {
+    const std::size_t last = std::min(end, first + std::size_t(warpLanes));
+    Vec3f low(1e30f);
+    Vec3f high(-1e30f);
+    for (std::size_t n = first; n < last; ++n)
+    {
+      const auto [centre, radius] = ballOf(items[n]);
+      low = glm::min(low, centre - radius);
+      high = glm::max(high, centre + radius);
+    }
+    groups.push_back({ brickMm, 0.5f * (low + high), 0.5f * glm::length(high - low), int(first), int(last - first) });
+    first = last;
+  }
+}
+
+} // namespace
+
+/// The pieces of a scene stay, those that are new are added.
+void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  const SurfacePieces& scene = *job.pieces;
+  if (piecesSceneId_ != job.sceneId)
+  {
+    pieces_.clear();
+    pieceGroups_.clear();
+    pieceBlocks_.assign(std::size_t(scene.blockCount()), false);
+  }
+  const std::size_t kept = pieces_.size();
+  const std::size_t keptGroups = pieceGroups_.size();
+  const bool isFirst = piecesSceneId_ != job.sceneId;
+  piecesSceneId_ = 0; // stays so when the upload fails
+  const auto ballOf = [&](const SurfacePiece& piece) {
+    return std::pair<Vec3f, float>(piece.positionMm, pieceBounds(piece, job.longestStepMm).radiusMm);
+  };
+  for (const int block : job.blocks)
+  {
+    if (!pieceBlocks_[std::size_t(block)])
+    {
+      pieceBlocks_[std::size_t(block)] = true;
+      scene.forBricksOf(block, [&](const Vec3i& brick, const std::vector<SurfacePiece>& pieces) {
+        const std::size_t first = pieces_.size();
+        pieces_.insert(pieces_.end(), pieces.begin(), pieces.end());
+        addGroups(pieces_, first, pieces_.size(), (Vec3f(brick) + 0.5f) * scene.edgeMm(), ballOf, pieceGroups_);
+      });
+    }
+  }
+  if (isFirst || pieces_.size() > kept)
+  {
+    devicePieces_.extend(pieces_, kept, stream, traffic);
+    devicePieceGroups_.extend(pieceGroups_, keptGroups, stream, traffic);
+  }
+  piecesSceneId_ = job.sceneId;
+}
+
+void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic)
+{
+  uploadPieces(job, stream, traffic);
+  surfaceRows_.upload(job.rows, stream, traffic);
+  diffuseL_.upload(job.diffuseL, stream, traffic);
+  diffuseE_.upload(job.diffuseE, stream, traffic);
+  const auto withTables = [&](SurfaceTable table) {
+    table.rows = surfaceRows_.data();
+    table.diffuseL = diffuseL_.data();
+    table.diffuseE = diffuseE_.data();
+    return table;
+  };
+  pieceSet_.table = withTables(job.pieceTable);
+  pieceSet_.groups = devicePieceGroups_.data();
+  pieceSet_.groupCount = int(pieceGroups_.size());
+  pieceSet_.pieces = devicePieces_.data();
+  pieceSet_.longestStepMm = job.longestStepMm;
+  pieceSet_.media = job.media;
+  pieceSet_.nets = job.nets;
+  pieceSet_.edgeMm = job.pieces->edgeMm();
+  pieceSet_.marginMm = 1.5f * job.longestStepMm;
+  pieceSet_.seed = job.seed;
+  uploadFieldSight(job.sight, pieceSight_, stream, traffic);
+  targets_ = job.targets.has_value();
+  if (targets_)
+  {
+    const TargetPointJob& targets = *job.targets;
+    std::vector<SurfaceGroup> groups;
+    const auto ballOf = [](const SurfacePoint& point) { return std::pair<Vec3f, float>(point.position, 0.0f); };
+    for (const TargetPointJob::Brick& brick : targets.bricks)
+    {
+      addGroups(targets.points, std::size_t(brick.first), std::size_t(brick.end), brick.centreMm, ballOf, groups);
+    }
+    targetPoints_.upload(targets.points, stream, traffic);
+    targetGroups_.upload(groups, stream, traffic);
+    targetSet_ = pieceSet_;
+    targetSet_.table = withTables(job.targetTable);
+    targetSet_.groups = targetGroups_.data();
+    targetSet_.groupCount = int(groups.size());
+    targetSet_.points = targetPoints_.data();
+    targetSet_.edgeMm = targets.edgeMm;
+    targetSet_.marginMm = 0.0f;
+    uploadFieldSight(targets.sight, targetSight_, stream, traffic);
+  }
+  // A perfect mirror across the whole beam echoes 1; a point of it far less.
+  surfaceScale_ = 536870912.0f / std::max(1.0f, float(beam.largestWeight));
+}
+
+void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  const double radPerSample = job.radPerMm * job.sampleMm;
+  if (carrier_.size() == std::size_t(job.sumCount) && carrierRadPerSample_ == radPerSample)
+  {
+    return;
+  }
+  std::vector<float2> carrier;
+  carrier.reserve(std::size_t(job.sumCount));
+  for (int s = 0; s < job.sumCount; ++s)
+  {
+    const double phase = job.radPerMm * s * job.sampleMm;
+    carrier.push_back({ float(std::cos(phase)), float(-std::sin(phase)) });
+  }
+  carrierRadPerSample_ = 0.0; // stays so when the upload fails
+  carrier_.upload(carrier, stream, traffic);
+  carrierRadPerSample_ = radPerSample;
+}
+
+void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  sampleCount_ = job.sampleCount;
+  sumCount_ = job.sumCount;
+  half_ = int(job.pulseRe.size() / 2);
+  sampleMm_ = job.sampleMm;
+  grid_ = makeLineGrid(float(job.sampleMm), job.radPerMm, job.sumCount);
+  complexPulse_ = !job.pulseIm.empty();
+  std::vector<float> pulse = job.pulseRe;
+  pulse.insert(pulse.end(), job.pulseIm.begin(), job.pulseIm.end());
+  pulse_.upload(pulse, stream, traffic);
+  uploadCarrier(job, stream, traffic);
+  level_.upload(job.boundaryLevel, stream, traffic);
+  downshift_ = job.downshift;
+  uploadBeam(job.beam, stream, traffic);
+  sceneBeams_.upload(job.sceneBeams, stream, traffic);
+
+  tissues_ = job.tissues.has_value();
+  if (tissues_)
+  {
+    const TissueJob& tissues = *job.tissues;
+    uploadVoxels(*tissues.voxels, tissues.sceneId, stream, traffic);
+    media_.upload(tissues.media.data(), tissues.media.size(), stream, traffic);
+    uploadSight(tissues.sight, job.sceneBeams, tissues.cellMm * brickCells, tissueSight_, stream, traffic);
+    size_ = tissues.size;
+    spacing_ = tissues.spacing;
+    cellMm_ = tissues.cellMm;
+    seed_ = tissues.seed;
+    float largest = 0.0f;
+    for (const ScatteringMedium& m : tissues.media)
+    {
+      largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
+    }
+    // Amplitudes that come together in a sample, on average, and a wide margin; 32 bits hold them with 24 to spare for
+    // their fractions.
+    const double together =
+      64.0 * job.beam.largestWeight + 16.0 * job.beam.largestAreaMm2 * sampleMm_ / std::pow(double(cellMm_), 3);
+    tissueScale_ = largest > 0.0f ? float(2147483647.0 / (together * largest)) : 1.0f;
+  }
+
+  nested_ = job.nested.has_value();
+  if (nested_)
+  {
+    uploadNested(*job.nested, job.beam, job.sceneBeams, stream, traffic);
+  }
+  surfaces_ = job.surfaces.has_value();
+  if (surfaces_)
+  {
+    uploadSurfaces(*job.surfaces, job.beam, stream, traffic);
+  }
+
+  points_ = job.points.has_value();
+  if (points_)
+  {
+    const PointJob& points = *job.points;
+    if (table_ != points.table)
+    {
+      table_ = nullptr;
+      x_.upload(points.table->x, stream, traffic);
+      y_.upload(points.table->y, stream, traffic);
+      z_.upload(points.table->z, stream, traffic);
+      amplitude_.upload(points.table->amplitude, stream, traffic);
+      begin_.upload(points.table->begin, stream, traffic);
+      largestPoint_ = 0.0f;
+      for (const float a : points.table->amplitude)
+      {
+        largestPoint_ = std::max(largestPoint_, std::fabs(a));
+      }
+      table_ = points.table;
+    }
+    pointBeams_.upload(points.beams, stream, traffic);
+    uploadSight(points.sight, points.beams, table_->edgeMm, pointSight_, stream, traffic);
+    pointScale_ = scaleFor(largestPoint_ * std::max(1.0f, float(job.beam.largestWeight)));
+  }
+
+  given_ = {};
+  if (job.given)
+  {
+    givenIntensity_.upload(job.given->intensity, stream, traffic);
+    given_.intensity = givenIntensity_.data();
+    if (!job.given->attenuationNpPerMHz.empty())
+    {
+      givenAttenuation_.upload(job.given->attenuationNpPerMHz, stream, traffic);
+      given_.attenuation = givenAttenuation_.data();
+    }
+    given_.binCount = job.given->binCount;
+    given_.binMm = job.given->binMm;
+    if (!job.given->boundaryEcho.empty())
+    {
+      givenEcho_.upload(reinterpret_cast<const float2*>(job.given->boundaryEcho.data()), job.given->boundaryEcho.size(),
+                        stream, traffic);
+      given_.echo = givenEcho_.data();
+    }
+  }
+}
+
+} // namespace sono
