@@ -76,18 +76,17 @@ ArrayAperture apertureOf(const ProbePreset& preset)
   aperture.elevationFocusMm = preset.elevationFocusMm;
   aperture.centreFrequencyMHz = preset.centreFrequencyMHz;
   aperture.fractionalBandwidth = preset.fractionalBandwidth;
-  const LineOrigin origin = preset.geometry.lineOrigin();
   if (preset.geometry.isVolume())
   {
     aperture.elementCount = std::max(1, int(std::lround(std::sqrt(double(preset.elementCount)))));
     aperture.elevationCount = aperture.elementCount;
   }
-  if (origin == LineOrigin::Aperture || origin == LineOrigin::ConvexFace)
+  if (traitsOf(preset.geometry.kind).takesPart)
   {
     const double halfFocus = 0.5 * preset.transmitFocusMm / aperture.pitchMm();
     aperture.elementCount = std::max(1, int(std::min(double(preset.elementCount), std::round(halfFocus))));
   }
-  if (origin == LineOrigin::ConvexFace)
+  if (preset.geometry.lineOrigin() == LineOrigin::ConvexFace)
   {
     aperture.faceRadiusMm = preset.geometry.radiusMm;
   }

@@ -42,8 +42,9 @@ struct ArrayAperture
   void validate() const;
 };
 
-/// The aperture of a preset. A phased array sends with all elements; a linear or curvilinear one with those that make
-/// the transmit focus F/2. A matrix has as many elements along the array as across it.
+/// The aperture of a preset. A phased array sends with all elements; where a line takes a part of them (see
+/// ScanKinds.h), it is those that make the transmit focus F/2. A matrix has as many elements along the array as across
+/// it.
 ArrayAperture apertureOf(const ProbePreset& preset);
 
 /// A grid of 64 x 32 half-planes at 128 depths from 0 to depthMm that resolves the beam: four steps to lambda F# at the

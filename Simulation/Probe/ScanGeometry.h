@@ -38,23 +38,17 @@ struct ScanGeometry
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
-    visitor(self.kind, Parameter{ "scanKind",
-                                  "Scan Kind",
-                                  {},
-                                  "Layout of the scan lines: parallel, from one point, along the radii of a convex "
-                                  "face, from one point over a volume, or along the radii of a catheter.",
-                                  scanKindLabels() });
+    visitor(self.kind, Parameter{ "scanKind", "Scan Kind", {}, scanKindSentence(), scanKindLabels() });
     visitor(self.lineCount, Parameter{ "lineCount", "Line Count", between(1, 4096),
                                        "Number of scan lines, 1 to 4096, no unit; of a matrix, in each elevation." });
     visitor(self.depthMm,
             Parameter{ "depthMm", "Depth (mm)", above(0), "Depth along each scan line from the face in mm, above 0." });
     visitor(self.sectorDeg, Parameter{ "sectorDeg", "Sector (deg)", aboveUpTo(0, 360),
                                        "Angle between the outermost lines in degrees, between 0 and 180, or up to 360 "
-                                       "for radial probes; not for linear ones." });
-    visitor(self.radiusMm, Parameter{ "radiusMm", "Radius (mm)", above(0),
-                                      "Radius of a curvilinear or radial probe's face in mm, above 0." });
+                                       "where they may close a circle." });
+    visitor(self.radiusMm, Parameter{ "radiusMm", "Radius (mm)", above(0), "Radius of a round face in mm, above 0." });
     visitor(self.widthMm, Parameter{ "widthMm", "Width (mm)", above(0),
-                                     "Distance of a linear probe's outermost lines in mm, above 0." });
+                                     "Distance of the outermost lines on a flat face in mm, above 0." });
     visitor(self.elevationLineCount,
             Parameter{ "elevationLineCount", "Elevation Line Count", between(1, 4096),
                        "Elevations of a matrix probe, 1 to 4096, no unit; at most 65,536 lines altogether." });
@@ -219,11 +213,11 @@ struct ProbePreset : ProbeSettings
   int elementCount = 1;
 };
 
-/// Reads a preset: a JSON object with "name", "scan" ("linear", "phased_sector", "curvilinear", "matrix" or "radial")
-/// and numbers, each as {"value": ..., "source": "..."}: numberOfLines, depthMm, widthMm (linear), sectorDeg (the
-/// others), radiusMm (curvilinear, radial), numberOfElevations and elevationSectorDeg (matrix), centreFrequencyMHz,
-/// fractionalBandwidth, elementCount, elementWidthMm, elementHeightMm, kerfMm, elevationFocusMm, transmitFocusMm.
-/// Throws Error naming file and key for one that is missing, out of range or unknown.
+/// Reads a preset: a JSON object with "name", "scan" (a kind's presetName, see ScanKinds.h) and numbers, each as
+/// {"value": ..., "source": "..."}: numberOfLines, depthMm, those of the kind (numberOfElevations for
+/// elevationLineCount), centreFrequencyMHz, fractionalBandwidth, elementCount, elementWidthMm, elementHeightMm, kerfMm,
+/// elevationFocusMm, transmitFocusMm. Throws Error naming file and key for one that is missing, out of range or
+/// unknown.
 ProbePreset readProbePreset(const std::string& path);
 
 } // namespace sono

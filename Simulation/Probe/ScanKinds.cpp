@@ -7,11 +7,32 @@ namespace sono {
 const std::vector<ScanKindTraits>& scanKinds()
 {
   static const std::vector<ScanKindTraits> all{
-    { "linear", "Linear", LineOrigin::Aperture, false, 0.0, { "widthMm" } },
-    { "phased_sector", "Phased Sector", LineOrigin::Apex, false, 180.0, { "sectorDeg" } },
-    { "curvilinear", "Curvilinear", LineOrigin::ConvexFace, false, 180.0, { "sectorDeg", "radiusMm" } },
-    { "matrix", "Matrix", LineOrigin::Apex, true, 180.0, { "sectorDeg", "elevationLineCount", "elevationSectorDeg" } },
-    { "radial", "Radial", LineOrigin::Catheter, false, 360.0, { "sectorDeg", "radiusMm" } },
+    { "linear", "Linear", "parallel", LineOrigin::Aperture, true, false, 0.0, { "widthMm" } },
+    { "phased_sector", "Phased Sector", "from one point", LineOrigin::Apex, false, false, 180.0, { "sectorDeg" } },
+    { "curvilinear",
+      "Curvilinear",
+      "along the radii of a convex face",
+      LineOrigin::ConvexFace,
+      true,
+      false,
+      180.0,
+      { "sectorDeg", "radiusMm" } },
+    { "matrix",
+      "Matrix",
+      "from one point over a volume",
+      LineOrigin::Apex,
+      false,
+      true,
+      180.0,
+      { "sectorDeg", "elevationLineCount", "elevationSectorDeg" } },
+    { "radial",
+      "Radial",
+      "along the radii of a catheter",
+      LineOrigin::Catheter,
+      false,
+      false,
+      360.0,
+      { "sectorDeg", "radiusMm" } },
   };
   return all;
 }
@@ -40,6 +61,20 @@ std::vector<const char*> scanKindLabels()
     labels.push_back(traits.label);
   }
   return labels;
+}
+
+const char* scanKindSentence()
+{
+  static const std::string sentence = [] {
+    std::string words = "Layout of the scan lines: ";
+    for (const ScanKindTraits& traits : scanKinds())
+    {
+      const bool isLast = &traits == &scanKinds().back();
+      words += (isLast ? std::string("or ") : std::string()) + traits.lines + (isLast ? "." : ", ");
+    }
+    return words;
+  }();
+  return sentence.c_str();
 }
 
 } // namespace sono

@@ -29,7 +29,9 @@ struct ScanKindTraits
 {
   const char* presetName; ///< in a preset file
   const char* label;      ///< in a panel
+  const char* lines;      ///< how they lie, in a sentence that lists the kinds
   LineOrigin origin;
+  bool takesPart;                   ///< a line is sent and heard by a part of the elements, those about its start
   bool isVolume;                    ///< each elevation is such a plane, turned about the lateral axis
   double maxSectorDeg;              ///< of the outermost lines; 360 is allowed, 180 is not
   std::vector<std::string> numbers; ///< of ScanGeometry, besides lineCount and depthMm: those that it uses
@@ -43,5 +45,6 @@ const ScanKindTraits& traitsOf(ScanKind kind);
 
 /// For panels and sentences.
 std::vector<const char*> scanKindLabels();
+const char* scanKindSentence();
 
 } // namespace sono
