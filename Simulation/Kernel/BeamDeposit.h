@@ -18,6 +18,7 @@ struct BeamSegment
   float b;
   float c;
   float coherence;
+  float absorbed; ///< of PathSegment, at its start
 };
 
 SONO_HD inline BeamSegment beamSegment(const TraceLine& line, const PathSegment& s, float coherenceMm)
@@ -34,7 +35,8 @@ SONO_HD inline BeamSegment beamSegment(const TraceLine& line, const PathSegment&
            glm::dot(offAxis, offAxis),
            glm::dot(offAxis, drift),
            glm::dot(drift, drift),
-           coherenceMm };
+           coherenceMm,
+           s.absorbed };
 }
 
 /// The depths that a segment covers of [0, endMm]; nothing where high <= low. A segment across the beam crosses no

@@ -10,10 +10,9 @@ namespace sono {
 
 namespace {
 
-/// Adds the segment's mean over the whole bins [first, last) to them, and as much times the attenuation at their
-/// middle, `startAbsorbed` at the segment's start, to the others.
-SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float startAbsorbed, float binMm, int first, int last,
-                                       float* __restrict__ bins, float* __restrict__ absorbed)
+/// Adds the segment's mean over the whole bins [first, last) to the sums, whose factors count at a bin's middle.
+SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int first, int last,
+                                       std::array<std::vector<float>, binSumCount>& bins)
 {
   const float inverseMu = 1.0f / g.mu;
   const float step = binMm * std::fabs(inverseMu);
@@ -21,29 +20,39 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float startAbsorbed
   // Where a bin begins as seen by the path: its near end for either sense of travel.
   const float nearEdge = g.mu > 0.0f ? 0.0f : binMm;
   const BeamSegment local = g;
+  float* sums[binSumCount];
+  for (int sum = 0; sum < binSumCount; ++sum)
+  {
+    sums[sum] = bins[std::size_t(sum)].data();
+  }
+#pragma GCC ivdep
   for (int b = first; b < last; ++b)
   {
     const float near = (float(b) * binMm + nearEdge - local.r0) * inverseMu;
     const float onAxis = scale * expNegative(-local.decay * near);
     const float weights = gaussWeights(local, near, step);
-    bins[b] += onAxis * weights;
-    absorbed[b] += onAxis * (startAbsorbed + local.decay * (near + 0.5f * step)) * weights;
+    for (int sum = 0; sum < binSumCount; ++sum)
+    {
+      sums[sum][b] += onAxis * binFactor(sum, local, near + 0.5f * step, 1.0f) * weights;
+    }
   }
 }
 
 } // namespace
 
 LineTally::LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm)
-  : bins_(std::size_t(binCount), 0.0f)
-  , absorbed_(std::size_t(binCount), 0.0f)
-  , binSums_(std::size_t(binCount), 0.0)
-  , absorbedSums_(std::size_t(binCount), 0.0)
+  : binCount_(binCount)
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
   , echoSampleMm_(float(echoSampleMm))
   , radPerMm_(float(4.0 * 3.14159265358979323846 * wavesPerMm))
 {
+  for (std::size_t sum = 0; sum < binSumCount; ++sum)
+  {
+    bins_[sum].assign(std::size_t(binCount), 0.0f);
+    binSums_[sum].assign(std::size_t(binCount), 0.0);
+  }
 }
 
 void LineTally::start(const TraceLine& line, float coherenceMm)
@@ -54,35 +63,27 @@ void LineTally::start(const TraceLine& line, float coherenceMm)
 
 void LineTally::fold()
 {
-  for (std::size_t b = 0; b < bins_.size(); ++b)
+  for (std::size_t sum = 0; sum < binSumCount; ++sum)
   {
-    binSums_[b] += double(bins_[b]);
-    bins_[b] = 0.0f;
-    absorbedSums_[b] += double(absorbed_[b]);
-    absorbed_[b] = 0.0f;
+    for (std::size_t b = 0; b < bins_[sum].size(); ++b)
+    {
+      binSums_[sum][b] += double(bins_[sum][b]);
+      bins_[sum][b] = 0.0f;
+    }
   }
 }
 
-std::vector<float> LineTally::takeBins(int paths)
+std::vector<BinSums<double>> LineTally::takeBins(int paths)
 {
   fold();
-  std::vector<float> means(bins_.size());
-  for (std::size_t b = 0; b < means.size(); ++b)
+  std::vector<BinSums<double>> means(bins_.front().size());
+  for (std::size_t sum = 0; sum < binSumCount; ++sum)
   {
-    means[b] = float(binSums_[b] / paths);
-    binSums_[b] = 0.0;
-  }
-  return means;
-}
-
-std::vector<double> LineTally::takeAbsorbed(int paths)
-{
-  fold();
-  std::vector<double> means(absorbedSums_.size());
-  for (std::size_t b = 0; b < means.size(); ++b)
-  {
-    means[b] = absorbedSums_[b] / paths;
-    absorbedSums_[b] = 0.0;
+    for (std::size_t b = 0; b < means.size(); ++b)
+    {
+      means[b].of[sum] = binSums_[sum][b] / paths;
+      binSums_[sum][b] = 0.0;
+    }
   }
   return means;
 }
@@ -102,19 +103,21 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
 {
   ++segments_;
   const BeamSegment g = beamSegment(line_, s, coherenceMm_);
-  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(bins_.size()));
+  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
   if (!(high > low))
   {
     return;
   }
-  const int last = int(bins_.size()) - 1;
+  const int last = binCount_ - 1;
   const int binLow = std::min(int(low / binMm_), last);
   const int binHigh = std::min(int(high / binMm_), last);
   const float inverseMu = 1.0f / g.mu;
   const auto part = [&](int bin, float from, float to) {
     const float value = meanOver(g, from, to, inverseMu) * (to - from) / binMm_;
-    bins_[std::size_t(bin)] += value;
-    absorbed_[std::size_t(bin)] += value * (s.absorbed + g.decay * (0.5f * (from + to) - g.r0) * inverseMu);
+    for (int sum = 0; sum < binSumCount; ++sum)
+    {
+      bins_[std::size_t(sum)][std::size_t(bin)] += value * binFactor(sum, g, 0.5f * (from + to) - g.r0, inverseMu);
+    }
   };
   if (binLow == binHigh)
   {
@@ -122,7 +125,7 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
     return;
   }
   part(binLow, low, float(binLow + 1) * binMm_);
-  depositWholeBins(g, s.absorbed, binMm_, binLow + 1, binHigh, bins_.data(), absorbed_.data());
+  depositWholeBins(g, binMm_, binLow + 1, binHigh, bins_);
   part(binHigh, float(binHigh) * binMm_, high);
 }
 

@@ -2,16 +2,17 @@
 
 #include "Kernel/PathState.h"
 #include "Kernel/TraceView.h"
-#include "Trace/PathBatches.h"
+#include "Trace/TracedBin.h"
 
+#include <array>
 #include <complex>
 #include <vector>
 
 namespace sono {
 
 /// What the paths of one line leave on its main beam, on the CPU. A path deposits where it crosses the plane at r,
-/// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin. Beside it stands
-/// the sum of A I w_R, with A the attenuation that the path has met, Np of intensity.
+/// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin. Beside it stand
+/// the other sums of TracedBin.h.
 class LineTally : public PathSink
 {
 public:
@@ -31,17 +32,14 @@ public:
   void fold();
 
   /// What was left in each bin, of each of `paths` paths, and forgets it.
-  std::vector<float> takeBins(int paths);
-  /// The same of A I w_R, in double precision.
-  std::vector<double> takeAbsorbed(int paths);
+  std::vector<BinSums<double>> takeBins(int paths);
   /// Adds the boundary echoes to a line's samples and forgets them.
   void takeEchoes(std::complex<float>* samples);
 
 private:
-  std::vector<float> bins_;     ///< of the paths since the last fold
-  std::vector<float> absorbed_; ///< A times that
-  std::vector<double> binSums_; ///< of those before
-  std::vector<double> absorbedSums_;
+  int binCount_;
+  std::array<std::vector<float>, binSumCount> bins_;     ///< of the paths since the last fold
+  std::array<std::vector<double>, binSumCount> binSums_; ///< of those before
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;

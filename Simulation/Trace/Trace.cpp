@@ -5,9 +5,9 @@
 #include "Core/SoundSpeed.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
-#include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
 #include "Trace/TraceSetup.h"
+#include "Trace/TracedBin.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -18,15 +18,17 @@ namespace sono {
 
 namespace {
 
-/// Writes B of a line from its intensity and the means of A I. A path's intensity falls as the round trip's amplitude
-/// does, so A is B f.
-void writeAttenuation(const std::vector<double>& absorbed, double frequencyMHz, int line, TracedLines& out)
+/// Writes the arrays of a line, of what its paths share and of the means of their batches.
+void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std::vector<BinSums<double>>>& batches,
+               double frequencyMHz, int line, TracedLines& out)
 {
-  const std::size_t row = std::size_t(line) * std::size_t(out.binCount);
-  for (std::size_t b = 0; b < absorbed.size(); ++b)
+  for (std::size_t b = 0; b < shared.size(); ++b)
   {
-    const double intensity = double(out.intensity[row + b]);
-    out.attenuationNpPerMHz[row + b] = intensity > 0.0 ? float(absorbed[b] / (intensity * frequencyMHz)) : 0.0f;
+    const auto meanOf = [&](int batch) { return batches[std::size_t(batch)][b]; };
+    const BinArrays bin = finishBin(shared[b], int(batches.size()), meanOf, frequencyMHz);
+    const float* value = bin.of;
+    const std::size_t at = std::size_t(line) * std::size_t(out.binCount) + b;
+    TracedLines::visitBins(out, [&](std::vector<float>& values, const char*) { values[at] = *value++; });
   }
 }
 
@@ -35,23 +37,21 @@ template<class Space>
 inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
                         LineTally& tally, TracedLines& out)
 {
-  const std::size_t row = std::size_t(index) * std::size_t(out.binCount);
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
   tally.start(line, view.coherenceMm);
   tally.setEchoWeight(1.0f);
   LineStart start;
-  std::vector<double> absorbed(std::size_t(out.binCount), 0.0);
+  std::vector<BinSums<double>> shared(std::size_t(out.binCount), BinSums<double>{});
+  std::vector<std::vector<BinSums<double>>> means; // of batches
   if (!view.startsApart)
   {
     start = startLine(view, space, line, tally);
-    const std::vector<float> shared = tally.takeBins(1);
-    std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(row));
-    absorbed = tally.takeAbsorbed(1);
+    shared = tally.takeBins(1);
     if (!start.meets)
     {
-      writeAttenuation(absorbed, setup.frequencyMHz, index, out);
+      writeBins(shared, means, setup.frequencyMHz, index, out);
       tally.takeEchoes(echoes);
       return;
     }
@@ -59,7 +59,6 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
 
   tally.setEchoWeight(1.0f / float(setup.paths));
   const int batches = std::min(batchCount, setup.paths);
-  std::vector<std::vector<float>> means;
   std::vector<BounceScramble> scrambles(std::size_t(scrambleCount(view)));
   for (int batch = 0; batch < batches; ++batch)
   {
@@ -92,15 +91,9 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       }
     }
     means.push_back(tally.takeBins(last - first));
-    const std::vector<double> ofBatch = tally.takeAbsorbed(last - first);
-    for (std::size_t b = 0; b < absorbed.size(); ++b)
-    {
-      absorbed[b] += ofBatch[b] / batches;
-    }
   }
   tally.takeEchoes(echoes);
-  addBatchMeans(means, index, out);
-  writeAttenuation(absorbed, setup.frequencyMHz, index, out);
+  writeBins(shared, means, setup.frequencyMHz, index, out);
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index,

@@ -41,13 +41,19 @@ struct TracedLines
   std::uint64_t segments = 0;                                ///< path segments traced
   std::shared_ptr<const std::vector<TargetSurface>> targets; ///< that it was traced with; null: none
 
-  /// The arrays with the names and places that they have in a pipeline.
+  /// The arrays of bins with the names that they have in a pipeline, in the order of BinArray (Trace/TracedBin.h).
+  template<class Self, class Visitor>
+  static void visitBins(Self& self, Visitor&& visitor)
+  {
+    visitor(self.intensity, "Intensity");
+    visitor(self.standardError, "StandardError");
+    visitor(self.attenuationNpPerMHz, "AttenuationNpPerMHz");
+  }
+  /// All arrays with their names and places there.
   template<class Self, class Visitor>
   static void visitArrays(Self& self, Visitor&& visitor)
   {
-    visitor(self.intensity, "Intensity", TracedAxis::Bins);
-    visitor(self.standardError, "StandardError", TracedAxis::Bins);
-    visitor(self.attenuationNpPerMHz, "AttenuationNpPerMHz", TracedAxis::Bins);
+    visitBins(self, [&](auto& values, const char* name) { visitor(values, name, TracedAxis::Bins); });
     visitor(self.boundaryEcho, "BoundaryEcho", TracedAxis::EchoSamples);
   }
 };

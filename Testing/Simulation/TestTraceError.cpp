@@ -148,11 +148,14 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
   };
   std::vector<std::complex<float>> oneEcho(2000);
   std::vector<std::complex<float>> manyEchoes(2000);
-  const std::vector<float> one = leave(1, oneEcho);
-  const std::vector<float> many = leave(paths, manyEchoes);
+  const std::vector<BinSums<double>> one = leave(1, oneEcho);
+  const std::vector<BinSums<double>> many = leave(paths, manyEchoes);
   for (std::size_t b = 0; b < one.size(); ++b)
   {
-    EXPECT_NEAR(many[b], one[b], 1e-5f * one[b]) << b;
+    for (int sum = 0; sum < binSumCount; ++sum)
+    {
+      EXPECT_NEAR(many[b].of[sum], one[b].of[sum], 1e-5 * one[b].of[sum]) << b;
+    }
   }
   for (std::size_t s = 0; s < oneEcho.size(); ++s)
   {

@@ -68,19 +68,31 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
   tally.start(line, view.coherenceMm);
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
   std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;
-  const std::vector<double> shared = tally.takeBins(1);
-  std::copy(shared.begin(), shared.end(), out.intensity.begin() + std::ptrdiff_t(index) * input.binCount);
-  const std::vector<double> sharedAbsorbed = tally.takeAbsorbed(1);
-  std::copy(sharedAbsorbed.begin(), sharedAbsorbed.end(), absorbed);
+  const std::vector<kernel::BinSums<double>> shared = tally.takeBins(1);
+  std::vector<std::vector<kernel::BinSums<double>>> means; // of batches
+  const auto finish = [&] {
+    tally.takeEchoes(echoes);
+    for (std::size_t b = 0; b < shared.size(); ++b)
+    {
+      const std::size_t at = std::size_t(index) * shared.size() + b;
+      const auto meanOf = [&](int batch) { return means[std::size_t(batch)][b]; };
+      out.intensity[at] =
+        kernel::finishBin(shared[b], int(means.size()), meanOf, input.frequencyMHz).of[kernel::intensityArray];
+      absorbed[at] = shared[b].of[kernel::absorbedSum];
+      for (const auto& ofBatch : means)
+      {
+        absorbed[at] += ofBatch[b].of[kernel::absorbedSum] / double(means.size());
+      }
+    }
+  };
   if (!start.meets)
   {
-    tally.takeEchoes(echoes);
+    finish();
     return;
   }
   tally.setEchoWeight(1.0 / input.paths);
   const int batches = std::min(kernel::batchCount, input.paths);
   std::vector<kernel::BounceScramble> scrambles(std::size_t(view.maxCollisions));
-  std::vector<std::vector<double>> means;
   for (int batch = 0; batch < batches; ++batch)
   {
     const kernel::PathRange range = kernel::batchRange(input.paths, batches, batch);
@@ -96,14 +108,8 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
         { std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - range.first), scrambles.data() }, tally);
     }
     means.push_back(tally.takeBins(range.last - range.first));
-    for (const double sum : tally.takeAbsorbed(range.last - range.first))
-    {
-      *absorbed++ += sum / batches;
-    }
-    absorbed -= input.binCount;
   }
-  tally.takeEchoes(echoes);
-  kernel::addBatchMeans(means, index, out);
+  finish();
 }
 
 } // namespace
@@ -139,12 +145,10 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   out.echoSampleMm = input.echoSampleMm;
   out.echoCount = input.echoCount;
   out.intensity.assign(lines.size() * std::size_t(input.binCount), 0.0);
-  out.standardError.assign(out.intensity.size(), 0.0);
   out.boundaryEcho.assign(lines.size() * std::size_t(input.echoCount), {});
   std::vector<double> absorbed(out.intensity.size(), 0.0);
-  parallelFor(out.lineCount, {}, [&](int i) {
-    traceLine(input, view, space, lines[std::size_t(i)], i, out, absorbed.data() + std::ptrdiff_t(i) * input.binCount);
-  });
+  parallelFor(out.lineCount, {},
+              [&](int i) { traceLine(input, view, space, lines[std::size_t(i)], i, out, absorbed.data()); });
   return { std::move(out.intensity), std::move(absorbed), std::move(out.boundaryEcho) };
 }
 

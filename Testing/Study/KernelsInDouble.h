@@ -97,8 +97,8 @@ inline double sinSmall(double x)
 #include "Kernel/Scatterer.h"
 #include "Kernel/TargetBvh.h"
 #include "Kernel/TracePath.h"
-#include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
+#include "Trace/Trace.h"
 
 #undef float
 #undef vec2
