@@ -26,7 +26,7 @@ class TestClosing(unittest.TestCase):
                        "simple.Disconnect()", "sys.exit(0)"):
             with self.subTest(action=action):
                 done = subprocess.run(["pvpython", "-c", SCRIPT.format(action=action)], stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT, text=True, timeout=60)
+                                      stderr=subprocess.STDOUT, text=True)
                 self.assertIn("in the middle", done.stdout)
                 self.assertEqual(done.returncode, 0, done.stdout)
 
