@@ -201,18 +201,19 @@ TEST(NestedCells, ACoarserLevelIsAnEighthOfTheFinerOne)
   const auto order = [](const Vec3f& a, const Vec3f& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
   for (const int level : { 1, 2, 3 })
   {
-    const auto fine = candidatesOf(level, 64, 16);
-    EXPECT_EQ(double(fine.size()), std::pow(16.0 / double(nestedCellMm(level)), 3.0));
+    const int edgeMm = 2 << level; // as many cells of each level
+    const auto fine = candidatesOf(level, 64, edgeMm);
+    EXPECT_EQ(double(fine.size()), std::pow(edgeMm / double(nestedCellMm(level)), 3.0));
     std::vector<Vec3f> last;
     for (const int count : { 1, 2, 3, 4, 5, 6, 7, 8, 16, 24, 32, 40, 48, 56, 64 })
     {
-      const auto some = candidatesOf(level, count, 16);
+      const auto some = candidatesOf(level, count, edgeMm);
       EXPECT_EQ(some.size() * 64, fine.size() * std::size_t(count));
       EXPECT_TRUE(std::includes(some.begin(), some.end(), last.begin(), last.end(), order));
       last = some;
     }
-    EXPECT_EQ(candidatesOf(level, 8, 16), candidatesOf(level + 1, 64, 16));
-    EXPECT_EQ(candidatesOf(level, 1, 16), candidatesOf(level + 2, 64, 16));
+    EXPECT_EQ(candidatesOf(level, 8, edgeMm), candidatesOf(level + 1, 64, edgeMm));
+    EXPECT_EQ(candidatesOf(level, 1, edgeMm), candidatesOf(level + 2, 64, edgeMm));
   }
 }
 
