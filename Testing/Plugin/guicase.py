@@ -40,8 +40,9 @@ class GuiCase(unittest.TestCase):
     def setUpClass(cls):
         reading, writing = os.pipe()
         cls.screen = tempfile.TemporaryDirectory()
+        # It stays as it is when its last client leaves: it would start anew, and drop who comes meanwhile.
         cls.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x900x24", "-fbdir", cls.screen.name,
+            ["Xvfb", "-displayfd", str(writing), "-noreset", "-screen", "0", "1400x900x24", "-fbdir", cls.screen.name,
              "+extension", "GLX"],
             pass_fds=[writing], stderr=subprocess.DEVNULL)
         os.close(writing)
