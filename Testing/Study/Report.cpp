@@ -255,11 +255,10 @@ private:
   {
     heading("Pictures");
     picture("phantom.png", "The phantom's three views.");
-    picture("artefacts.png", "Enhancement behind a ball of water, with a lobe of 6 and of 45 degrees; shadow of a ball "
-                             "of bone; a rib, labels and image.");
+    picture("artefacts.png", "Enhancement behind a ball of water; shadow of a ball of bone; a rib, labels and image.");
     const std::string panels = "From the upper left: segmentation, without MCPT, 500 rays, 2500 rays; C0 0.2, "
                                "gamma -1.8, tau 2.8, Gaussian beam with sigma 1.5 mm.";
-    picture("parameters.png", "Energy kept at boundaries, lobe 6 degrees. " + panels);
+    picture("parameters.png", "Acoustic: rough surfaces that echo. " + panels);
     showTable("phantom_parameters.csv", "phantom_figures");
     picture("parameters_seed.png", "The seed's equations to the letter, lobe 45 degrees. " + panels);
     showTable("phantom_parameters_seed.csv", "phantom_figures");
