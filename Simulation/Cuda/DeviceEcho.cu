@@ -116,6 +116,11 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
   const std::size_t bytes = 2 * std::size_t(chunkSamples + 2 * halo) * sizeof(int);
   withKind(kind_, [&](auto kind) {
     const auto kernel = splatNestedCells<kind.value>;
+    if (bytes > sharedMemoryFor(kernel))
+    {
+      throw Error("the sampling is too fine for the GPU (" + std::to_string(1000.0 * sampleMm_) +
+                  " um): lower the sampling frequency, or choose the CPU");
+    }
     check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
           "preparing to sum scatterers");
     kernel<<<dim3(count, chunks(), levels), blockThreads, bytes, stream>>>(launch);

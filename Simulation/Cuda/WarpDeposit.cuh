@@ -19,8 +19,7 @@ struct StagedSegment
   float high;
   int binLow;
   int binHigh;
-  float scale;    ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
-  float absorbed; ///< of PathSegment, at its start
+  float scale; ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
 };
 
 __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& piece, float coherenceMm, float binMm,
@@ -28,7 +27,6 @@ __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& 
 {
   StagedSegment staged;
   staged.beam = beamSegment(line, piece, coherenceMm);
-  staged.absorbed = piece.absorbed;
   const DepthSpan span = depthSpan(staged.beam, piece.length, binMm * float(binCount));
   staged.low = span.low;
   staged.high = span.high;
@@ -47,7 +45,7 @@ __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& 
 __device__ inline void addToBin(const StagedSegment& s, float value, float at, float2& bin)
 {
   bin.x += value;
-  bin.y += value * (s.absorbed + s.beam.decay * at);
+  bin.y += value * (s.beam.absorbed + s.beam.decay * at);
 }
 
 /// A warp adds a segment to its bins; a bin always belongs to the same lane, so that the sum's order is that of the
