@@ -32,8 +32,8 @@ struct TraceLaunch
   LineStart* starts;      // where paths do not start apart
   float2* shared; // what all paths of a line leave: lines x bins; as all bins, the intensity and what is absorbed of
                   // it; null: nothing
-  double2* sums; // of parts of batches: lines x batches x parts x bins
-  float2* bins;  // of the warps, where they do not lie in shared memory
+  double2* sums;  // of parts of batches: lines x batches x parts x bins
+  float2* bins;   // of the warps, where they do not lie in shared memory
   float* intensity;
   float* error;
   float* attenuation;
