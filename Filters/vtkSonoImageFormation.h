@@ -40,11 +40,18 @@ public:
     CUDA = 2
   };
 
+  enum Beams
+  {
+    GAUSSIAN_BEAM = 0,
+    COMPUTED_BEAM = 1
+  };
+
   ///@{
   /**
    * Units, ranges, defaults and what they do: sono::EchoSettings.
    */
   sonoParameter(Device, int);
+  sonoParameter(Beam, int);
   sonoParameter(LateralSigmaMm, double);
   sonoParameter(ElevationalSigmaMm, double);
   sonoParameter(ScattererCellMm, double);

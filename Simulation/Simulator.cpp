@@ -3,6 +3,7 @@
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
 #include "Cuda/RunOnDevice.h"
+#include "Echo/ComputedBeam.h"
 #include "Echo/EchoSetup.h"
 #include "Image/ErrorMap.h"
 #include "Image/GreyBytes.h"
@@ -195,8 +196,17 @@ Image unknown(Image layout, std::size_t count)
 
 } // namespace
 
+struct FieldFrom
+{
+  ArrayAperture aperture;
+  double depthMm;
+
+  bool same(const FieldFrom& o) const { return aperture == o.aperture && depthMm == o.depthMm; }
+};
+
 struct Simulator::Last
 {
+  LastResult<FieldFrom, std::shared_ptr<const ArrayField>> arrayField;
   LastResult<TraceFrom, TracedResult> traced;
   LastResult<EchoJobFrom, std::shared_ptr<const EchoJob>> echoJob;
   LastResult<RfFrom, RfResult> rf;
@@ -261,9 +271,23 @@ std::shared_ptr<const std::vector<RecordedPath>> Simulator::paths(const std::vec
   });
 }
 
-RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResult& traced, const EchoSettings& settings,
-                           const std::shared_ptr<const PointScatterers>& points, const Progress& progress)
+EchoSettings Simulator::withBeam(EchoSettings settings, const Progress& progress)
 {
+  if (settings.beam == BeamForm::Computed && !settings.arrayField && !settings.field)
+  {
+    const FieldFrom from{ elementsOf(settings), settings.depthMm };
+    settings.arrayField = last_->arrayField.get(
+      from, [&] { return std::make_shared<const ArrayField>(from.aperture, from.depthMm, progress); });
+  }
+  return settings;
+}
+
+RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResult& traced,
+                           const EchoSettings& wantedSettings, const std::shared_ptr<const PointScatterers>& points,
+                           const Progress& wholeProgress)
+{
+  const EchoSettings settings = withBeam(wantedSettings, partOf(wholeProgress, 0.0, 0.2));
+  const Progress progress = partOf(wholeProgress, 0.2, 1.0);
   const InterfaceModel model = traced ? traced.layout().model : InterfaceModel::Acoustic;
   const EchoJobFrom from{ lines, settings, points, model, traced ? traced.layout().targets : nullptr };
   return last_->rf.get({ from, traced }, [&] {

@@ -100,6 +100,9 @@ public:
   void prepareInteractive(const std::vector<ScanLine>& lines, const TraceSettings& settings);
 
 private:
+  /// With the computed beam where it is asked for.
+  EchoSettings withBeam(EchoSettings settings, const Progress& progress = {});
+
   struct Last;
   const Scene& needScene() const;
 

@@ -139,7 +139,9 @@ void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& 
   const bool onDevice = runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda;
   if (onDevice)
   {
-    sweepOnDevice(needScene(), poses, settings, withLabels, sink, progress, targets);
+    ImageSettings withField = settings;
+    withField.echo = withBeam(settings.echo, partOf(progress, 0.0, 0.1));
+    sweepOnDevice(needScene(), poses, withField, withLabels, sink, partOf(progress, 0.1, 1.0), targets);
   }
   else
   {

@@ -13,6 +13,13 @@
 
 namespace sono {
 
+/// What a line's beam is made of, where the probe names its aperture.
+enum class BeamForm
+{
+  Gaussian, ///< of the aperture
+  Computed  ///< the complex beam of its elements
+};
+
 struct EchoSettings
 {
   Device device = Device::Auto;
@@ -23,7 +30,8 @@ struct EchoSettings
   /// Of the probe: where it is named, the beam is that of its Gaussians, which widen in depth and are weaker to the
   /// side. Amadou2024's lines are not.
   BeamAperture aperture;
-  double lateralSigmaMm = 1.0; ///< Gaussian beam of one width, where there is no aperture
+  BeamForm beam = BeamForm::Gaussian; ///< Computed: a simulator computes `arrayField` where it is not given
+  double lateralSigmaMm = 1.0;        ///< Gaussian beam of one width, where there is no aperture
   double elevationalSigmaMm = 1.0;
   /// The beam's two-way weights instead of the Gaussian, of every line; aperture and sigmas are then not used. It must
   /// reach the image's depth. What lies in front of its first depth or beside it does not echo. Null: the Gaussian.
@@ -47,6 +55,14 @@ struct EchoSettings
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
+    visitor(self.beam,
+            Parameter{ "beam",
+                       "Beam",
+                       {},
+                       "What the beam is made of: Gaussians of the probe's aperture, or the complex sum over "
+                       "its elements, with side lobes and finer speckle out of focus, at three times the "
+                       "time. The latter needs a probe that names its aperture.",
+                       { "Gaussian", "Computed" } });
     visitor(self.lateralSigmaMm,
             Parameter{ "lateralSigmaMm", "Lateral Sigma (mm)", aboveUpTo(0, 50),
                        "Standard deviation of the Gaussian beam along the array in mm, above 0 up to 50; of probes "

@@ -1,6 +1,7 @@
 #include "BusyScene.h"
 #include "ErrorText.h"
 
+#include "Echo/ComputedBeam.h"
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
 #include "Simulator.h"
@@ -354,4 +355,53 @@ TEST(StageResult, AFetchThatFailsIsTriedAgain)
   });
   EXPECT_THROW(result.host(), Error);
   EXPECT_EQ(result.host(), 5);
+}
+
+TEST(Simulator, ComputesTheBeamThatIsAskedFor)
+{
+  ImageInput input = smallInput();
+  input.settings.echo.aperture = ProbeSettings().aperture();
+  input.settings.matchStages();
+  Simulator simulator(busyScene());
+  const RfResult gaussian = simulator.rf(input);
+  input.settings.echo.beam = BeamForm::Computed;
+  const RfResult computed = simulator.rf(input);
+  EXPECT_NE(computed.host().iq, gaussian.host().iq);
+  EXPECT_TRUE(simulator.rf(input) == computed); // its table is kept
+
+  // The elements of a P4-2, which have gaps: a beam nearly as theirs.
+  ArrayAperture elements = apertureOf(readProbePreset(SONOVDB_DATA_DIR "/probes/phased_p4-2.json"));
+  const EchoSettings& echo = input.settings.echo;
+  elements.centreFrequencyMHz = echo.centreFrequencyMHz;
+  elements.fractionalBandwidth = echo.fractionalBandwidth;
+  const ArrayField exact(elements, echo.depthMm);
+  const ArrayField ours(elementsOf(echo), echo.depthMm);
+  for (const double depthMm : { 20.0, 35.0, 50.0 })
+  {
+    const double peak = std::abs(exact.lateralAt(0.0, depthMm));
+    for (const double lateralMm : { 0.0, 0.5, 1.0, 2.0, 4.0 })
+    {
+      EXPECT_NEAR(std::abs(ours.lateralAt(lateralMm, depthMm)) / peak,
+                  std::abs(exact.lateralAt(lateralMm, depthMm)) / peak, 0.02)
+        << depthMm << " mm, " << lateralMm << " mm to the side";
+    }
+  }
+
+  input.settings.echo.aperture = {};
+  input.settings.matchStages();
+  expectContains(errorOf([&] { simulator.rf(input); }), "give its width and height, or choose the Gaussian beam");
+}
+
+TEST(Simulator, SweepsWithTheComputedBeamAsItImages)
+{
+  ImageInput input = smallInput();
+  input.settings.echo.aperture = ProbeSettings().aperture();
+  input.settings.echo.beam = BeamForm::Computed;
+  input.settings.matchStages();
+  Simulator simulator(busyScene());
+  const ScanPicture alone = simulator.picture(simulator.image(input), input.pose, false);
+  std::vector<std::uint8_t> swept;
+  simulator.sweep({ input.pose }, input.settings, false,
+                  [&](const SweptPictures& p) { swept.assign(p.grey, p.grey + alone.grey.size); });
+  EXPECT_EQ(swept, std::vector<std::uint8_t>(alone.grey.begin(), alone.grey.end()));
 }
