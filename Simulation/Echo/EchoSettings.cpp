@@ -45,10 +45,6 @@ void EchoSettings::validate() const
     "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
   requireInRange(aperture);
-  if (beam == BeamForm::Computed && !arrayField && !field)
-  {
-    throw Error("the computed beam was not computed: form the lines through a simulator, or give the array's field");
-  }
   if (arrayField)
   {
     requireReaches(*arrayField, depthMm);

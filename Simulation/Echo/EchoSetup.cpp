@@ -64,6 +64,10 @@ const EchoSettings& checked(const EchoSources& sources, const std::vector<ScanLi
                             const EchoSettings& settings)
 {
   settings.validate();
+  if (settings.beam == BeamForm::Computed && !settings.arrayField && !settings.field)
+  {
+    throw Error("the computed beam was not computed: form the lines through a simulator, or give the array's field");
+  }
   requireConsistent(sources, lines, settings);
   return settings;
 }
