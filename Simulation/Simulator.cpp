@@ -42,6 +42,14 @@ struct LastResult
   }
 };
 
+struct FieldFrom
+{
+  ArrayAperture aperture;
+  double depthMm;
+
+  bool same(const FieldFrom& o) const { return aperture == o.aperture && depthMm == o.depthMm; }
+};
+
 struct TraceFrom
 {
   std::vector<ScanLine> lines;
@@ -195,14 +203,6 @@ Image unknown(Image layout, std::size_t count)
 }
 
 } // namespace
-
-struct FieldFrom
-{
-  ArrayAperture aperture;
-  double depthMm;
-
-  bool same(const FieldFrom& o) const { return aperture == o.aperture && depthMm == o.depthMm; }
-};
 
 struct Simulator::Last
 {

@@ -84,6 +84,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   DeviceImager& imager = DeviceImager::instance();
   const int together =
     std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
+  const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
   std::shared_ptr<const BModeJob> bmodeJob; // made while the first lines are traced
   SweptPictures before;
   std::shared_ptr<DeviceImager::Download> download;
@@ -101,7 +102,6 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     const LineRange range{ first * perImage, count * perImage };
     const auto traced = imager.trace(traceJob, range);
     // For the lines of one group at a time: the device has work while the next one's is made.
-    const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
     const auto firstLine = lines.begin() + range.first;
     const std::vector<ScanLine> groupLines(firstLine, firstLine + range.count);
     const EchoSetup setup(sources, groupLines, settings.echo);

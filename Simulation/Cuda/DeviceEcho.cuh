@@ -87,10 +87,9 @@ private:
   void splatPoints(int first, int count, cudaStream_t stream);
   void uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
                     Traffic& traffic);
-  void uploadNested(const NestedJob& job, const BeamJob& beam, const std::vector<Beam>& sceneBeams, cudaStream_t stream,
-                    Traffic& traffic);
+  void uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic& traffic);
   void uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
-  void uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic);
+  void uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffic& traffic);
   void splatNested(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
   void splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
 
@@ -174,7 +173,7 @@ private:
 
   DeviceArray<float2> sum_;    ///< lines x sumCount, without nested scatterers
   DeviceArray<int> nestedSum_; ///< lines x sumCount x (re, im), in units of 1 / nestedScale_
-  DeviceArray<float> turns_;   ///< the same: of the downshift's phase
+  DeviceArray<float> turns_;   ///< lines x sumCount: of the downshift's phase
   DeviceArray<float2> iq_;
   DeviceArray<float> envelope_;
 };

@@ -12,6 +12,7 @@
 namespace sono {
 
 constexpr int chunkSamples = 512;
+constexpr float halfDiagonal = 0.8660254f; // of a cube of edge 1: from its centre to its corners
 
 /// Sums of a chunk in shared memory as integers: for amplitudes of which it is known how many come together.
 struct ShortSums
@@ -168,7 +169,7 @@ public:
   {
     const Vec3f size = glm::abs(beam.axis);
     axis_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    const float margin = 0.8660254f * edge_; // from a cube's centre to its corners
+    const float margin = halfDiagonal * edge_;
     from_ = piece.fromMm - margin;
     to_ = piece.toMm + margin;
     // An ellipse grown in proportion holds all that is within the margin of it.

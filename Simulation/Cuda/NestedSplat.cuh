@@ -39,7 +39,7 @@ struct NestedLaunch
 /// How far what a brick of a level holds may lie in front of its middle or behind it, mm.
 SONO_HD inline float nestedHaloMm(int level)
 {
-  return 0.8660254f * nestedCellMm(level) * float(nestedBrickCells);
+  return halfDiagonal * nestedCellMm(level) * float(nestedBrickCells);
 }
 
 /// Samples of the window that the bricks of a chunk of a line echo into. An array's echo from the range: they are asked

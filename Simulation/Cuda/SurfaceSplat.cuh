@@ -133,20 +133,14 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
   const int lane = int(threadIdx.x) % warpLanes;
   const int warp = int(threadIdx.x) / warpLanes;
 
-  const SurfaceHearing nothing{ 0.0f, 0.0f, false, false };
   const auto hear = [&](int p) {
     if constexpr (arePieces)
     {
       const SurfacePiece& item = set.pieces[p];
-      const int row = surfaceRow(set.media, item.below, item.above);
-      if (!mayFaceSurface(fromAlong(item.axis, 1.0f, -item.slopeU, -item.slopeV), row, beam, set.table))
-      {
-        return nothing;
-      }
       const PieceBounds bounds = pieceBounds(item, set.longestStepMm);
       const bool isCoarse = set.nets.isCoarsest(set.nets.coherentCuts(item));
-      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse, row, beam, splat.grid, set.table,
-                         intensity);
+      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse,
+                         surfaceRow(set.media, item.below, item.above), beam, splat.grid, set.table, intensity);
     }
     else
     {
@@ -228,7 +222,7 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       near &= near - 1u;
       ++looked;
       const int p = group.first + lane;
-      const SurfaceHearing heard = lane < group.count ? hear(p) : nothing;
+      const SurfaceHearing heard = lane < group.count ? hear(p) : SurfaceHearing{ 0.0f, 0.0f, false, false };
       diffuse.push(heard.diffuse, { p, heard });
       coherent.push(heard.coherent, { p, heard });
     }

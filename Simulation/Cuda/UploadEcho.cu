@@ -137,9 +137,9 @@ void DeviceEcho::uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint
   }
 }
 
-void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, const std::vector<Beam>& sceneBeams,
-                              cudaStream_t stream, Traffic& traffic)
+void DeviceEcho::uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic& traffic)
 {
+  const NestedJob& job = *echo.nested;
   uploadVoxels(*job.voxels, job.sceneId, stream, traffic);
   if (job.fibres && fibresSceneId_ != job.sceneId)
   {
@@ -162,7 +162,7 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, const s
   {
     const auto sight = job.sights.empty() ? std::nullopt : std::optional<SightJob>(job.sights[n]);
     const float brickMm = nestedCellMm(density_.finest + int(n)) * float(nestedBrickCells);
-    uploadSight(sight, sceneBeams, brickMm, nestedSights_[n], stream, traffic);
+    uploadSight(sight, echo.sceneBeams, brickMm, nestedSights_[n], stream, traffic);
   }
   size_ = job.size;
   spacing_ = job.spacing;
@@ -173,7 +173,8 @@ void DeviceEcho::uploadNested(const NestedJob& job, const BeamJob& beam, const s
     largest = std::max(largest, m.amplitude);
   }
   // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
-  largest *= makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(beam.largestWeight));
+  largest *=
+    makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(echo.beam.largestWeight));
   nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
 }
 
@@ -239,8 +240,9 @@ void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffi
   piecesSceneId_ = job.sceneId;
 }
 
-void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cudaStream_t stream, Traffic& traffic)
+void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffic& traffic)
 {
+  const SurfaceJob& job = *echo.surfaces;
   uploadPieces(job, stream, traffic);
   surfaceRows_.upload(job.rows, stream, traffic);
   diffuseL_.upload(job.diffuseL, stream, traffic);
@@ -284,7 +286,7 @@ void DeviceEcho::uploadSurfaces(const SurfaceJob& job, const BeamJob& beam, cuda
     uploadFieldSight(targets.sight, targetSight_, stream, traffic);
   }
   // A perfect mirror across the whole beam echoes 1; a point of it far less.
-  surfaceScale_ = 536870912.0f / std::max(1.0f, float(beam.largestWeight));
+  surfaceScale_ = 536870912.0f / std::max(1.0f, float(echo.beam.largestWeight));
 }
 
 void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
@@ -349,12 +351,12 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   nested_ = job.nested.has_value();
   if (nested_)
   {
-    uploadNested(*job.nested, job.beam, job.sceneBeams, stream, traffic);
+    uploadNested(job, stream, traffic);
   }
   surfaces_ = job.surfaces.has_value();
   if (surfaces_)
   {
-    uploadSurfaces(*job.surfaces, job.beam, stream, traffic);
+    uploadSurfaces(job, stream, traffic);
   }
 
   points_ = job.points.has_value();

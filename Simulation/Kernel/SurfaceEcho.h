@@ -132,15 +132,6 @@ SONO_HD inline bool withinTangent(float reach, float cosSquared, float sinSquare
   return reach >= 0.0f && sinSquared < wider * wider * cosSquared;
 }
 
-/// Whether a beam may hear pieces with this normal, of any length: false only where it hears none.
-SONO_HD inline bool mayFaceSurface(const Vec3f& normal, int rowFromA, const Beam& b, const SurfaceTable& table)
-{
-  const float along = glm::dot(normal, b.axis);
-  const SurfaceRow& row = table.rows[along < 0.0f ? rowFromA ^ 1 : rowFromA];
-  const float wider = larger(larger(row.reach, row.coherentReach), row.finestReach) + surfaceTangentSlack;
-  return wider > 0.0f && glm::dot(normal, normal) < 1.0001f * (1.0f + wider * wider) * along * along;
-}
-
 /// A bound on the share of its strongest value that a beam has within `radiusMm` of a place; 0 where it sees nothing.
 SONO_HD inline float mostWeight(const Vec3f& position, float radiusMm, const Beam& b, const LineGrid& g)
 {
