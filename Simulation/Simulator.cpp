@@ -157,9 +157,8 @@ struct PathsFrom
 void fetchTraced(const DeviceTraced& device, TracedLines& lines)
 {
   FetchedTrace fetched = DeviceImager::instance().fetch(device);
-  lines.intensity = std::move(fetched.intensity);
-  lines.standardError = std::move(fetched.standardError);
-  lines.attenuationNpPerMHz = std::move(fetched.attenuationNpPerMHz);
+  auto values = fetched.bins.begin();
+  TracedLines::visitBins(lines, [&](std::vector<float>& array, const char*) { array = std::move(*values++); });
   lines.boundaryEcho = std::move(fetched.boundaryEcho);
   lines.segments = fetched.segments;
 }

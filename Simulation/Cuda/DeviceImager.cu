@@ -259,8 +259,8 @@ std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<co
     const auto made = std::make_shared<DeviceTraced>();
     made->arrays = w.tracer->take();
     made->lineCount = lines.count;
-    made->view.intensity = made->arrays.intensity.data();
-    made->view.attenuation = made->arrays.attenuation.data();
+    made->view.intensity = made->arrays.bins[intensityArray].data();
+    made->view.attenuation = made->arrays.bins[attenuationArray].data();
     made->view.binCount = job->binCount;
     made->view.binMm = job->binMm;
     made->view.echoSums = made->arrays.echo.data();
@@ -353,9 +353,10 @@ FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
       check(cudaGetLastError(), "computing");
     }
     FetchedTrace out;
-    out.intensity = w.bring<float, float>(arrays.intensity.data(), arrays.intensity.size());
-    out.standardError = w.bring<float, float>(arrays.standardError.data(), arrays.standardError.size());
-    out.attenuationNpPerMHz = w.bring<float, float>(arrays.attenuation.data(), arrays.attenuation.size());
+    for (const DeviceArray<float>& array : arrays.bins)
+    {
+      out.bins.push_back(w.bring<float, float>(array.data(), array.size()));
+    }
     out.boundaryEcho = w.bring<float2, std::complex<float>>(echo.data(), echo.size());
     download(arrays.segments.data(), 1, &out.segments, stream, w.traffic);
     check(cudaStreamSynchronize(stream), "computing");

@@ -31,9 +31,7 @@ struct LineRange
 /// What fetch() brings of traced lines; see TracedLines.
 struct FetchedTrace
 {
-  std::vector<float> intensity;
-  std::vector<float> standardError;
-  std::vector<float> attenuationNpPerMHz;
+  std::vector<std::vector<float>> bins; ///< in the order of TracedLines::visitBins
   std::vector<std::complex<float>> boundaryEcho;
   std::uint64_t segments = 0;
 };

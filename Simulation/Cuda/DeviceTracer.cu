@@ -52,8 +52,8 @@ std::size_t sharedBesideBins(const TraceView& view, int warps)
 template<class Targets>
 void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
-  const std::size_t bytes =
-    sharedBesideBins(launch.view, launch.warps) + (inShared ? launch.warps * launch.binCount * sizeof(float2) : 0);
+  const std::size_t bytes = sharedBesideBins(launch.view, launch.warps) +
+                            (inShared ? launch.warps * launch.binCount * sizeof(BinSums<float>) : 0);
   const int blocks = launch.batches * launch.slices;
   const bool few = lines * blocks * launch.warps <= fewWarps;
   const auto kernel = !inShared   ? tracePaths<false, true, blocksOfMany, Targets>
@@ -127,7 +127,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const int warps = std::min(blockWarps, ceilDiv(longest, warpLanes));
   const int wanted = std::max(1, launchWarps / (warps * std::max(1, batches * linesPerImage_)));
   const int slices = std::max(1, std::min(wanted, ceilDiv(longest, warps * warpLanes)));
-  const std::size_t binBytes = warps * bins * sizeof(float2);
+  const std::size_t binBytes = warps * bins * sizeof(BinSums<float>);
   const std::size_t sharedLimit =
     std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, blocksOfMany, BvhTargets>));
   const bool inShared = binBytes + sharedBesideBins(view_, warps) <= sharedLimit;
@@ -136,9 +136,10 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
 
   starts_.resize(lineCount * sizeof(LineStart));
   shared_.resize(view_.startsApart ? 0 : lineCount * bins);
-  intensity_.resize(lineCount * bins);
-  error_.resize(lineCount * bins);
-  attenuation_.resize(lineCount * bins);
+  for (DeviceArray<float>& array : arrays_)
+  {
+    array.resize(lineCount * bins);
+  }
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echoRest_.resize(manyPaths ? echo_.size() : 0);
   segments_.resize(1);
@@ -159,16 +160,13 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     const std::size_t skip = std::size_t(from);
     const auto launchOf = [&](const auto& targets) {
       using Launch = TraceLaunch<std::decay_t<decltype(targets)>>;
-      return Launch{ view_,
+      Launch launch{ view_,
                      { cells_, targets },
                      lines_.data() + first + from,
                      reinterpret_cast<LineStart*>(starts_.data()) + from,
                      view_.startsApart ? nullptr : shared_.data() + skip * bins,
                      sums_.data(),
                      bins_.data(),
-                     intensity_.data() + skip * bins,
-                     error_.data() + skip * bins,
-                     attenuation_.data() + skip * bins,
                      echo_.data() + skip * std::size_t(echoCount_) * 2,
                      manyPaths ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
                      segments_.data(),
@@ -184,7 +182,13 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      echoCount_,
                      echoSampleMm_,
                      radPerMm_,
-                     echoScale_ };
+                     echoScale_,
+                     {} };
+      for (std::size_t array = 0; array < binArrayCount; ++array)
+      {
+        launch.arrays[array] = arrays_[array].data() + skip * bins;
+      }
+      return launch;
     };
     if (targets_.any())
     {

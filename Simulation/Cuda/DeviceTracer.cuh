@@ -3,6 +3,9 @@
 #include "Cuda/DeviceMemory.cuh"
 #include "Cuda/ImageJob.h"
 #include "Kernel/TracePath.h"
+#include "Trace/TracedBin.h"
+
+#include <array>
 
 namespace sono {
 
@@ -12,10 +15,8 @@ using EchoSum = unsigned long long;
 /// What tracing leaves on the device.
 struct TracedArrays
 {
-  DeviceArray<float> intensity; ///< lines x bins
-  DeviceArray<float> standardError;
-  DeviceArray<float> attenuation; ///< B, Np of amplitude per MHz, of the round trip
-  DeviceArray<EchoSum> echo;      ///< lines x echoCount x (re, im); none in Acoustic
+  std::array<DeviceArray<float>, binArrayCount> bins; ///< of each BinArray: lines x bins
+  DeviceArray<EchoSum> echo;                          ///< lines x echoCount x (re, im); none in Acoustic
   DeviceArray<std::uint64_t> segments;
 };
 
@@ -29,11 +30,7 @@ public:
   void run(int first, int count, const Progress& progress, cudaStream_t stream);
 
   /// Hands over what run() has just made.
-  TracedArrays take()
-  {
-    return { std::move(intensity_), std::move(error_), std::move(attenuation_), std::move(echo_),
-             std::move(segments_) };
-  }
+  TracedArrays take() { return { std::move(arrays_), std::move(echo_), std::move(segments_) }; }
   float echoPerUnit() const { return echoPerUnit_; } ///< turns an EchoSum into an amplitude
   int binCount() const { return binCount_; }
   int echoCount() const { return echoCount_; }
@@ -50,12 +47,10 @@ private:
   DeviceArray<TraceMedium> media_;
   DeviceArray<TraceLine> lines_;
   DeviceArray<std::uint8_t> starts_;
-  DeviceArray<double2> sums_;
-  DeviceArray<float2> bins_;
-  DeviceArray<float2> shared_;
-  DeviceArray<float> intensity_;
-  DeviceArray<float> error_;
-  DeviceArray<float> attenuation_;
+  DeviceArray<BinSums<double>> sums_;
+  DeviceArray<BinSums<float>> bins_;
+  DeviceArray<BinSums<float>> shared_;
+  std::array<DeviceArray<float>, binArrayCount> arrays_;
   DeviceArray<EchoSum> echo_;
   DeviceArray<EchoSum> echoRest_;
   DeviceArray<std::uint64_t> segments_;

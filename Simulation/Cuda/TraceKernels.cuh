@@ -30,13 +30,9 @@ struct TraceLaunch
   CellSpace<Targets, RowCells> space;
   const TraceLine* lines; // of the launch
   LineStart* starts;      // where paths do not start apart
-  float2* shared; // what all paths of a line leave: lines x bins; as all bins, the intensity and what is absorbed of
-                  // it; null: nothing
-  double2* sums;  // of parts of batches: lines x batches x parts x bins
-  float2* bins;   // of the warps, where they do not lie in shared memory
-  float* intensity;
-  float* error;
-  float* attenuation;
+  BinSums<float>* shared; // what all paths of a line leave: lines x bins; null: nothing
+  BinSums<double>* sums;  // of parts of batches: lines x batches x parts x bins
+  BinSums<float>* bins;   // of the warps, where they do not lie in shared memory
   EchoSum* echo;
   EchoSum* echoRest; // what rounding left of each echo, 2^restBits a unit of `echo`; null: not kept
   std::uint64_t* segments;
@@ -53,6 +49,7 @@ struct TraceLaunch
   float echoSampleMm;
   float radPerMm;
   float echoScale;
+  float* arrays[binArrayCount];
 
   __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
 };
@@ -182,14 +179,23 @@ __device__ bool beginPath(const Launch& launch, int line, const PathKey& key, Tr
   return passBoundary(launch.view, launch.space, start.boundary, key, path, sink);
 }
 
+template<class Real>
+__device__ inline void addBins(const BinSums<Real>& bin, BinSums<double>& sums)
+{
+#pragma unroll
+  for (int sum = 0; sum < binSumCount; ++sum)
+  {
+    sums.of[sum] += double(bin.of[sum]);
+  }
+}
+
 /// A warp's bins go over into its doubles; each lane has its own (see depositByWarp).
-__device__ inline void foldBins(int binCount, int lane, float2* bins, double2* sums)
+__device__ inline void foldBins(int binCount, int lane, BinSums<float>* bins, BinSums<double>* sums)
 {
   for (int b = lane; b < binCount; b += warpLanes)
   {
-    sums[b].x += double(bins[b].x);
-    sums[b].y += double(bins[b].y);
-    bins[b] = { 0.0f, 0.0f };
+    addBins(bins[b], sums[b]);
+    bins[b] = {};
   }
 }
 
@@ -201,7 +207,7 @@ __device__ inline void foldBins(int binCount, int lane, float2* bins, double2* s
 template<bool BinsInShared, bool ManyPaths, int Blocks, class Targets>
 __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Targets> launch)
 {
-  extern __shared__ float2 dynamic[];
+  extern __shared__ BinSums<float> dynamic[];
   const int slice = blockIdx.x % launch.slices;
   const int batch = blockIdx.x / launch.slices;
   const int line = blockIdx.y;
@@ -215,13 +221,13 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   StagedSegment* staged = segmentsOfWarps + warp * warpLanes;
   const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
   const std::size_t warpRow = (row * launch.warps + warp) * launch.binCount;
-  float2* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
+  BinSums<float>* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
   for (int b = lane; b < launch.binCount; b += warpLanes)
   {
-    bins[b] = { 0.0f, 0.0f };
+    bins[b] = {};
     if (ManyPaths)
     {
-      launch.sums[warpRow + b] = { 0.0, 0.0 };
+      launch.sums[warpRow + b] = {};
     }
   }
   const std::uint32_t lineKey = launch.keyOf(line);
@@ -287,24 +293,16 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   __syncthreads();
   for (int b = threadIdx.x; b < launch.binCount; b += blockDim.x)
   {
-    double2 sum{ 0.0, 0.0 };
+    BinSums<double> sum{};
     for (int g = 0; g < launch.warps; ++g)
     {
-      const float2 bin = dynamic[std::size_t(g) * launch.binCount + b];
-      sum.x += double(bin.x);
-      sum.y += double(bin.y);
+      addBins(dynamic[std::size_t(g) * launch.binCount + b], sum);
     }
     launch.sums[row * launch.binCount + b] = sum;
   }
 }
 
-/// B of a bin: a path's intensity falls as the round trip's amplitude does, so what is absorbed is B f.
-__device__ inline float attenuationOf(float intensity, double absorbed, double frequencyMHz)
-{
-  return intensity > 0.0f ? float(absorbed / (double(intensity) * frequencyMHz)) : 0.0f;
-}
-
-/// Mean over the batches and its standard error, for each bin, and what is absorbed per MHz.
+/// The arrays of each bin.
 template<class Targets>
 __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
 {
@@ -315,41 +313,31 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
     return;
   }
   const std::size_t at = std::size_t(line) * launch.binCount + b;
-  launch.error[at] = 0.0f;
-  const float2 shared = launch.shared ? launch.shared[at] : float2{ 0.0f, 0.0f };
-  launch.intensity[at] = shared.x;
-  if (!launch.view.startsApart && !launch.starts[line].meets)
+  BinSums<double> shared{};
+  if (launch.shared)
   {
-    launch.attenuation[at] = attenuationOf(shared.x, double(shared.y), launch.frequencyMHz);
-    return;
+    addBins(launch.shared[at], shared);
   }
-  double means[batchCount];
-  double mean = 0.0;
-  double absorbed = 0.0;
-  for (int batch = 0; batch < launch.batches; ++batch)
-  {
-    const PathRange range = batchRange(launch.paths, launch.batches, batch);
-    double2 sum{ 0.0, 0.0 };
+  const auto meanOf = [&](int batch) {
+    BinSums<double> mean{};
     for (int p = 0; p < parts; ++p)
     {
-      const double2 part =
-        launch.sums[((std::size_t(line) * launch.batches + batch) * parts + p) * launch.binCount + b];
-      sum.x += part.x;
-      sum.y += part.y;
+      addBins(launch.sums[((std::size_t(line) * launch.batches + batch) * parts + p) * launch.binCount + b], mean);
     }
-    means[batch] = sum.x / double(range.last - range.first);
-    mean += means[batch];
-    absorbed += sum.y / double(range.last - range.first) / launch.batches;
-  }
-  mean /= launch.batches;
-  double spread = 0.0;
-  for (int batch = 0; batch < launch.batches; ++batch)
+    const PathRange range = batchRange(launch.paths, launch.batches, batch);
+    for (double& sum : mean.of)
+    {
+      sum /= double(range.last - range.first);
+    }
+    return mean;
+  };
+  const bool hasPaths = launch.view.startsApart || launch.starts[line].meets;
+  const BinArrays bin = finishBin(shared, hasPaths ? launch.batches : 0, meanOf, launch.frequencyMHz);
+#pragma unroll
+  for (int array = 0; array < binArrayCount; ++array)
   {
-    spread += (means[batch] - mean) * (means[batch] - mean);
+    launch.arrays[array][at] = bin.of[array];
   }
-  launch.intensity[at] += float(mean);
-  launch.attenuation[at] = attenuationOf(launch.intensity[at], double(shared.y) + absorbed, launch.frequencyMHz);
-  launch.error[at] = launch.batches > 1 ? float(sqrt(spread / (double(launch.batches) * (launch.batches - 1)))) : 0.0f;
 }
 
 } // namespace sono

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/BeamDeposit.h"
+#include "Trace/TracedBin.h"
 
 #include <cuda_runtime.h>
 
@@ -41,16 +41,18 @@ __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& 
   return staged;
 }
 
-/// What a bin holds: the sum of I w_R, and that of A I w_R with A the attenuation met, Np of intensity.
-__device__ inline void addToBin(const StagedSegment& s, float value, float at, float2& bin)
+__device__ inline void addToBin(const StagedSegment& s, float value, float at, BinSums<float>& bin)
 {
-  bin.x += value;
-  bin.y += value * (s.beam.absorbed + s.beam.decay * at);
+#pragma unroll
+  for (int sum = 0; sum < binSumCount; ++sum)
+  {
+    bin.of[sum] += value * binFactor(sum, s.beam, at, 1.0f);
+  }
 }
 
 /// A warp adds a segment to its bins; a bin always belongs to the same lane, so that the sum's order is that of the
 /// segments.
-__device__ inline void depositByWarp(const StagedSegment s, float binMm, int lane, float2* __restrict__ bins)
+__device__ inline void depositByWarp(const StagedSegment s, float binMm, int lane, BinSums<float>* __restrict__ bins)
 {
   int b = s.binLow + ((lane - s.binLow) & (warpLanes - 1));
   const float inverseMu = 1.0f / s.beam.mu;
