@@ -31,9 +31,13 @@ struct LineSurfaceSum
   SONO_HD void add([[maybe_unused]] int sample, [[maybe_unused]] float re, [[maybe_unused]] float im)
   {
 #if defined(__CUDA_ARCH__)
-    // One value fits into 32 bits, which are made faster.
+    // One value fits into 32 bits, which are made faster; coherent echoes of a beam with a real weight have no second.
     atomicAdd(sums + 2 * sample, EchoSum((long long)(__float2int_rn(re * scale))));
-    atomicAdd(sums + 2 * sample + 1, EchoSum((long long)(__float2int_rn(im * scale))));
+    const int units = __float2int_rn(im * scale);
+    if (units != 0)
+    {
+      atomicAdd(sums + 2 * sample + 1, EchoSum((long long)(units)));
+    }
 #endif
   }
 };
