@@ -96,7 +96,6 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
   launch.fibres = fibres_;
   launch.density = density_;
   launch.seed = seed_;
-  nestedSum_.clear(stream);
   int levels = 0;
   int halo = 0;
   for (std::size_t n = 0; n < nestedRanges_.size(); ++n)
@@ -129,7 +128,6 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
 
 void DeviceEcho::splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
 {
-  surfaceSum_.clear(stream);
   const auto launchFor = [&](const SurfaceSet& set, const Sight& sight) {
     return SurfaceLaunch{ splat(sceneBeams_.data() + first, surfaceScale_, sight), traced, set, surfaceSum_.data() };
   };
@@ -170,8 +168,8 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
   const std::size_t lines = std::size_t(count);
   const bool sums = tissues_ || points_;
   sum_.resize(sums ? lines * sumCount_ : 0);
-  nestedSum_.resize(nested_ ? 2 * lines * sumCount_ : 0);
-  surfaceSum_.resize(surfaces_ ? 2 * lines * sumCount_ : 0);
+  nestedSum_.begin(nested_ ? 2 * lines * sumCount_ : 0, stream);
+  surfaceSum_.begin(surfaces_ ? 2 * lines * sumCount_ : 0, stream);
   iq_.resize(wantsIq ? lines * sampleCount_ : 0);
   envelope_.resize(lines * sampleCount_);
   const bool sinks = downshift_ && traced.intensity && traced.attenuation;
@@ -190,7 +188,7 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
                              half_,
                              sumCount_,
                              sampleCount_,
-                             float(sampleMm_),
+                             double(float(sampleMm_)) / double(traced.binMm),
                              wantsIq ? iq_.data() : nullptr,
                              envelope_.data() };
   {
@@ -217,8 +215,7 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
       splatSurfaces(first, count, traced, stream);
     }
   }
-  const int width = tileSamples + 2 * half_;
-  const std::size_t bytes = (2 * std::size_t(width + width / 32 + 2) + pulse_.size()) * sizeof(float);
+  const std::size_t bytes = finishBytes(half_, complexPulse_);
   const auto kernel = complexPulse_ ? convolveLines<true> : convolveLines<false>;
   if (bytes > sharedMemoryFor(kernel))
   {
@@ -228,6 +225,8 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
         "preparing to convolve a pulse of that length");
   kernel<<<dim3(count, (sampleCount_ + tileSamples - 1) / tileSamples), finishThreads, bytes, stream>>>(launch);
+  nestedSum_.end();
+  surfaceSum_.end();
   check(cudaGetLastError(), "forming RF lines");
 }
 

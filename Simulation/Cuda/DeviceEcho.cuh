@@ -156,7 +156,7 @@ private:
   DeviceArray<SurfaceGroup> targetGroups_;
   Sight pieceSight_, targetSight_; ///< of a field
   float surfaceScale_ = 1.0f;
-  DeviceArray<EchoSum> surfaceSum_; ///< lines x sumCount x (re, im)
+  ZeroedSums<EchoSum> surfaceSum_; ///< lines x sumCount x (re, im)
 
   bool points_ = false;
   std::shared_ptr<const PointTable> table_;
@@ -171,9 +171,9 @@ private:
   DeviceArray<float2> givenEcho_;
   TracedOnDevice given_;
 
-  DeviceArray<float2> sum_;    ///< lines x sumCount, without nested scatterers
-  DeviceArray<int> nestedSum_; ///< lines x sumCount x (re, im), in units of 1 / nestedScale_
-  DeviceArray<float> turns_;   ///< lines x sumCount: of the downshift's phase
+  DeviceArray<float2> sum_;   ///< lines x sumCount, without nested scatterers
+  ZeroedSums<int> nestedSum_; ///< lines x sumCount x (re, im), in units of 1 / nestedScale_
+  DeviceArray<float> turns_;  ///< lines x sumCount: of the downshift's phase
   DeviceArray<float2> iq_;
   DeviceArray<float> envelope_;
 };

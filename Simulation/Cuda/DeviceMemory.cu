@@ -144,28 +144,25 @@ cudaStream_t besideStream()
   return stream;
 }
 
-namespace {
-
-/// `later` goes on after all that `earlier` was asked for.
-cudaError_t follow(cudaStream_t later, cudaStream_t earlier)
+void follow(cudaStream_t later, cudaStream_t earlier)
 {
   static cudaEvent_t event = nullptr; // one caller at a time, as all of the imager
-  cudaError_t error = event ? cudaSuccess : cudaEventCreateWithFlags(&event, cudaEventDisableTiming);
-  error = error ? error : cudaEventRecord(event, earlier);
-  return error ? error : cudaStreamWaitEvent(later, event);
+  if (event || cudaEventCreateWithFlags(&event, cudaEventDisableTiming) == cudaSuccess)
+  {
+    cudaEventRecord(event, earlier);
+    cudaStreamWaitEvent(later, event);
+  }
 }
-
-} // namespace
 
 Beside::Beside(cudaStream_t stream)
   : stream_(stream)
 {
-  check(follow(besideStream(), stream_), "computing");
+  follow(besideStream(), stream_);
 }
 
 Beside::~Beside()
 {
-  follow(stream_, besideStream()); // an error stays for the next call to find
+  follow(stream_, besideStream());
 }
 
 cudaStream_t copyStream()

@@ -59,6 +59,10 @@ cudaStream_t deviceStream();
 cudaStream_t besideStream();
 cudaStream_t copyStream();
 
+/// What `later` is asked for from now on waits for all that `earlier` was asked for. An error stays for the next call
+/// to find.
+void follow(cudaStream_t later, cudaStream_t earlier);
+
 /// While it lives, work may be asked for beside another stream, in memory that is there already. It begins after all
 /// that the other stream was asked for before, which goes on after it.
 class Beside
@@ -171,6 +175,56 @@ private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
+};
+
+/// Sums that begin at zero. They are cleared as soon as they have been read, beside what the device does then.
+template<class T>
+class ZeroedSums
+{
+public:
+  ZeroedSums() = default;
+  ~ZeroedSums() { awaitZeros(); } // before the memory goes
+  ZeroedSums(const ZeroedSums&) = delete;
+  ZeroedSums& operator=(const ZeroedSums&) = delete;
+
+  T* data() const { return sums_.data(); }
+
+  /// So many zeros, for what the stream does from now on.
+  void begin(std::size_t count, cudaStream_t stream)
+  {
+    const bool isZero = count <= zeros_;
+    stream_ = stream;
+    awaitZeros();
+    sums_.resize(count);
+    if (!isZero)
+    {
+      sums_.clear(stream);
+    }
+  }
+  /// Nothing that the stream does from now on reads them.
+  void end()
+  {
+    if (sums_.size() > 0)
+    {
+      follow(besideStream(), stream_);
+      sums_.clear(besideStream());
+      zeros_ = sums_.size();
+    }
+  }
+
+private:
+  void awaitZeros()
+  {
+    if (zeros_ > 0)
+    {
+      follow(stream_, besideStream());
+      zeros_ = 0;
+    }
+  }
+
+  DeviceArray<T> sums_;
+  cudaStream_t stream_ = nullptr; // of the last begin()
+  std::size_t zeros_ = 0;         // from the first sum on
 };
 
 /// Brings `count` values back; the caller synchronises.

@@ -23,19 +23,34 @@ struct FinishLaunch
   int half;
   int sumCount;
   int sampleCount;
-  float sampleMm;
-  float2* iq; // null: not wanted
+  double binsPerSample; // of the tracer
+  float2* iq;           // null: not wanted
   float* envelope;
 };
 
-constexpr int outputsOfThread = 4;
+constexpr int outputsOfThread = 8; // and taps that are taken together
 constexpr int finishThreads = 128;
 constexpr int tileSamples = outputsOfThread * finishThreads;
 
-/// Shifts rows of 32 apart, so that threads that are some samples apart use different banks.
-__device__ inline int padded(int i)
+/// Taps of a pulse, and zeros up to whole groups of them.
+SONO_HD inline int paddedTaps(int half)
 {
-  return i + (i >> 5);
+  return (2 * half + outputsOfThread) / outputsOfThread * outputsOfThread;
+}
+
+/// Samples of a tile and around it lie in rows of each eighth: threads that read side by side find them side by side,
+/// and the rows begin so that a half warp writes two columns into different banks.
+SONO_HD inline int tilePitch(int half)
+{
+  const int columns = finishThreads + paddedTaps(half) / outputsOfThread;
+  return columns + (18 - columns % 16) % 16;
+}
+
+/// Bytes that a block keeps of a tile and the pulse.
+inline std::size_t finishBytes(int half, bool complexPulse)
+{
+  return std::size_t(tilePitch(half)) * outputsOfThread * sizeof(float2) +
+         std::size_t(paddedTaps(half)) * (complexPulse ? 2 : 1) * sizeof(float);
 }
 
 /// Where a sample falls between the centres of the tracer's bins: the first of two, the step to the other, its share.
@@ -49,7 +64,7 @@ struct BinPlace
 __device__ inline BinPlace binPlace(const FinishLaunch& launch, int s)
 {
   const TracedOnDevice& traced = launch.traced;
-  const double wanted = s * double(launch.sampleMm) / double(traced.binMm) - 0.5;
+  const double wanted = s * launch.binsPerSample - 0.5;
   const double position = fmin(fmax(wanted, 0.0), double(traced.binCount - 1));
   const int bin = min(int(position), max(0, traced.binCount - 2));
   return { bin, traced.binCount > 1 ? 1 : 0, float(position - bin) };
@@ -165,58 +180,57 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
 template<bool ComplexPulse>
 __global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch launch)
 {
-  extern __shared__ float memory[];
-  const int taps = 2 * launch.half + 1;
-  const int width = tileSamples + 2 * launch.half;
-  float* re = memory;
-  float* im = re + padded(width) + 1;
-  float* pulse = im + padded(width) + 1;
+  extern __shared__ float2 tile[];
+  const int taps = paddedTaps(launch.half);
+  const int pitch = tilePitch(launch.half);
+  float* pulse = reinterpret_cast<float*>(tile + pitch * outputsOfThread);
   const int line = blockIdx.x;
   const int first = blockIdx.y * tileSamples;
-  for (int i = threadIdx.x; i < width; i += finishThreads)
+  for (int i = threadIdx.x; i < tileSamples + taps; i += finishThreads)
   {
-    const float2 v = demodulated(launch, line, first + i - launch.half);
-    re[padded(i)] = v.x;
-    im[padded(i)] = v.y;
+    tile[i % outputsOfThread * pitch + i / outputsOfThread] = demodulated(launch, line, first + i - launch.half);
   }
+  const int given = 2 * launch.half + 1;
   for (int k = threadIdx.x; k < taps * (ComplexPulse ? 2 : 1); k += finishThreads)
   {
-    pulse[k] = launch.pulse[k];
+    const int part = k / taps;
+    pulse[k] = k - part * taps < given ? launch.pulse[k - part * taps + part * given] : 0.0f;
   }
   __syncthreads();
 
   float sumRe[outputsOfThread] = {};
   float sumIm[outputsOfThread] = {};
-  float windowRe[outputsOfThread];
-  float windowIm[outputsOfThread];
-  const int base = threadIdx.x * outputsOfThread;
-  for (int j = 0; j + 1 < outputsOfThread; ++j)
-  {
-    windowRe[j + 1] = re[padded(base + j)];
-    windowIm[j + 1] = im[padded(base + j)];
-  }
-#pragma unroll outputsOfThread
-  for (int k = 0; k < taps; ++k)
-  {
+  float2 window[2 * outputsOfThread];
 #pragma unroll
-    for (int j = 0; j + 1 < outputsOfThread; ++j)
-    {
-      windowRe[j] = windowRe[j + 1];
-      windowIm[j] = windowIm[j + 1];
-    }
-    windowRe[outputsOfThread - 1] = re[padded(base + k + outputsOfThread - 1)];
-    windowIm[outputsOfThread - 1] = im[padded(base + k + outputsOfThread - 1)];
-    const float p = pulse[k];
-    const float q = ComplexPulse ? pulse[taps + k] : 0.0f;
+  for (int j = 0; j < outputsOfThread; ++j)
+  {
+    window[outputsOfThread + j] = tile[j * pitch + threadIdx.x];
+  }
+  const int base = threadIdx.x * outputsOfThread;
+  for (int group = 0; group * outputsOfThread < taps; ++group)
+  {
 #pragma unroll
     for (int j = 0; j < outputsOfThread; ++j)
     {
-      sumRe[j] += p * windowRe[j];
-      sumIm[j] += p * windowIm[j];
-      if (ComplexPulse)
+      window[j] = window[outputsOfThread + j];
+      window[outputsOfThread + j] = tile[j * pitch + threadIdx.x + group + 1];
+    }
+#pragma unroll
+    for (int k = 0; k < outputsOfThread; ++k)
+    {
+      const float p = pulse[group * outputsOfThread + k];
+      const float q = ComplexPulse ? pulse[taps + group * outputsOfThread + k] : 0.0f;
+#pragma unroll
+      for (int j = 0; j < outputsOfThread; ++j)
       {
-        sumRe[j] -= q * windowIm[j];
-        sumIm[j] += q * windowRe[j];
+        const float2 v = window[k + j];
+        sumRe[j] += p * v.x;
+        sumIm[j] += p * v.y;
+        if (ComplexPulse)
+        {
+          sumRe[j] -= q * v.y;
+          sumIm[j] += q * v.x;
+        }
       }
     }
   }
