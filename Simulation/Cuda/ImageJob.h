@@ -1,6 +1,5 @@
 #pragma once
 
-#include "Echo/ArraySight.h"
 #include "Echo/PointTable.h"
 #include "Echo/ScattererDensity.h"
 #include "Kernel/BeamSight.h"
@@ -57,22 +56,14 @@ struct FieldJob
   SharedVector<float> values; ///< kept on the device while they are the same
 };
 
-/// A computed complex beam in place of a Gaussian, and where it matters. Kept on the device while the field is the
-/// same.
-struct ArrayJob
-{
-  std::shared_ptr<const ArrayField> field;
-  std::shared_ptr<const ArraySight> sight;
-};
-
 /// What all lines' beams have in common. Those of the scatterers below hold no pointers to tables.
 struct BeamJob
 {
   BeamKind kind = BeamKind::Gaussian;
   std::optional<FieldJob> field;
-  std::optional<ArrayJob> array;
-  std::optional<BeamReachTable> reach; ///< of an Aperture or Array
-  double largestWeight = 1.0;          ///< bounds over all depths: of |W|, and of its integral across the beam
+  std::shared_ptr<const ArrayField> array; ///< kept on the device while it is the same
+  std::optional<BeamReachTable> reach;     ///< of an Aperture or Array
+  double largestWeight = 1.0;              ///< bounds over all depths: of |W|, and of its integral across the beam
   double largestAreaMm2 = 1.0;
 };
 

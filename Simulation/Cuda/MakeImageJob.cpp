@@ -39,9 +39,9 @@ BeamJob makeBeam(const EchoSetup& setup)
       break;
     }
     case BeamKind::Array:
-      job.array = ArrayJob{ setup.settings.arrayField, beams.sharedArraySight() };
-      job.largestWeight = double(job.array->sight->largestWeight());
-      job.largestAreaMm2 = double(job.array->sight->largestAreaMm2());
+      job.array = setup.settings.arrayField;
+      job.largestWeight = double(job.array->sight().largestWeight());
+      job.largestAreaMm2 = double(job.array->sight().largestAreaMm2());
       break;
     default:
       job.largestWeight = 0.0;

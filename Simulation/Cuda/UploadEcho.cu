@@ -64,17 +64,18 @@ void DeviceEcho::uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& tr
   }
   if (job.array)
   {
-    if (arraySource_ != job.array->field)
+    const ArraySight& sight = job.array->sight();
+    if (arraySource_ != job.array)
     {
       arraySource_ = nullptr;
-      arrayLateral_.upload(job.array->field->lateral(), stream, traffic);
-      arrayElevational_.upload(job.array->field->elevational(), stream, traffic);
-      sightLateral_.upload(job.array->sight->lateral(), stream, traffic);
-      sightElevational_.upload(job.array->sight->elevational(), stream, traffic);
-      arraySource_ = job.array->field;
+      arrayLateral_.upload(job.array->lateral(), stream, traffic);
+      arrayElevational_.upload(job.array->elevational(), stream, traffic);
+      sightLateral_.upload(sight.lateral(), stream, traffic);
+      sightElevational_.upload(sight.elevational(), stream, traffic);
+      arraySource_ = job.array;
     }
-    array_ = job.array->field->view(arrayLateral_.data(), arrayElevational_.data());
-    arraySight_ = job.array->sight->view(sightLateral_.data(), sightElevational_.data());
+    array_ = job.array->view(arrayLateral_.data(), arrayElevational_.data());
+    arraySight_ = sight.view(sightLateral_.data(), sightElevational_.data());
   }
 }
 

@@ -73,7 +73,7 @@ BeamModel::BeamModel(const EchoSettings& settings, InterfaceModel model)
   {
     array_ = settings.arrayField->view();
     focusMm_ = settings.arrayField->focusMm();
-    sight_ = std::make_shared<const ArraySight>(*settings.arrayField);
+    sight_ = &settings.arrayField->sight();
     sightView_ = sight_->view();
   }
   const BeamWidth focus = widthAt(focusMm_);

@@ -5,7 +5,6 @@
 #include "Kernel/EchoSplat.h"
 #include "Kernel/Interface.h"
 
-#include <memory>
 #include <optional>
 
 namespace sono {
@@ -40,9 +39,7 @@ public:
   BeamWidth focusWidth() const { return widthAt(focusMm_); }
   /// For bricks; null where the kind of beam has none.
   const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }
-  const ArraySight* arraySight() const { return sight_.get(); }
-  /// The same for whoever keeps it longer.
-  const std::shared_ptr<const ArraySight>& sharedArraySight() const { return sight_; }
+  const ArraySight* arraySight() const { return sight_; }
 
   /// In coordinates that are turned by `rotation`, from `origin` there. For lookups while this lives.
   Beam beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
@@ -55,8 +52,8 @@ private:
   ApertureProfile straight_{}; // of an Aperture
   std::optional<BeamFieldView> field_;
   std::optional<ArrayBeamView> array_;
-  std::optional<BeamReachTable> reach_;     // of an Aperture
-  std::shared_ptr<const ArraySight> sight_; // of an Array
+  std::optional<BeamReachTable> reach_; // of an Aperture
+  const ArraySight* sight_ = nullptr;   // of an Array
   std::optional<ArraySightView> sightView_;
   double focusMm_ = 0.0;
   double focusAreaMm2_ = 0.0;

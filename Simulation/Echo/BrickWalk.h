@@ -1,9 +1,9 @@
 #pragma once
 
-#include "Echo/ArraySight.h"
 #include "Echo/BeamSplat.h"
 #include "Echo/FieldSight.h"
 #include "Kernel/Vec.h"
+#include "Probe/ArraySight.h"
 
 #include <cstddef>
 #include <functional>

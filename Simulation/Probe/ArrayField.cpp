@@ -91,6 +91,7 @@ ArrayField::ArrayField(const ArrayAperture& aperture, double depthMm, const Prog
   normalise(elevationalAxis_);
   lateral_ = tabulate(lateralAxis_, partOf(progress, 0.0, 0.6));
   elevational_ = tabulate(elevationalAxis_, partOf(progress, 0.6, 1.0));
+  sight_.emplace(view(), depthMm);
 }
 
 void ArrayField::normalise(Axis& axis) const

@@ -3,8 +3,10 @@
 #include "Core/Progress.h"
 #include "Kernel/ArrayBeam.h"
 #include "Probe/ArrayAperture.h"
+#include "Probe/ArraySight.h"
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace sono {
@@ -33,6 +35,8 @@ public:
   ArrayBeamView view(const float* lateral, const float* elevational) const;
   const std::vector<float>& lateral() const { return lateral_; }
   const std::vector<float>& elevational() const { return elevational_; }
+  /// Where it counts.
+  const ArraySight& sight() const { return *sight_; }
   double depthMm() const { return depthMm_; }
   double focusMm() const { return focusMm_; }
   /// f_e of (12.6).
@@ -81,6 +85,7 @@ private:
   Axis elevationalAxis_;
   std::vector<float> lateral_; // re, im
   std::vector<float> elevational_;
+  std::optional<ArraySight> sight_; // once the values are there
 };
 
 } // namespace sono

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Kernel/ArrayBeam.h"
 #include "Kernel/ArraySightView.h"
 #include "Kernel/Vec.h"
-#include "Probe/ArrayField.h"
 
 #include <vector>
 
@@ -25,7 +25,8 @@ struct BeamReachTable
 class ArraySight
 {
 public:
-  explicit ArraySight(const ArrayField& field);
+  /// Of a table of weights down to a depth.
+  ArraySight(const ArrayBeamView& view, double depthMm);
 
   /// For lookups while this lives, and the same for copies of its values that lie elsewhere.
   ArraySightView view() const { return view(lateral_.values.data(), elevational_.values.data()); }

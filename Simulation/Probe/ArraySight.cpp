@@ -1,4 +1,4 @@
-#include "Echo/ArraySight.h"
+#include "Probe/ArraySight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,9 @@ Vec2f BeamReachTable::widest(float fromMm, float toMm) const
   return most;
 }
 
-ArraySight::ArraySight(const ArrayField& field)
-  : steps_(int(std::ceil(field.depthMm() / double(stepMm))) + 1)
+ArraySight::ArraySight(const ArrayBeamView& view, double depthMm)
+  : steps_(int(std::ceil(depthMm / double(stepMm))) + 1)
 {
-  const ArrayBeamView view = field.view();
   lateral_ = envelopeOf(view.lateral, view);
   elevational_ = envelopeOf(view.elevational, view);
   reach_.stepMm = stepMm;
