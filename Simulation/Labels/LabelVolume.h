@@ -43,6 +43,7 @@ struct LabelInfo
 {
   int id = 0;         ///< the number in the voxels, 0 to 65535
   std::string name;   ///< as the file gives it, or "label_<id>"
+  std::string code;   ///< of a terminology, SCHEME VALUE such as "SCT 64033007"; empty: none
   std::string tissue; ///< a name of the tissue table; empty until assignTissues
   std::array<float, 3> color{ 0.5f, 0.5f, 0.5f };
   bool hasColor = false; ///< whether the file gave the colour

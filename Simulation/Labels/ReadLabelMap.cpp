@@ -83,6 +83,10 @@ void copyDescription(const LabelInfo& from, LabelInfo& to)
   {
     to.name = from.name;
   }
+  if (!from.code.empty())
+  {
+    to.code = from.code;
+  }
   if (from.hasColor)
   {
     to.color = from.color;
