@@ -2,85 +2,118 @@
 
 #include "Core/Progress.h"
 #include "Labels/CsvFile.h"
+#include "Labels/LabelWords.h"
 
-#include <cctype>
+#include <algorithm>
 #include <cstddef>
 
 namespace sono {
 
-namespace {
-
-bool sameLetter(char a, char b)
+std::vector<LabelTissueMap::Word> LabelTissueMap::wordsOfPattern(const std::string& pattern)
 {
-  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-}
-
-/// Whether `text` matches a pattern in which '*' stands for any run of characters.
-bool matches(const std::string& pattern, const std::string& text)
-{
-  std::size_t p = 0;
-  std::size_t t = 0;
-  std::size_t star = std::string::npos; // the last '*' seen, and how far it reaches so far
-  std::size_t starEnd = 0;
-  while (t < text.size())
+  std::vector<Word> words;
+  for (std::size_t begin = 0; begin <= pattern.size();)
   {
-    if (p < pattern.size() && pattern[p] == '*')
+    const std::size_t end = std::min(pattern.find('*', begin), pattern.size());
+    const std::string part =
+      pattern.substr(begin, end - begin); // "*ventric*wall*" is two words, each open at both ends
+    std::vector<std::string> texts = wordsOfName(part);
+    const std::size_t first = words.size();
+    for (const std::string& text : texts)
     {
-      star = p++;
-      starEnd = t;
+      words.push_back({ text, false, false });
     }
-    else if (p < pattern.size() && sameLetter(pattern[p], text[t]))
+    if (!texts.empty())
     {
-      ++p;
-      ++t;
+      const auto isLetter = [](char c) { return !wordsOfName(std::string(1, c)).empty(); };
+      words[first].openBefore = begin > 0 && isLetter(part.front());
+      words.back().openAfter = end < pattern.size() && isLetter(part.back());
     }
-    else if (star != std::string::npos)
-    {
-      p = star + 1;
-      t = ++starEnd;
-    }
-    else
-    {
-      return false;
-    }
+    begin = end + 1;
   }
-  return pattern.find_first_not_of('*', p) == std::string::npos;
+  return words;
 }
 
-} // namespace
+bool LabelTissueMap::matches(const Word& word, const std::string& text)
+{
+  if (word.openBefore && word.openAfter)
+  {
+    return text.find(word.text) != std::string::npos;
+  }
+  if (text.size() < word.text.size())
+  {
+    return false;
+  }
+  if (word.openAfter)
+  {
+    return text.compare(0, word.text.size(), word.text) == 0;
+  }
+  const std::size_t begin = text.size() - word.text.size();
+  return (begin == 0 || word.openBefore) && text.compare(begin, word.text.size(), word.text) == 0;
+}
 
 LabelTissueMap LabelTissueMap::read(const std::string& path)
 {
   const CsvFile csv = CsvFile::read(path);
   const auto pattern = std::size_t(csv.requiredColumn("pattern"));
   const auto tissue = std::size_t(csv.requiredColumn("tissue"));
+  const int guess = csv.column("guess");
+  const int code = csv.column("code");
+  const auto field = [](const CsvFile::Row& row, int column) {
+    return column < 0 ? std::string() : row.fields[std::size_t(column)];
+  };
   LabelTissueMap map;
   for (const CsvFile::Row& row : csv.rows)
   {
-    if (row.fields[pattern].empty() || row.fields[tissue].empty())
+    const LabelTissueRule rule{ row.fields[pattern], row.fields[tissue], field(row, guess) == "yes", field(row, code) };
+    if ((rule.pattern.empty() && rule.code.empty()) || rule.tissue.empty())
     {
       throw Error(csv.where(row) + " lacks a pattern or a tissue; write both, or remove the line.");
     }
-    map.add(row.fields[pattern], row.fields[tissue]);
+    if (!rule.guess && !field(row, guess).empty())
+    {
+      throw Error(csv.where(row) + " has '" + field(row, guess) + "' in column 'guess'; write yes, or nothing.");
+    }
+    map.add(rule);
   }
   return map;
 }
 
-void LabelTissueMap::add(std::string pattern, std::string tissue)
+void LabelTissueMap::add(const LabelTissueRule& rule)
 {
-  rows_.emplace_back(std::move(pattern), std::move(tissue));
+  words_.push_back(wordsOfPattern(rule.pattern));
+  rules_.push_back(rule);
 }
 
-std::string LabelTissueMap::find(const std::string& labelName) const
+const LabelTissueRule* LabelTissueMap::matchName(const std::string& name) const
 {
-  for (const auto& [pattern, tissue] : rows_)
+  const std::vector<std::string> texts = wordsOfName(name);
+  for (std::size_t n = 0; n < rules_.size(); ++n)
   {
-    if (matches(pattern, labelName))
+    const bool isMatch =
+      !rules_[n].pattern.empty() && std::all_of(words_[n].begin(), words_[n].end(), [&texts](const Word& word) {
+        return std::any_of(texts.begin(), texts.end(),
+                           [&word](const std::string& text) { return matches(word, text); });
+      });
+    if (isMatch)
     {
-      return tissue;
+      return &rules_[n];
     }
   }
-  return {};
+  return nullptr;
+}
+
+const LabelTissueRule* LabelTissueMap::matchCode(const std::string& code) const
+{
+  const auto at = std::find_if(rules_.begin(), rules_.end(),
+                               [&code](const LabelTissueRule& rule) { return !code.empty() && rule.code == code; });
+  return at == rules_.end() ? nullptr : &*at;
+}
+
+std::string LabelTissueMap::find(const std::string& name) const
+{
+  const LabelTissueRule* rule = matchName(name);
+  return rule ? rule->tissue : std::string();
 }
 
 std::vector<std::string> assignTissues(LabelVolume& volume, const LabelTissueMap& map, const TissueTable& table,
@@ -98,12 +131,14 @@ std::vector<std::string> assignTissues(LabelVolume& volume, const LabelTissueMap
   {
     if (label.tissue.empty())
     {
-      label.tissue = map.find(label.name);
-    }
-    if (label.tissue.empty())
-    {
-      unmatched.push_back(label.name);
-      label.tissue = fallback;
+      const LabelTissueRule* byCode = map.matchCode(label.code);
+      const LabelTissueRule* rule = byCode ? byCode : map.matchName(label.name);
+      label.tissue = rule ? rule->tissue : fallback;
+      label.guessed = !rule || rule->guess;
+      if (!rule)
+      {
+        unmatched.push_back(label.name);
+      }
     }
     if (!table.find(label.tissue))
     {

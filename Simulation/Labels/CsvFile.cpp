@@ -48,6 +48,24 @@ bool takeField(const std::string& line, std::size_t& position, std::string& fiel
   return trimmed(line.substr(at + 1, comma - at - 1)).empty();
 }
 
+bool isTabbed(const std::string& path)
+{
+  return path.size() > 4 &&
+         (path.compare(path.size() - 4, 4, ".tsv") == 0 || path.compare(path.size() - 4, 4, ".TSV") == 0);
+}
+
+std::vector<std::string> splitAtTabs(const std::string& line)
+{
+  std::vector<std::string> fields;
+  for (std::size_t position = 0; position <= line.size();)
+  {
+    const std::size_t tab = std::min(line.find('\t', position), line.size());
+    fields.push_back(trimmed(line.substr(position, tab - position)));
+    position = tab + 1;
+  }
+  return fields;
+}
+
 std::vector<std::string> splitLine(const std::string& line, const std::string& where)
 {
   std::vector<std::string> fields;
@@ -81,14 +99,14 @@ CsvFile CsvFile::read(const std::string& path)
     {
       line.erase(0, 3); // the byte order mark that spreadsheets write
     }
-    line = trimmed(line);
-    if (line.empty() || line[0] == '#')
+    const std::string content = trimmed(line);
+    if (content.empty() || content[0] == '#')
     {
       continue;
     }
     Row row;
     row.line = number;
-    row.fields = splitLine(line, csv.where(row));
+    row.fields = isTabbed(path) ? splitAtTabs(line) : splitLine(content, csv.where(row));
     if (csv.header.empty())
     {
       csv.header = std::move(row.fields);

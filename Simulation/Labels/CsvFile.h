@@ -6,8 +6,9 @@
 
 namespace sono {
 
-/// A comma-separated table with a header line. Empty lines and lines starting with '#' are skipped, fields may be
-/// quoted ("" inside quotes is one quote), spaces around a field are dropped, missing last fields are empty.
+/// A table with a header line, separated by commas (in a file that ends in .tsv by tabs). Empty lines and lines
+/// starting with '#' are skipped, spaces around a field are dropped, missing last fields are empty. Between commas,
+/// fields may be quoted ("" inside quotes is one quote).
 struct CsvFile
 {
   struct Row

@@ -2,6 +2,7 @@
 
 #include "Core/Progress.h"
 #include "Labels/CsvFile.h"
+#include "Labels/LabelCode.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <sstream>
 
 namespace sono {
@@ -18,17 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* endings[] = { ".csv", ".label", ".ctbl", ".txt" };
+constexpr const char* endings[] = { ".csv", ".label", ".ctbl", ".tsv", ".txt" };
 
 bool isWhole(double value, double maximum)
 {
   return value >= 0.0 && value <= maximum && value == std::floor(value);
 }
 
-bool isCsv(const std::string& path)
+/// Whether the file is a table with a header line, rather than text.
+bool hasColumns(const std::string& path)
 {
   const std::string ending = fs::path(path).extension().string();
-  return ending == ".csv" || ending == ".CSV";
+  return ending == ".csv" || ending == ".CSV" || ending == ".tsv" || ending == ".TSV";
 }
 
 /// A number of a table within [0, maximum]; throws Error naming file, line and column.
@@ -44,46 +48,89 @@ double tableNumber(const CsvFile& csv, const CsvFile::Row& row, int column, doub
   return *value;
 }
 
-/// The columns id, name, red, green, blue of either kind of CSV file; -1 for one that is not there.
-std::array<int, 5> columnsOf(const CsvFile& csv)
+/// The columns of a table, by what it calls the first; -1 for one that is not there.
+struct LabelColumns
 {
-  if (csv.column("LabelValue") >= 0)
+  int id = -1;
+  int name = -1;
+  std::array<int, 3> channels{ -1, -1, -1 };
+  int hexColor = -1; ///< "#rrggbb"
+
+  explicit LabelColumns(const CsvFile& csv)
   {
-    return { csv.column("LabelValue"), csv.column("Name"), csv.column("Color_R"), csv.column("Color_G"),
-             csv.column("Color_B") };
+    const bool isSlicers = csv.column("LabelValue") >= 0;
+    const bool isBids = !isSlicers && csv.column("index") >= 0;
+    id = csv.column(isSlicers ? "LabelValue" : isBids ? "index" : "id");
+    name = csv.column(isSlicers ? "Name" : "name");
+    const std::array<const char*, 3> colors = isSlicers ? std::array<const char*, 3>{ "Color_R", "Color_G", "Color_B" }
+                                                        : std::array<const char*, 3>{ "r", "g", "b" };
+    std::transform(colors.begin(), colors.end(), channels.begin(), [&csv](const char* c) { return csv.column(c); });
+    hexColor = isBids ? csv.column("color") : -1;
   }
-  return { csv.column("id"), csv.column("name"), csv.column("r"), csv.column("g"), csv.column("b") };
+  bool found() const { return id >= 0 && name >= 0; }
+};
+
+/// "#rrggbb"; leaves the label as it is for anything else.
+void setHexColor(const std::string& text, LabelInfo& label)
+{
+  if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+  {
+    return;
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    label.color[c] = float(std::stoi(text.substr(1 + 2 * c, 2), nullptr, 16)) / 255.0f;
+  }
+  label.hasColor = true;
 }
 
-std::vector<LabelInfo> labelsFromCsv(const std::string& path)
+/// What the property type of a segment is, where a table of 3D Slicer has the columns.
+void describeByColumns(const CsvFile& csv, const CsvFile::Row& row, LabelInfo& label)
+{
+  const auto field = [&](const std::string& sequence, const std::string& part) {
+    const int column = csv.column(sequence + "CodeSequence." + part);
+    return column < 0 ? std::string() : row.fields[std::size_t(column)];
+  };
+  const auto codeOf = [&field](const std::string& sequence) -> CodedConcept {
+    return { field(sequence, "CodingSchemeDesignator"), field(sequence, "CodeValue"), field(sequence, "CodeMeaning") };
+  };
+  describeByCode(codeOf("SegmentedPropertyType"), codeOf("SegmentedPropertyTypeModifier"), label);
+}
+
+std::vector<LabelInfo> labelsFromColumns(const std::string& path)
 {
   const CsvFile csv = CsvFile::read(path);
-  const auto column = columnsOf(csv);
-  if (column[0] < 0 || column[1] < 0)
+  const LabelColumns column(csv);
+  if (!column.found())
   {
     csv.requiredColumn("id");
     csv.requiredColumn("name");
   }
-  const bool colored = *std::min_element(column.begin() + 2, column.end()) >= 0;
+  const bool colored = *std::min_element(column.channels.begin(), column.channels.end()) >= 0;
   const int tissue = csv.column("tissue");
   std::vector<LabelInfo> labels;
   for (const CsvFile::Row& row : csv.rows)
   {
     LabelInfo label;
-    label.id = int(tableNumber(csv, row, column[0], 65535.0));
-    label.name = row.fields[std::size_t(column[1])];
-    if (colored && !row.fields[std::size_t(column[2])].empty())
+    label.id = int(tableNumber(csv, row, column.id, 65535.0));
+    label.name = row.fields[std::size_t(column.name)];
+    if (colored && !row.fields[std::size_t(column.channels[0])].empty())
     {
       for (std::size_t c = 0; c < 3; ++c)
       {
-        label.color[c] = float(tableNumber(csv, row, column[2 + c], 255.0) / 255.0);
+        label.color[c] = float(tableNumber(csv, row, column.channels[c], 255.0) / 255.0);
       }
       label.hasColor = true;
+    }
+    if (column.hexColor >= 0)
+    {
+      setHexColor(row.fields[std::size_t(column.hexColor)], label);
     }
     if (tissue >= 0)
     {
       label.tissue = row.fields[std::size_t(tissue)];
     }
+    describeByColumns(csv, row, label);
     labels.push_back(std::move(label));
   }
   return labels;
@@ -159,6 +206,13 @@ std::optional<LabelInfo> labelFromWords(const std::vector<std::string>& words)
   return numbers <= 1 || numbers == 4 ? std::optional(label) : std::nullopt;
 }
 
+/// A line of 3D Slicer's colour tables for a colour without a name.
+bool isNameless(const std::vector<std::string>& words)
+{
+  return (words.size() == 5 && std::all_of(words.begin(), words.end(), [](const auto& w) { return parseNumber(w); })) ||
+         (words.size() == 6 && words[1] == "(none)");
+}
+
 std::vector<LabelInfo> labelsFromText(const std::string& path)
 {
   std::ifstream stream(path, std::ios::binary);
@@ -171,7 +225,8 @@ std::vector<LabelInfo> labelsFromText(const std::string& path)
   for (int number = 1; std::getline(stream, line); ++number)
   {
     const std::vector<std::string> words = wordsOf(line);
-    if (words.empty() || words.front()[0] == '#' || (labels.empty() && !parseNumber(words.front())))
+    if (words.empty() || words.front()[0] == '#' || (labels.empty() && !parseNumber(words.front())) ||
+        isNameless(words))
     {
       continue;
     }
@@ -200,11 +255,10 @@ bool holdsLabels(const fs::path& path)
   {
     return false;
   }
-  if (isCsv(path.string()))
+  if (hasColumns(path.string()))
   {
     // A broken line of a table that is meant for us is the user's to know of; a table for others is not.
-    const auto column = columnsOf(CsvFile::read(path.string()));
-    return column[0] >= 0 && column[1] >= 0;
+    return LabelColumns(CsvFile::read(path.string())).found();
   }
   try
   {
@@ -216,54 +270,148 @@ bool holdsLabels(const fs::path& path)
   }
 }
 
-/// The longest `<start>_labels<ending>` in the folder for which `name` begins with <start>_.
-std::string tableOfSeries(const fs::path& folder, const std::string& name, const std::string& ending)
+/// The first of the paths that holds labels; empty when none does.
+std::string firstOf(const std::vector<fs::path>& candidates)
 {
-  for (std::size_t at = name.rfind('_'); at != std::string::npos && at > 0; at = name.rfind('_', at - 1))
+  const auto found = std::find_if(candidates.begin(), candidates.end(), holdsLabels);
+  return found == candidates.end() ? std::string() : found->string();
+}
+
+std::vector<fs::path> withEndings(const fs::path& stem)
+{
+  std::vector<fs::path> paths;
+  for (const char* ending : endings)
   {
-    const fs::path candidate = folder / (name.substr(0, at) + "_labels" + ending);
-    if (holdsLabels(candidate))
+    paths.emplace_back(stem.string() + ending);
+  }
+  return paths;
+}
+
+/// The files of a folder, by name.
+std::vector<fs::path> filesOf(const fs::path& folder)
+{
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator at(folder.empty() ? fs::path(".") : folder, error), end; !error && at != end;
+       at.increment(error))
+  {
+    files.push_back(folder / at->path().filename());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool startsWith(const std::string& text, const std::string& start)
+{
+  return text.compare(0, start.size(), start) == 0;
+}
+
+bool isTable(const fs::path& path)
+{
+  return std::any_of(std::begin(endings), std::end(endings), [&path](const char* e) { return path.extension() == e; });
+}
+
+/// The longest `<start>_labels<ending>` in the folder for which `name` begins with <start>_.
+std::string tableOfSeries(const fs::path& folder, const std::string& name)
+{
+  for (const char* ending : endings)
+  {
+    for (std::size_t at = name.rfind('_'); at != std::string::npos && at > 0; at = name.rfind('_', at - 1))
     {
-      return candidate.string();
+      const fs::path candidate = folder / (name.substr(0, at) + "_labels" + ending);
+      if (holdsLabels(candidate))
+      {
+        return candidate.string();
+      }
     }
   }
   return {};
+}
+
+/// A table whose name goes on where the label map's ends: NAME-lut.ctbl, NAME_ColorTable.ctbl.
+std::string tableThatGoesOn(const std::vector<fs::path>& files, const std::string& name)
+{
+  std::vector<fs::path> candidates;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(candidates), [&name](const fs::path& file) {
+    const std::string stem = file.stem().string();
+    return isTable(file) && startsWith(stem, name) && stem.size() > name.size() &&
+           std::isalnum(static_cast<unsigned char>(stem[name.size()])) == 0;
+  });
+  return firstOf(candidates);
+}
+
+std::set<std::string> entitiesOf(const std::string& name)
+{
+  std::set<std::string> entities;
+  std::istringstream stream(name);
+  for (std::string part; std::getline(stream, part, '_');)
+  {
+    entities.insert(part);
+  }
+  return entities;
+}
+
+/// BIDS: a `..._dseg.tsv` holds for the label maps in its folder and below that have all parts of its name. The data
+/// set ends where its description lies.
+std::string tableOfDataset(fs::path folder, const std::string& name)
+{
+  const std::set<std::string> own = entitiesOf(name);
+  std::error_code error;
+  folder = fs::absolute(folder, error);
+  const bool isDataset = own.count("dseg") > 0;
+  for (int level = 0; isDataset && level < 6 && !error; ++level, folder = folder.parent_path())
+  {
+    std::vector<fs::path> candidates;
+    for (const fs::path& file : filesOf(folder))
+    {
+      const std::set<std::string> theirs = entitiesOf(file.stem().string());
+      if (file.extension() == ".tsv" && theirs.count("dseg") > 0 &&
+          std::includes(own.begin(), own.end(), theirs.begin(), theirs.end()))
+      {
+        candidates.push_back(file);
+      }
+    }
+    const std::string table = firstOf(candidates);
+    if (!table.empty() || fs::exists(folder / "dataset_description.json", error))
+    {
+      return table;
+    }
+  }
+  return {};
+}
+
+/// The only .ctbl or .label of the folder, unless it bears the name of another file there.
+std::string onlyTable(const std::vector<fs::path>& files)
+{
+  std::vector<fs::path> tables;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(tables), [](const fs::path& file) {
+    return (file.extension() == ".ctbl" || file.extension() == ".label") && holdsLabels(file);
+  });
+  const auto isNamesake = [&tables](const fs::path& file) {
+    return file != tables[0] && startsWith(file.filename().string(), tables[0].stem().string() + ".");
+  };
+  return tables.size() == 1 && std::none_of(files.begin(), files.end(), isNamesake) ? tables[0].string()
+                                                                                    : std::string();
 }
 
 } // namespace
 
 std::vector<LabelInfo> readLabels(const std::string& path)
 {
-  return isCsv(path) ? labelsFromCsv(path) : labelsFromText(path);
+  return hasColumns(path) ? labelsFromColumns(path) : labelsFromText(path);
 }
 
 std::string labelTableBeside(const std::string& stem)
 {
   const fs::path folder = fs::path(stem).parent_path();
-  for (const char* ending : endings)
-  {
-    if (holdsLabels(stem + ending))
-    {
-      return stem + ending;
-    }
-  }
-  for (const char* ending : endings)
-  {
-    const std::string table = tableOfSeries(folder, fs::path(stem).filename().string(), ending);
-    if (!table.empty())
-    {
-      return table;
-    }
-  }
-  for (const char* ending : endings)
-  {
-    const fs::path table = folder / (std::string("labels") + ending);
-    if (holdsLabels(table))
-    {
-      return table.string();
-    }
-  }
-  return {};
+  const std::string name = fs::path(stem).filename().string();
+  const std::vector<fs::path> files = filesOf(folder);
+  std::string table = firstOf(withEndings(stem));
+  table = table.empty() ? tableOfSeries(folder, name) : table;
+  table = table.empty() ? tableThatGoesOn(files, name) : table;
+  table = table.empty() ? tableOfDataset(folder, name) : table;
+  table = table.empty() ? firstOf(withEndings(folder / "labels")) : table;
+  return table.empty() ? onlyTable(files) : table;
 }
 
 } // namespace sono

@@ -2,6 +2,7 @@
 
 #include "Core/Progress.h"
 #include "Labels/CsvFile.h"
+#include "Labels/KnownNumbers.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadMeta.h"
 #include "Labels/ReadNifti.h"
@@ -131,6 +132,7 @@ LabelVolume readLabelMap(const std::string& path, int phase)
     }
   }
   volume.collectLabels();
+  nameKnownNumbers(volume);
   return volume;
 }
 

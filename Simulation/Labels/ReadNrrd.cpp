@@ -2,6 +2,7 @@
 
 #include "Core/Progress.h"
 #include "Labels/CsvFile.h"
+#include "Labels/LabelCode.h"
 #include "Labels/LabelConversion.h"
 #include "Labels/NrrdFile.h"
 
@@ -206,6 +207,7 @@ std::vector<Segment> readSegments(const Nrrd& nrrd, bool layered)
     segment.layer = keyNumber(nrrd, n, "Layer", layered ? int(n) : 0);
     segment.label.id = segment.value;
     segment.label.name = keyValue(nrrd, n, "Name");
+    describeBySlicerTags(keyValue(nrrd, n, "Tags"), segment.label);
     parseColor(keyValue(nrrd, n, "Color"), segment.label);
     segments.push_back(std::move(segment));
   }
