@@ -80,6 +80,14 @@ Json jsonOf(const LabelInfo& label, const VoxelBox& box)
   {
     json["color"] = label.color;
   }
+  if (label.guessed)
+  {
+    json["guessed"] = true;
+  }
+  if (!label.code.empty())
+  {
+    json["code"] = label.code;
+  }
   return json;
 }
 
@@ -94,6 +102,8 @@ LabelInfo labelOf(const Json& json)
   {
     label.color = json.at("color");
   }
+  label.guessed = json.value("guessed", false);
+  label.code = json.value("code", std::string());
   return label;
 }
 

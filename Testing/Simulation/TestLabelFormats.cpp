@@ -211,6 +211,63 @@ TEST_F(LabelFormats, ATableOfASeriesNamesAllItsFiles)
   EXPECT_EQ(readLabelMap(write("s10_total.mha")).labels[1].name, "label_1");
 }
 
+TEST_F(LabelFormats, BidsNamesItsLabelsInATable)
+{
+  const std::string table = "index\tname\tcolor\tabbreviation\tmapping\r\n1\tGray Matter\t#ff0080\tGM\t1\r\n"
+                            "2\t\"quoted, name\tn/a\t\t8\n";
+  const std::vector<LabelInfo> labels = readLabels(text("dseg.tsv", table));
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[0].name, "Gray Matter");
+  EXPECT_TRUE(labels[0].hasColor);
+  EXPECT_FLOAT_EQ(labels[0].color[2], 128.0f / 255.0f);
+  EXPECT_EQ(labels[1].name, "\"quoted, name");
+  EXPECT_FALSE(labels[1].hasColor);
+  expectContains(errorOf([&] { readLabels(text("bad.tsv", "index\tname\nx\ty\n")); }), "bad.tsv' line 2");
+
+  // For all label maps below that have the parts of its name.
+  EXPECT_EQ(labelTableBeside(file("sub-1_dseg")), file("dseg.tsv"));
+  fs::create_directories(fs::path(file("derivatives/sub-1/anat")));
+  text("derivatives/dataset_description.json", "{}");
+  text("derivatives/desc-aseg_dseg.tsv", table);
+  EXPECT_EQ(labelTableBeside(file("derivatives/sub-1/anat/sub-1_desc-aseg_dseg")),
+            file("derivatives/desc-aseg_dseg.tsv"));
+  EXPECT_EQ(labelTableBeside(file("derivatives/sub-1/anat/sub-1_desc-other_dseg")), "");
+}
+
+TEST_F(LabelFormats, SlicersColourTablesHaveOtherNames)
+{
+  const std::string table =
+    "# Color table file /home/me/knee.ctbl\n# 3 values\n0 background 0 0 0 0\n1 255 255 255 255\n"
+    "2 (none) 0 0 0 0\n3 vastus_lateralis_muscle 10 20 30 255\n";
+  const std::string knee = text("knee.ctbl", table);
+  const std::vector<LabelInfo> labels = readLabels(knee);
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[1].id, 3);
+  EXPECT_EQ(labels[1].name, "vastus_lateralis_muscle");
+  EXPECT_EQ(labelTableBeside(file("seg")), knee) << "the only one";
+  text("knee.nrrd", "");
+  EXPECT_EQ(labelTableBeside(file("seg")), "") << "another file's";
+  EXPECT_EQ(labelTableBeside(file("knee")), knee);
+  const std::string lut = text("seg-lut.ctbl", table);
+  EXPECT_EQ(labelTableBeside(file("seg")), lut);
+  EXPECT_EQ(labelTableBeside(file("segment")), "");
+  const std::string exported = text("Segmentation-label_ColorTable.ctbl", table);
+  EXPECT_EQ(labelTableBeside(file("Segmentation-label")), exported);
+}
+
+TEST_F(LabelFormats, SlicersTablesHaveCodes)
+{
+  const std::string type = "SegmentedPropertyTypeCodeSequence.";
+  const std::vector<LabelInfo> labels = readLabels(text(
+    "t.csv", "LabelValue,Name,Color_R,Color_G,Color_B,Color_A," + type + "CodingSchemeDesignator," + type +
+               "CodeValue," + type + "CodeMeaning\n1,Segment_1,1,2,3,255,SCT,10200004,Liver\n2,mine,1,2,3,255,,,\n"));
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[0].code, "SCT 10200004");
+  EXPECT_EQ(labels[0].name, "liver");
+  EXPECT_EQ(labels[1].code, "");
+  EXPECT_EQ(labels[1].name, "mine");
+}
+
 TEST_F(LabelFormats, SegmentationsNameTheirRepresentationInTwoWays)
 {
   const auto nrrd = [&](const std::string& keys) {
