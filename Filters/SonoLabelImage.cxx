@@ -83,6 +83,7 @@ void readLabelTable(vtkFieldData* field, LabelVolume& volume)
   vtkDataArray* ids = field->GetArray("LabelIds");
   auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelNames"));
   vtkDataArray* colors = field->GetArray("LabelColors");
+  auto* codes = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelCodes"));
   if (!ids || !names || names->GetNumberOfValues() != ids->GetNumberOfTuples())
   {
     return;
@@ -92,6 +93,7 @@ void readLabelTable(vtkFieldData* field, LabelVolume& volume)
     LabelInfo label;
     label.id = static_cast<int>(ids->GetTuple1(row));
     label.name = names->GetValue(row);
+    label.code = codes && row < codes->GetNumberOfValues() ? codes->GetValue(row) : std::string();
     if (colors && colors->GetNumberOfComponents() == 3 && row < colors->GetNumberOfTuples())
     {
       const double* rgb = colors->GetTuple3(row);
@@ -165,13 +167,16 @@ void writeLabelTable(const std::vector<LabelInfo>& labels, vtkFieldData* field)
   ids->SetName("LabelIds");
   names->SetName("LabelNames");
   colors->SetName("LabelColors");
+  vtkNew<vtkStringArray> codes;
   tissues->SetName("LabelTissues");
+  codes->SetName("LabelCodes");
   colors->SetNumberOfComponents(3);
   for (const LabelInfo& label : labels)
   {
     ids->InsertNextValue(label.id);
     names->InsertNextValue(label.name);
     colors->InsertNextTuple(displayColor(label).data());
+    codes->InsertNextValue(label.code);
     if (!label.tissue.empty())
     {
       tissues->InsertNextValue(label.tissue);
@@ -180,6 +185,12 @@ void writeLabelTable(const std::vector<LabelInfo>& labels, vtkFieldData* field)
   field->AddArray(ids);
   field->AddArray(names);
   field->AddArray(colors);
+  const bool isCoded =
+    std::any_of(labels.begin(), labels.end(), [](const LabelInfo& label) { return !label.code.empty(); });
+  if (isCoded)
+  {
+    field->AddArray(codes);
+  }
   if (tissues->GetNumberOfValues() == names->GetNumberOfValues())
   {
     field->AddArray(tissues);

@@ -16,11 +16,12 @@ void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image);
 
 /// The label volume of an image from any reader, `labels` being its array of voxels: whole numbers 0 to 65535 of any
-/// type. Names and colours come from the field data where they are. Throws Error for an image that is empty or holds
-/// no labels, naming the array and the value.
+/// type. Names, colours and codes come from the field data where they are. Throws Error for an image that is empty or
+/// holds no labels, naming the array and the value.
 LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels);
 
-/// LabelIds, LabelNames, LabelColors (0 to 1) and, where assigned, LabelTissues: one row a label.
+/// LabelIds, LabelNames, LabelColors (0 to 1) and, where a label has one, LabelCodes and, where assigned, LabelTissues:
+/// one row a label.
 void writeLabelTable(const std::vector<LabelInfo>& labels, vtkFieldData* field);
 
 /// The label's own colour, or one that differs from its neighbours' in number.

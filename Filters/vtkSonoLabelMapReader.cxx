@@ -1,7 +1,9 @@
 #include "vtkSonoLabelMapReader.h"
 
+#include "Labels/KnownNumbers.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadLabelMap.h"
+#include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoStage.h"
 #include "SonoVtkImageFile.h"
@@ -40,6 +42,7 @@ void nameLabels(const std::string& fileName, vtkImageData* image, sono::LabelVol
   {
     sono::readLabelTable(table, volume);
   }
+  sono::nameKnownNumbers(volume);
 }
 
 sono::LabelVolume readVti(const std::string& fileName)
@@ -59,10 +62,31 @@ sono::LabelVolume readVti(const std::string& fileName)
   return volume;
 }
 
-std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName, int phase)
+/// The bundled list of this name: "CT-ORG" is label_lists/ct_org.csv.
+std::string listOfNames(const std::string& name)
 {
-  return std::make_shared<const sono::LabelVolume>(endsWith(fileName, ".vti") ? readVti(fileName)
-                                                                              : sono::readLabelMap(fileName, phase));
+  std::string file = vtksys::SystemTools::LowerCase(name);
+  std::replace_if(
+    file.begin(), file.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  const std::vector<std::string> lists = sono::dataFiles("label_lists", ".csv");
+  if (std::find(lists.begin(), lists.end(), file) == lists.end())
+  {
+    throw sono::Error("There is no list of label names '" + name +
+                      "'; set LabelNames to From File, TotalSegmentator v2 or "
+                      "another of those that the panel offers.");
+  }
+  return sono::dataFile("label_lists/" + file + ".csv");
+}
+
+std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName, int phase, const std::string& names)
+{
+  auto volume = std::make_shared<sono::LabelVolume>(endsWith(fileName, ".vti") ? readVti(fileName)
+                                                                               : sono::readLabelMap(fileName, phase));
+  if (names != "From File")
+  {
+    sono::readLabelTable(listOfNames(names), *volume);
+  }
+  return volume;
 }
 
 /// When each phase is: of one file as the file says, of several 0, 1, 2, ...
@@ -102,6 +126,7 @@ void vtkSonoLabelMapReader::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << fileName;
   }
   os << endl;
+  os << indent << "LabelNames: " << this->LabelNames << endl;
 }
 
 void vtkSonoLabelMapReader::SetFileName(const char* fileName)
@@ -133,8 +158,8 @@ void vtkSonoLabelMapReader::RemoveAllFileNames()
 
 std::shared_ptr<const sono::LabelVolume> vtkSonoLabelMapReader::ReadPhase(int phase) const
 {
-  return this->FileNames.size() == 1 ? readVolume(this->FileNames[0], phase)
-                                     : readVolume(this->FileNames[std::size_t(phase)], 0);
+  return this->FileNames.size() == 1 ? readVolume(this->FileNames[0], phase, this->LabelNames)
+                                     : readVolume(this->FileNames[std::size_t(phase)], 0, this->LabelNames);
 }
 
 int vtkSonoLabelMapReader::CanReadFile(const char* fileName)

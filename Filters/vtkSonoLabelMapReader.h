@@ -19,8 +19,9 @@ struct LabelVolume;
  * Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and VTK images (.vti, whose point
  * scalars are the labels and whose field data may name them as this reader's does). The output has unsigned short point
  * scalars "Labels" and stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels
- * that occur: LabelIds, LabelNames and LabelColors (red, green, blue from 0 to 1), one row a label. Where the label map
- * names none, a table beside it does (CSV, ITK-SNAP .label, 3D Slicer .ctbl or .txt).
+ * that occur: LabelIds, LabelNames, LabelColors (red, green, blue from 0 to 1) and, where there are any,
+ * LabelCodes, one row a label. Where the label map
+ * names none, a table beside it does (CSV, ITK-SNAP .label, 3D Slicer .ctbl, BIDS .tsv or .txt).
  *
  * Several files, or a NIfTI file with a fourth axis, are the phases of a motion: time steps 0, 1, 2, ... for files, in
  * seconds for NIfTI. All have the same number of voxels along each axis.
@@ -46,6 +47,17 @@ public:
   int GetNumberOfFileNames() const { return static_cast<int>(this->FileNames.size()); }
   ///@}
 
+  ///@{
+  /**
+   * Whose numbers the labels have, where the file does not name them: "From File" asks the file and the table beside
+   * it; "TotalSegmentator v2", "TotalSegmentator v1 or MONAI", "TotalSegmentator MR", "AMOS", "BTCV", "FLARE", "CT-ORG"
+   * and "SPL Abdomen" are lists of numbers that come with SonoVDB (label_lists), whose names count then. Default From
+   * File.
+   */
+  vtkSetStdStringFromCharMacro(LabelNames);
+  vtkGetCharFromStdStringMacro(LabelNames);
+  ///@}
+
   /**
    * Whether the name ends like a label map's.
    */
@@ -65,6 +77,7 @@ private:
   std::shared_ptr<const sono::LabelVolume> ReadPhase(int phase) const;
 
   std::vector<std::string> FileNames;
+  std::string LabelNames = "From File";
   std::vector<double> Times;                       // of the phases
   std::shared_ptr<const sono::LabelVolume> Volume; // the first: from the information pass, which needs its size
 };

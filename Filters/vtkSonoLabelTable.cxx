@@ -132,6 +132,8 @@ int vtkSonoLabelTable::RequestData(vtkInformation*, vtkInformationVector** input
     }
     addColumn<vtkStringArray>(
       "tissue", labels, [](const auto& label) { return label.tissue; }, table);
+    addColumn<vtkIntArray>(
+      "guess", labels, [](const auto& label) { return label.guessed ? 1 : 0; }, table);
     std::string columns = "tissue";
     for (const sono::TissueColumn& column : sono::tissueColumns())
     {
@@ -140,13 +142,13 @@ int vtkSonoLabelTable::RequestData(vtkInformation*, vtkInformationVector** input
       columns += std::string("\t") + column.name;
     }
 
-    this->LabelRows->InsertNextValue("id\tname\tr\tg\tb\ttissue");
+    this->LabelRows->InsertNextValue("id\tname\tr\tg\tb\ttissue\tguess");
     for (const sono::LabelInfo& label : labels)
     {
       const auto color = sono::displayColor(label);
       std::ostringstream row;
       row << label.id << '\t' << label.name << '\t' << byte(color[0]) << '\t' << byte(color[1]) << '\t'
-          << byte(color[2]) << '\t' << label.tissue;
+          << byte(color[2]) << '\t' << label.tissue << '\t' << (label.guessed ? "yes" : "");
       this->LabelRows->InsertNextValue(row.str());
     }
     this->TissueRows->InsertNextValue(columns + "\tsource");

@@ -14,7 +14,8 @@ class vtkStringArray;
  * @brief The labels of a scene with their tissues and their numbers, as a table
  *
  * Takes a scene of vtkSonoSceneBuilder. The output has one row a label: id, name, red, green, blue (0 to 255), tissue,
- * and the columns of the tissue table. The tissue editor works with the same as text.
+ * guess (1 where the tissue is one that a person should look at), and the columns of the tissue table. The tissue
+ * editor works with the same as text.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLabelTable : public vtkTableAlgorithm
 {

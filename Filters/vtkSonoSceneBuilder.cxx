@@ -2,6 +2,7 @@
 
 #include "Labels/AssignTissues.h"
 #include "Labels/BodyFill.h"
+#include "Labels/LabelCode.h"
 #include "Labels/ReadLabelMap.h"
 #include "Labels/TissueTable.h"
 #include "Scene/SceneFile.h"
@@ -25,14 +26,28 @@ vtkStandardNewMacro(vtkSonoSceneBuilder);
 
 namespace {
 
-std::string joined(const std::vector<std::string>& names)
+/// What to say of tissues that are guesses; empty when none is.
+std::string warningOfGuesses(const std::vector<sono::LabelInfo>& labels)
 {
-  std::string text;
-  for (const std::string& name : names)
+  std::string guesses;
+  bool nameless = false;
+  for (const sono::LabelInfo& label : labels)
   {
-    text += (text.empty() ? "" : ", ") + name;
+    if (label.guessed)
+    {
+      guesses += (guesses.empty() ? "" : ", ") + label.name + " (" + label.tissue + ")";
+      nameless = nameless || sono::saysNothing(label.name);
+    }
   }
-  return text;
+  if (guesses.empty())
+  {
+    return {};
+  }
+  return "These labels' tissues are guesses, to be changed in View > Ultrasound Tissues: " + guesses + "." +
+         (nameless
+            ? " The label map does not name them all: choose a list of names in its reader (Label Names), or put a "
+              "table beside the file."
+            : "");
 }
 
 } // namespace
@@ -109,11 +124,11 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     const auto table = std::make_shared<const sono::TissueTable>(
       sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
     const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
-    const std::vector<std::string> unmapped = sono::assignTissues(volume, map, *table, this->FallbackTissue);
-    if (!unmapped.empty())
+    sono::assignTissues(volume, map, *table, this->FallbackTissue);
+    const std::string warning = warningOfGuesses(volume.labels);
+    if (!warning.empty())
     {
-      sono::warn(this, "No pattern of the label tissue map matches these labels, which become " + this->FallbackTissue +
-                         ": " + joined(unmapped) + ".");
+      sono::warn(this, warning);
     }
     const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
     const std::shared_ptr<const sono::Scene> scene =

@@ -39,7 +39,8 @@ public:
 
   ///@{
   /**
-   * Tissues by label name (CSV with columns pattern and tissue); where it is empty, the bundled one. Default empty.
+   * Tissues by label name (CSV with columns pattern, tissue and perhaps guess and code); where it is empty, the bundled
+   * one. Default empty.
    */
   vtkSetStdStringFromCharMacro(LabelTissueFile);
   vtkGetCharFromStdStringMacro(LabelTissueFile);
@@ -56,7 +57,8 @@ public:
 
   ///@{
   /**
-   * Tissue of the labels whose names no pattern matches; a warning names them. Default soft_tissue.
+   * Tissue of the labels that no pattern matches. A warning names them, and those of which the table only guesses what
+   * they are. Default soft_tissue.
    */
   vtkSetStdStringFromCharMacro(FallbackTissue);
   vtkGetCharFromStdStringMacro(FallbackTissue);

@@ -10,6 +10,8 @@
 #include <QColor>
 #include <QLocale>
 
+#include <algorithm>
+
 namespace {
 
 QVector<QStringList> rowsOf(vtkSMProxy* table, const char* property)
@@ -63,8 +65,9 @@ bool SonoTissueModel::load(vtkSMSourceProxy* scene, unsigned int port)
   {
     const QStringList& row = labels[i];
     const QColor color(row[2].toInt(), row[3].toInt(), row[4].toInt());
-    labels_ << Label{ row[0], row[1], color.name(), row[5] };
+    labels_ << Label{ row[0], row[1], color.name(), row[5], !row[6].isEmpty() };
   }
+  std::stable_partition(labels_.begin(), labels_.end(), [](const Label& label) { return label.isGuess; });
   tissues_ = rowsOf(table, "TissueRows");
   if (!tissues_.isEmpty())
   {
@@ -76,6 +79,19 @@ bool SonoTissueModel::load(vtkSMSourceProxy* scene, unsigned int port)
 QStringList SonoTissueModel::columns() const
 {
   return QStringList{ "id", "name", "colour", "tissue" } + tissueColumns_.mid(1, tissueColumns_.size() - 2);
+}
+
+QString SonoTissueModel::guesses() const
+{
+  QStringList texts;
+  for (const Label& label : labels_)
+  {
+    if (label.isGuess)
+    {
+      texts << QString("%1 (%2)").arg(label.name, label.tissue);
+    }
+  }
+  return texts.join(", ");
 }
 
 QStringList SonoTissueModel::tissueNames() const
@@ -175,6 +191,7 @@ QString SonoTissueModel::setValue(int row, int column, const QString& text)
       return QObject::tr("There is no tissue '%1'; choose one of %2.").arg(field, tissueNames().join(", "));
     }
     label.tissue = field;
+    label.isGuess = false;
   }
   return {};
 }

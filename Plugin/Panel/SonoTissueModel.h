@@ -30,6 +30,10 @@ public:
   QStringList columns() const;
   QStringList tissueNames() const;
   QString value(int row, int column) const;
+  /// Whether the label's tissue is a guess that nobody has changed here. These labels come first.
+  bool isGuess(int row) const { return labels_[row].isGuess; }
+  /// "thing (soft_tissue), ventricle (water)"; empty when no tissue is a guess.
+  QString guesses() const;
 
   /// Changes a field; a number changes for all labels of that tissue. Returns what is wrong, one sentence, and changes
   /// nothing then.
@@ -49,6 +53,7 @@ private:
     QString name;
     QString color;
     QString tissue;
+    bool isGuess;
   };
   vtkWeakPointer<vtkSMSessionProxyManager> manager_; ///< of the scene
   QVector<Label> labels_;

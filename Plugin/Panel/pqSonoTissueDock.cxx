@@ -13,6 +13,7 @@
 #include "pqPipelineSource.h"
 
 #include <QAction>
+#include <QBrush>
 #include <QColor>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -88,8 +89,10 @@ void pqSonoTissueDock::load()
   const unsigned int port = isAll ? static_cast<unsigned int>(vtkSonoUltrasound::ANATOMY) : 0;
   const bool loaded = model_.load(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), port);
   saveButton_->setEnabled(loaded);
-  say(loaded ? tr("Choose colours and tissues, type into the other fields. Numbers belong to the tissue: all its "
-                  "labels have them.")
+  const QString guesses = model_.guesses();
+  say(loaded ? (guesses.isEmpty() ? QString() : tr("Guesses, to be looked at: %1. ").arg(guesses)) +
+                 tr("Choose colours and tissues, type into the other fields. Numbers belong to the tissue: all its "
+                    "labels have them.")
              : tr("%1 has no labels yet; apply it and load it again.").arg(source_->getSMName()));
   fill();
 }
@@ -149,7 +152,12 @@ void pqSonoTissueDock::showValues()
       }
       else
       {
-        table_->item(row, column)->setText(text);
+        QTableWidgetItem* item = table_->item(row, column);
+        item->setText(text);
+        const bool isMarked = column <= SonoTissueModel::NAME && model_.isGuess(row);
+        item->setBackground(isMarked ? QBrush(QColor("#f9e79f")) : QBrush());
+        item->setForeground(isMarked ? QBrush(Qt::black) : QBrush());
+        item->setToolTip(isMarked ? tr("Its tissue is a guess: choose another, or save to keep it") : QString());
       }
     }
   }

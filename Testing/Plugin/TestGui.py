@@ -28,6 +28,11 @@ SaveState(sys.argv[1])
 """
 
 
+# A rib, and something of which nobody knows what it is.
+TWO_LABELS = (b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nSegment0_Name:=left rib 6\n"
+              b"Segment1_Name:=thing\n\n" + bytes([0, 1, 2, 0] * 16))
+
+
 class TestGui(GuiCase):
     def compare(self, picture, *tolerance):
         """With the picture of this name in baseline, by OpenImageIO; where they differ, all three are left behind."""
@@ -192,6 +197,16 @@ class TestGui(GuiCase):
         self.assertEqual([labels[2][column] for column in ("name", "r", "g", "b")], ["belly fat", "10", "200", "30"])
         for file in ("mine_labels.csv", "mine_tissues.csv"):
             self.assertIn(file, state)
+
+    def test_the_tissue_editor_lists_guesses_first(self):
+        with tempfile.TemporaryDirectory() as folder:
+            labels, image = (str(pathlib.Path(folder, name)) for name in ("two.nrrd", "two.vti"))
+            pathlib.Path(labels).write_bytes(TWO_LABELS)
+            self.run_script("SaveData(sys.argv[1], proxy=LabelMapReader(FileName=[sys.argv[2]]))", folder, image, labels)
+            self.assertEqual(self.play("guesses.xml", folder, f"--data={image}"), [])
+            with open(pathlib.Path(folder, "mine_labels.csv"), encoding="utf-8", newline="") as file:
+                tissues = {row["name"]: row["tissue"] for row in csv.DictReader(file)}
+        self.assertEqual(tissues, {"background": "air", "left rib 6": "cortical_bone", "thing": "liver"})
 
     def test_a_preset_fills_in_the_probes_numbers(self):
         """A bundled one, one of a person's files, and a file that will not do."""
