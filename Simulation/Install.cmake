@@ -12,7 +12,6 @@ set(public_headers
   Image/ScanConvertVolume.h
   Labels/AssignTissues.h
   Labels/BodyFill.h
-  Labels/KnownNumbers.h
   Labels/LabelTable.h
   Labels/ReadLabelMap.h
   Phantoms/CalibrationPhantom.h

@@ -132,7 +132,9 @@ std::vector<std::string> assignTissues(LabelVolume& volume, const LabelTissueMap
     if (label.tissue.empty())
     {
       const LabelTissueRule* byCode = map.matchCode(label.code);
-      const LabelTissueRule* rule = byCode ? byCode : map.matchName(label.name);
+      const LabelTissueRule* byName = byCode ? byCode : map.matchName(label.name);
+      // What is left over has many names ("Unknown", "black").
+      const LabelTissueRule* rule = byName || label.id != 0 ? byName : map.matchName("background");
       label.tissue = rule ? rule->tissue : fallback;
       label.guessed = !rule || rule->guess;
       if (!rule)

@@ -49,10 +49,10 @@ private:
   std::vector<std::vector<Word>> words_; ///< of each rule
 };
 
-/// Fills LabelInfo::tissue where it is empty: by the label's code where a rule knows it, else by its name. A label that
-/// no rule matches becomes `fallback`; the names of these are returned. Sets LabelInfo::guessed for them, and for those
-/// that a rule only guesses. Throws Error when a tissue (of the map, a label or the fallback) is not in the table,
-/// naming the label and the tissue.
+/// Fills LabelInfo::tissue where it is empty: by the label's code where a rule knows it, else by its name; label 0 that
+/// neither tells is the background. Another label that no rule matches becomes `fallback`; the names of these are
+/// returned. Sets LabelInfo::guessed for them, and for those that a rule only guesses. Throws Error when a tissue (of
+/// the map, a label or the fallback) is not in the table, naming the label and the tissue.
 std::vector<std::string> assignTissues(LabelVolume& volume, const LabelTissueMap& map, const TissueTable& table,
                                        const std::string& fallback);
 

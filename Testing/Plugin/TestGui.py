@@ -26,8 +26,6 @@ Show(OutputPort(ALine(Input=OutputPort(ultrasound, 2)), 2), view)
 Render()
 SaveState(sys.argv[1])
 """
-
-
 # A rib, and something of which nobody knows what it is.
 TWO_LABELS = (b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nSegment0_Name:=left rib 6\n"
               b"Segment1_Name:=thing\n\n" + bytes([0, 1, 2, 0] * 16))
@@ -202,7 +200,8 @@ class TestGui(GuiCase):
         with tempfile.TemporaryDirectory() as folder:
             labels, image = (str(pathlib.Path(folder, name)) for name in ("two.nrrd", "two.vti"))
             pathlib.Path(labels).write_bytes(TWO_LABELS)
-            self.run_script("SaveData(sys.argv[1], proxy=LabelMapReader(FileName=[sys.argv[2]]))", folder, image, labels)
+            script = "SaveData(sys.argv[1], proxy=LabelMapReader(FileName=[sys.argv[2]]))"
+            self.run_script(script, folder, image, labels)
             self.assertEqual(self.play("guesses.xml", folder, f"--data={image}"), [])
             with open(pathlib.Path(folder, "mine_labels.csv"), encoding="utf-8", newline="") as file:
                 tissues = {row["name"]: row["tissue"] for row in csv.DictReader(file)}

@@ -138,13 +138,25 @@ TEST(LabelNames, BonesAndLungsNeverBecomeSoftTissue)
   }
 }
 
+TEST(LabelNames, BonesAndLungsAreSeenInWordsThatRunTogether)
+{
+  for (const std::string word : { "rib", "bone", "vertebra", "lung", "skull", "sternum", "scapula", "femur" })
+  {
+    const std::string tissue = bundledRules().find(word);
+    EXPECT_EQ(bundledRules().find("left" + word), tissue) << word;
+    EXPECT_EQ(bundledRules().find(word + "left6"), tissue) << word;
+    EXPECT_EQ(bundledRules().find("LEFT" + word + "6"), tissue) << word;
+  }
+}
+
 TEST(LabelNames, ARuleMayAskForAPersonsEye)
 {
-  LabelVolume volume = volumeOf({ labelOf(1, "left rib 6"), labelOf(2, "thing"), labelOf(3, "ventricle") });
-  volume.labels.back().tissue = "";
+  LabelVolume volume =
+    volumeOf({ labelOf(0, "Unknown"), labelOf(1, "left rib 6"), labelOf(2, "thing"), labelOf(3, "ventricle") });
   const TissueTable tissues = TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
   EXPECT_EQ(assignTissues(volume, bundledRules(), tissues, "soft_tissue"), Words{ "thing" });
-  EXPECT_FALSE(volume.find(1)->guessed);
+  EXPECT_EQ(volume.find(0)->tissue, "air");
+  EXPECT_FALSE(volume.find(0)->guessed || volume.find(1)->guessed);
   EXPECT_TRUE(volume.find(2)->guessed);
   EXPECT_EQ(volume.find(2)->tissue, "soft_tissue");
   EXPECT_TRUE(volume.find(3)->guessed); // the heart's or the brain's
