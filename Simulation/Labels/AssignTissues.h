@@ -14,7 +14,7 @@ struct LabelTissueRule
   std::string pattern; ///< words of a name; empty where the rule is for a code alone
   std::string tissue;
   bool guess = false; ///< what it says is likely, not sure
-  std::string code;   ///< as LabelInfo::code; empty where the rule is for names alone
+  std::string code{}; ///< as LabelInfo::code; empty where the rule is for names alone
 };
 
 /// Rules in order, of which the first that matches wins. A rule matches a name when each word of its pattern is among

@@ -41,10 +41,10 @@ GridPlacement placementFromAffine(const Vec3i& size, const Mat3d& columns, const
 /// One label of a label map.
 struct LabelInfo
 {
-  int id = 0;         ///< the number in the voxels, 0 to 65535
-  std::string name;   ///< as the file gives it, or "label_<id>"
-  std::string code;   ///< of a terminology, SCHEME VALUE such as "SCT 64033007"; empty: none
-  std::string tissue; ///< a name of the tissue table; empty until assignTissues
+  int id = 0;           ///< the number in the voxels, 0 to 65535
+  std::string name;     ///< as the file gives it, or "label_<id>"
+  std::string code;     ///< of a terminology, SCHEME VALUE such as "SCT 64033007"; empty: none
+  std::string tissue;   ///< a name of the tissue table; empty until assignTissues
   bool guessed = false; ///< whether that tissue is a guess (assignTissues), for a person to look at
   std::array<float, 3> color{ 0.5f, 0.5f, 0.5f };
   bool hasColor = false; ///< whether the file gave the colour
