@@ -13,6 +13,7 @@ set(public_headers
   Labels/AssignTissues.h
   Labels/BodyFill.h
   Labels/LabelTable.h
+  Labels/ReadIntensities.h
   Labels/ReadLabelMap.h
   Phantoms/CalibrationPhantom.h
   Phantoms/PhantomTargets.h

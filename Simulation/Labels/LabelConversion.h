@@ -1,13 +1,14 @@
 #pragma once
 
 #include "Core/Progress.h"
-#include "Kernel/Vec.h"
+#include "Labels/VoxelFile.h"
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace sono {
@@ -21,9 +22,54 @@ struct LabelConversion
   double slope = 1.0;             ///< label = slope * number + intercept
   double intercept = 0.0;
 
-  /// Appends `count` numbers to `labels`. Throws Error naming the first that is not a whole number in 0..65535.
+  explicit LabelConversion(const VoxelFile& file)
+    : path(file.path)
+    , size(file.placement.size)
+    , valuesPerVoxel(file.layersFirst ? file.layers : 1)
+    , slope(file.slope)
+    , intercept(file.intercept)
+  {
+  }
+
+  /// Converts `count` numbers, the first of which is the file's number `position`. Throws Error naming the first that
+  /// is not a whole number in 0..65535.
   template<class T>
-  void append(std::vector<std::uint16_t>& labels, const T* numbers, std::size_t count) const
+  void convert(const T* numbers, std::size_t count, std::size_t position, std::uint16_t* labels) const
+  {
+    if constexpr (std::is_integral_v<T>)
+    {
+      if (slope == 1.0 && intercept == 0.0)
+      {
+        bool outside = false;
+        for (std::size_t n = 0; n < count; ++n)
+        {
+          labels[n] = std::uint16_t(numbers[n]);
+          outside |= T(labels[n]) != numbers[n];
+        }
+        if (outside || (std::is_signed_v<T> && sizeof(T) <= 2 && anyNegative(numbers, count)))
+        {
+          convertOneByOne(numbers, count, position, labels);
+        }
+        return;
+      }
+    }
+    convertOneByOne(numbers, count, position, labels);
+  }
+
+private:
+  template<class T>
+  static bool anyNegative(const T* numbers, std::size_t count)
+  {
+    T all = 0;
+    for (std::size_t n = 0; n < count; ++n)
+    {
+      all = T(all | numbers[n]);
+    }
+    return all < T(0);
+  }
+
+  template<class T>
+  void convertOneByOne(const T* numbers, std::size_t count, std::size_t position, std::uint16_t* labels) const
   {
     const bool scaled = slope != 1.0 || intercept != 0.0;
     for (std::size_t n = 0; n < count; ++n)
@@ -33,15 +79,14 @@ struct LabelConversion
       {
         value = withoutRounding(slope * value + intercept);
       }
-      if (!(value >= 0.0 && value <= 65535.0) || value != std::floor(value))
+      if (!(value >= 0.0 && value <= 65535.0) || value != double(std::uint16_t(value)))
       {
-        refuse(value, labels.size());
+        refuse(value, position + n);
       }
-      labels.push_back(std::uint16_t(value));
+      labels[n] = std::uint16_t(value);
     }
   }
 
-private:
   /// A slope of 0.1 is not 0.1 in a float, so scaled whole numbers are whole up to rounding only.
   static double withoutRounding(double value)
   {
@@ -61,5 +106,17 @@ private:
     throw Error(message.str());
   }
 };
+
+/// The label ids of a file that has no layers. Throws Error as readLabelMap does, and Aborted.
+inline std::vector<std::uint16_t> readLabelNumbers(VoxelFile& file, const Progress& progress)
+{
+  file.bytes.need(file.numbers() * bytesOf(file.type)); // before memory is taken for them
+  const LabelConversion conversion(file);
+  std::vector<std::uint16_t> labels(std::size_t(file.numbers()));
+  readNumbers(file, progress, [&](const auto* numbers, std::size_t count, std::size_t position) {
+    conversion.convert(numbers, count, position, labels.data() + position);
+  });
+  return labels;
+}
 
 } // namespace sono

@@ -7,76 +7,16 @@
 #include "Labels/ReadMeta.h"
 #include "Labels/ReadNifti.h"
 #include "Labels/ReadNrrd.h"
+#include "Labels/VoxelFile.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <new>
 #include <set>
-#include <stdexcept>
 
 namespace sono {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// The known ending of a file name, in lower case; empty for another one.
-std::string knownEnding(const std::string& path)
-{
-  std::string lower = path;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  for (const std::string ending : { ".nii.gz", ".nii", ".seg.nrrd", ".nrrd", ".nhdr", ".mha", ".mhd" })
-  {
-    if (lower.size() > ending.size() && lower.compare(lower.size() - ending.size(), ending.size(), ending) == 0)
-    {
-      return ending;
-    }
-  }
-  return {};
-}
-
-void needReadable(const std::string& path, const std::string& ending)
-{
-  if (ending.empty())
-  {
-    throw Error("cannot read '" + path +
-                "': its name ends in none of .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd, .mha, .mhd; convert it.");
-  }
-  std::error_code error;
-  if (!fs::is_regular_file(path, error) || !std::ifstream(path))
-  {
-    throw Error("cannot read '" + path + "': no such file, or no permission to read it.");
-  }
-}
-
-bool isNifti(const std::string& ending)
-{
-  return ending.compare(0, 4, ".nii") == 0;
-}
-
-LabelVolume readByEnding(const std::string& path, const std::string& ending, int phase)
-{
-  needReadable(path, ending);
-  if (phase != 0 && !isNifti(ending))
-  {
-    throw Error("'" + path + "' holds one label map, so phase " + std::to_string(phase) + " is not in it; choose 0.");
-  }
-  try
-  {
-    if (ending.compare(0, 3, ".mh") == 0)
-    {
-      return readMeta(path);
-    }
-    return isNifti(ending) ? readNifti(path, phase) : readNrrd(path);
-  }
-  catch (const std::bad_alloc&)
-  {
-    throw Error("cannot read '" + path + "': it does not fit into memory; crop or resample it.");
-  }
-}
 
 void copyDescription(const LabelInfo& from, LabelInfo& to)
 {
@@ -103,16 +43,30 @@ void copyDescription(const LabelInfo& from, LabelInfo& to)
 
 LabelPhases readLabelPhases(const std::string& path)
 {
-  const std::string ending = knownEnding(path);
-  needReadable(path, ending);
-  return isNifti(ending) ? readNiftiPhases(path) : LabelPhases();
+  needVoxelFile(path, 0);
+  return isNiftiName(path) ? readNiftiPhases(path) : LabelPhases();
 }
 
-LabelVolume readLabelMap(const std::string& path, int phase)
+LabelVolume readLabelMap(const std::string& path, int phase, const Progress& progress)
 {
-  const std::string ending = knownEnding(path);
-  LabelVolume volume = readByEnding(path, ending, phase);
-  const std::string table = labelTableBeside(path.substr(0, path.size() - ending.size()));
+  needVoxelFile(path, phase);
+  LabelVolume volume;
+  try
+  {
+    if (isNiftiName(path))
+    {
+      volume = readNifti(path, phase, progress);
+    }
+    else
+    {
+      volume = isMetaName(path) ? readMeta(path, progress) : readNrrd(path, progress);
+    }
+  }
+  catch (const std::bad_alloc&)
+  {
+    throw Error("cannot read '" + path + "': it does not fit into memory; crop or resample it.");
+  }
+  const std::string table = labelTableBeside(path.substr(0, path.size() - voxelFileEnding(path).size()));
   if (!table.empty())
   {
     std::set<int> named;
@@ -152,7 +106,7 @@ void readLabelTable(const std::string& tablePath, LabelVolume& volume)
 
 void writeLabelMap(const std::string& path, const LabelVolume& volume)
 {
-  const std::string ending = knownEnding(path);
+  const std::string ending = voxelFileEnding(path);
   if (ending != ".nii" && ending != ".nii.gz")
   {
     throw Error("cannot write '" + path + "': its name must end in .nii or .nii.gz.");

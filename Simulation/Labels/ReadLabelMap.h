@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Labels/LabelVolume.h"
 
 #include <string>
@@ -9,13 +10,13 @@ namespace sono {
 /// Reads a label map and places it in the world (LPS mm): NIfTI-1/2 (.nii, .nii.gz; sform before qform, RAS flipped to
 /// LPS; with neither, only the spacing counts and i, j, k are taken as L, P, S), NRRD (.nrrd, .nhdr, .seg.nrrd with
 /// segment names and colours; LPS, RAS or LAS space) and MetaImage (.mha, .mhd). Overlapping segment layers are
-/// flattened: where segments overlap the later one wins.
+/// flattened: where segments overlap the one with fewer voxels wins, and `notice` says so.
 /// Names and colours come from the file where it has them, then from a table beside it (LabelTable.h). Numbers alone
 /// name nothing but a heart of MM-WHS (KnownNumbers.h): TotalSegmentator's versions give the same number to different
 /// organs. Whole numbers stored as floats are accepted. Throws Error for a missing or unreadable file, a zero-sized
 /// image, voxels that are not whole numbers in 0..65535, or more than three dimensions. Only NIfTI may have a fourth
-/// one, time: `phase`, from 0, chooses from it.
-LabelVolume readLabelMap(const std::string& path, int phase = 0);
+/// one, time: `phase`, from 0, chooses from it. Throws Aborted, too.
+LabelVolume readLabelMap(const std::string& path, int phase = 0, const Progress& progress = {});
 
 /// The phases of a label map's file, without its voxels. Throws Error as above.
 LabelPhases readLabelPhases(const std::string& path);

@@ -3,11 +3,8 @@
 #include "Core/Progress.h"
 #include "Labels/CsvFile.h"
 #include "Labels/LabelConversion.h"
+#include "Labels/VoxelFile.h"
 
-#include <zlib.h>
-
-#include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -148,48 +145,34 @@ GridPlacement placementOf(const Header& header)
   return placementFromAffine(size, columns, origin, header.path);
 }
 
-struct ElementType
-{
-  std::size_t bytes;
-  void (*append)(const LabelConversion&, std::vector<std::uint16_t>&, const void*, std::size_t);
-};
-
-template<class T>
-ElementType elementType()
-{
-  return { sizeof(T), [](const LabelConversion& conversion, std::vector<std::uint16_t>& labels, const void* data,
-                         std::size_t count) { conversion.append(labels, static_cast<const T*>(data), count); } };
-}
-
-ElementType typeOf(const Header& header)
+NumberType typeOf(const Header& header)
 {
   // MetaIO's long is 32 bits wide everywhere.
-  static const std::map<std::string, ElementType> types = {
-    { "MET_CHAR", elementType<std::int8_t>() },
-    { "MET_UCHAR", elementType<std::uint8_t>() },
-    { "MET_SHORT", elementType<std::int16_t>() },
-    { "MET_USHORT", elementType<std::uint16_t>() },
-    { "MET_INT", elementType<std::int32_t>() },
-    { "MET_UINT", elementType<std::uint32_t>() },
-    { "MET_LONG", elementType<std::int32_t>() },
-    { "MET_ULONG", elementType<std::uint32_t>() },
-    { "MET_LONG_LONG", elementType<std::int64_t>() },
-    { "MET_ULONG_LONG", elementType<std::uint64_t>() },
-    { "MET_FLOAT", elementType<float>() },
-    { "MET_DOUBLE", elementType<double>() },
+  static const std::map<std::string, NumberType> types = {
+    { "MET_CHAR", NumberType::Int8 },       { "MET_UCHAR", NumberType::UInt8 },
+    { "MET_SHORT", NumberType::Int16 },     { "MET_USHORT", NumberType::UInt16 },
+    { "MET_INT", NumberType::Int32 },       { "MET_UINT", NumberType::UInt32 },
+    { "MET_LONG", NumberType::Int32 },      { "MET_ULONG", NumberType::UInt32 },
+    { "MET_LONG_LONG", NumberType::Int64 }, { "MET_ULONG_LONG", NumberType::UInt64 },
+    { "MET_FLOAT", NumberType::Float32 },   { "MET_DOUBLE", NumberType::Float64 },
   };
   const auto type = types.find(header.text({ "ElementType" }));
-  if (type == types.end() || header.text({ "ElementNumberOfChannels" }, "1") != "1")
+  const std::string channels = header.text({ "ElementNumberOfChannels" }, "1");
+  if (channels != "1")
   {
-    refuse(header.path, "its voxels are '" + header.text({ "ElementType" }) + "' with " +
-                          header.text({ "ElementNumberOfChannels" }, "1") +
-                          " channels; a label map holds whole numbers 0..65535");
+    refuse(header.path, "it is a colour image or a field of vectors with " + channels +
+                          " channels; choose the segmentation or scan that it was made from");
+  }
+  if (type == types.end())
+  {
+    refuse(header.path,
+           "its voxels are '" + header.text({ "ElementType" }) + "'; convert it to whole numbers or floats");
   }
   return type->second;
 }
 
-/// Bytes of the data file from the data's beginning to the file's end.
-std::vector<char> storedBytes(const Header& header, std::uint64_t dataBytes)
+/// The data file, or the part of the header's own file, at its first voxel.
+ByteStream dataOf(const Header& header, std::uint64_t dataBytes)
 {
   const std::string name = header.text({ "ElementDataFile" });
   const bool local = name == "LOCAL" || name == "Local" || name == "local";
@@ -199,91 +182,55 @@ std::vector<char> storedBytes(const Header& header, std::uint64_t dataBytes)
   }
   const std::string path = local ? header.path : (fs::path(header.path).parent_path() / name).string();
   std::error_code error;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || !fs::is_regular_file(path, error))
+  if (!fs::is_regular_file(path, error) || !std::ifstream(path))
   {
     refuse(header.path, "its data file '" + name + "' is missing; put it beside the header");
   }
-  const std::uint64_t fileBytes = fs::file_size(path, error);
   const auto skip = header.numbers({ "HeaderSize" }, 1);
   std::uint64_t start = local ? header.bytes : 0;
   if (!skip.empty() && !local)
   {
+    if (!(skip[0] < 9.0e15))
+    {
+      refuse(header.path, "its header has " + header.text({ "HeaderSize" }) + " for HeaderSize; correct it");
+    }
     // -1: the data are the file's last bytes.
+    const std::uint64_t fileBytes = fs::file_size(path, error);
     start = skip[0] >= 0.0 ? std::uint64_t(skip[0]) : (fileBytes > dataBytes ? fileBytes - dataBytes : 0);
   }
-  std::vector<char> bytes(fileBytes > start ? fileBytes - start : 0);
-  stream.seekg(std::streamoff(start));
-  stream.read(bytes.data(), std::streamsize(bytes.size()));
-  return bytes;
-}
-
-std::vector<char> inflated(const std::vector<char>& stored, std::uint64_t dataBytes, const std::string& truncated)
-{
-  std::vector<char> data(dataBytes);
-  z_stream stream{};
-  inflateInit2(&stream, 15 + 32); // zlib or gzip, by its first bytes
-  std::size_t given = 0;
-  std::size_t taken = 0;
-  int status = Z_OK;
-  while (status == Z_OK)
-  {
-    constexpr std::size_t chunk = std::size_t(1) << 30; // zlib counts in 32 bits
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(stored.data() + given));
-    stream.avail_in = uInt(std::min(chunk, stored.size() - given));
-    stream.next_out = reinterpret_cast<Bytef*>(data.data() + taken);
-    stream.avail_out = uInt(std::min(chunk, data.size() - taken));
-    const uInt in = stream.avail_in;
-    const uInt out = stream.avail_out;
-    status = inflate(&stream, Z_NO_FLUSH);
-    given += in - stream.avail_in;
-    taken += out - stream.avail_out;
-  }
-  inflateEnd(&stream);
-  if (status != Z_STREAM_END || taken != dataBytes)
-  {
-    throw Error(truncated);
-  }
-  return data;
+  const bool deflated = header.flag({ "CompressedData" });
+  return ByteStream(path, start, deflated ? ByteStream::Packing::Deflate : ByteStream::Packing::None, header.path);
 }
 
 } // namespace
 
-LabelVolume readMeta(const std::string& path)
+VoxelFile openMeta(const std::string& path)
 {
   const Header header = readHeader(path);
-  LabelVolume volume;
-  volume.placement = placementOf(header);
-  const ElementType type = typeOf(header);
+  const GridPlacement placement = placementOf(header);
+  const NumberType type = typeOf(header);
   if (!header.flag({ "BinaryData" }))
   {
     refuse(path, "its voxels are written as text; save it as binary data");
   }
-  const std::size_t count = volume.placement.voxelCount();
-  const std::uint64_t dataBytes = std::uint64_t(count) * type.bytes;
-  const std::string truncated =
-    "cannot read '" + path + "': its voxel data end too early or are damaged; copy it again.";
-  std::vector<char> data = storedBytes(header, dataBytes);
-  if (header.flag({ "CompressedData" }))
-  {
-    data = inflated(data, dataBytes, truncated);
-  }
-  if (data.size() < dataBytes)
-  {
-    throw Error(truncated);
-  }
-  if (header.flag({ "BinaryDataByteOrderMSB", "ElementByteOrderMSB" }))
-  {
-    for (std::size_t n = 0; n < count; ++n)
-    {
-      std::reverse(data.begin() + std::ptrdiff_t(n * type.bytes), data.begin() + std::ptrdiff_t((n + 1) * type.bytes));
-    }
-  }
-  LabelConversion conversion;
-  conversion.path = path;
-  conversion.size = volume.placement.size;
-  volume.voxels.reserve(count);
-  type.append(conversion, volume.voxels, data.data(), count);
+  const bool mostSignificantFirst = header.flag({ "BinaryDataByteOrderMSB", "ElementByteOrderMSB" });
+  return { path,
+           placement,
+           type,
+           mostSignificantFirst,
+           1.0,
+           0.0,
+           1,
+           false,
+           dataOf(header, std::uint64_t(placement.voxelCount()) * bytesOf(type)) };
+}
+
+LabelVolume readMeta(const std::string& path, const Progress& progress)
+{
+  VoxelFile file = openMeta(path);
+  LabelVolume volume;
+  volume.placement = file.placement;
+  volume.voxels = readLabelNumbers(file, progress);
   return volume;
 }
 

@@ -2,6 +2,7 @@
 
 #include "Core/Progress.h"
 #include "Labels/LabelConversion.h"
+#include "Labels/VoxelFile.h"
 
 #include <nifti/nifti2_io.h>
 #include <zlib.h>
@@ -20,12 +21,6 @@ struct FreeImage
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 using Image = std::unique_ptr<nifti_image, FreeImage>;
-
-struct CloseFile
-{
-  void operator()(gzFile file) const { gzclose(file); }
-};
-using InputFile = std::unique_ptr<gzFile_s, CloseFile>;
 
 /// libnifti turns a dimension of 0 into 1, so the header is looked at as it stands.
 void refuseEmptyImage(const std::string& path)
@@ -63,7 +58,8 @@ Image readHeader(const std::string& path)
   {
     throw Error("'" + path + "' has more than three dimensions and time; choose one volume of it.");
   }
-  if (std::max({ image->nx, image->ny, image->nz }) > 65535 || std::uint64_t(image->nvox) > maxVoxels)
+  const bool isLong = std::max({ image->nx, image->ny, image->nz, image->nt }) > 65535;
+  if (isLong || std::uint64_t(image->nx) * std::uint64_t(image->ny) * std::uint64_t(image->nz) > maxVoxels)
   {
     throw Error("'" + path + "' claims " + std::to_string(image->nx) + " x " + std::to_string(image->ny) + " x " +
                 std::to_string(image->nz) + " voxels, which is more than a label map may have; check its header.");
@@ -112,34 +108,37 @@ GridPlacement placementOf(const nifti_image& image, const std::string& path)
   return placementFromAffine(size, columns, origin, path);
 }
 
-void appendNumbers(const LabelConversion& conversion, int datatype, const void* data, std::size_t count,
-                   std::vector<std::uint16_t>& labels)
+NumberType numberTypeOf(const nifti_image& image, const std::string& path)
 {
-  switch (datatype)
+  switch (image.datatype)
   {
     case NIFTI_TYPE_UINT8:
-      return conversion.append(labels, static_cast<const std::uint8_t*>(data), count);
+      return NumberType::UInt8;
     case NIFTI_TYPE_INT8:
-      return conversion.append(labels, static_cast<const std::int8_t*>(data), count);
+      return NumberType::Int8;
     case NIFTI_TYPE_UINT16:
-      return conversion.append(labels, static_cast<const std::uint16_t*>(data), count);
+      return NumberType::UInt16;
     case NIFTI_TYPE_INT16:
-      return conversion.append(labels, static_cast<const std::int16_t*>(data), count);
+      return NumberType::Int16;
     case NIFTI_TYPE_UINT32:
-      return conversion.append(labels, static_cast<const std::uint32_t*>(data), count);
+      return NumberType::UInt32;
     case NIFTI_TYPE_INT32:
-      return conversion.append(labels, static_cast<const std::int32_t*>(data), count);
+      return NumberType::Int32;
     case NIFTI_TYPE_UINT64:
-      return conversion.append(labels, static_cast<const std::uint64_t*>(data), count);
+      return NumberType::UInt64;
     case NIFTI_TYPE_INT64:
-      return conversion.append(labels, static_cast<const std::int64_t*>(data), count);
+      return NumberType::Int64;
     case NIFTI_TYPE_FLOAT32:
-      return conversion.append(labels, static_cast<const float*>(data), count);
+      return NumberType::Float32;
     case NIFTI_TYPE_FLOAT64:
-      return conversion.append(labels, static_cast<const double*>(data), count);
+      return NumberType::Float64;
+    case NIFTI_TYPE_RGB24:
+    case NIFTI_TYPE_RGBA32:
+      throw Error("'" + path + "' is a colour image (" + nifti_datatype_string(image.datatype) +
+                  "); choose the segmentation or scan that it was painted from.");
     default:
-      throw Error("'" + conversion.path + "' has voxels of type " + nifti_datatype_string(datatype) +
-                  "; a label map holds whole numbers 0..65535, convert it.");
+      throw Error("'" + path + "' has voxels of type " + nifti_datatype_string(image.datatype) +
+                  "; convert it to whole numbers or floats.");
   }
 }
 
@@ -156,54 +155,35 @@ double secondsPerUnit(const nifti_image& image)
   }
 }
 
-/// Reads the voxels of one phase slice by slice. Not through libnifti, which turns NaN into 0 without a word.
-std::vector<std::uint16_t> readVoxels(const nifti_image& image, const std::string& path, int phase)
+/// The numbers of one phase. Not through libnifti, which turns NaN into 0 without a word.
+VoxelFile voxelsOf(const nifti_image& image, const std::string& path, int phase)
 {
-  LabelConversion conversion;
-  conversion.path = path;
-  conversion.size = Vec3i(int(image.nx), int(image.ny), int(image.nz));
-  if (image.scl_slope != 0.0)
+  const std::int64_t phases = std::max<std::int64_t>(image.nt, 1);
+  if (phase < 0 || phase >= phases)
   {
-    conversion.slope = image.scl_slope;
-    conversion.intercept = image.scl_inter;
+    throw Error("'" + path + "' has " + std::to_string(phases) + " phases, so phase " + std::to_string(phase) +
+                ", counted from 0, is not among them; choose another.");
   }
-  std::vector<std::uint16_t> labels;
-  appendNumbers(conversion, image.datatype, nullptr, 0, labels); // refuses other types before anything is read
-
-  const std::string truncated =
-    "cannot read '" + path + "': its voxel data end too early or are damaged; copy it again.";
-  const InputFile file(gzopen(path.c_str(), "rb"));
-  const std::int64_t phaseBytes = image.nx * image.ny * image.nz * image.nbyper;
-  if (!file || gzseek(file.get(), z_off_t(image.iname_offset + phase * phaseBytes), SEEK_SET) < 0)
+  const NumberType type = numberTypeOf(image, path);
+  const GridPlacement placement = placementOf(image, path);
+  const ByteStream::Packing packing = isGzip(path) ? ByteStream::Packing::Deflate : ByteStream::Packing::None;
+  ByteStream bytes(path, 0, packing, path);
+  const std::uint64_t phaseBytes = std::uint64_t(placement.voxelCount()) * bytesOf(type);
+  if (image.iname_offset < 0)
   {
-    throw Error(truncated);
+    throw Error("cannot read '" + path + "': its header says that the voxels begin before the file; correct it.");
   }
-  const std::size_t rowValues = std::size_t(image.nx);
-  const std::size_t rows = std::size_t(image.ny) * std::size_t(image.nz);
-  const unsigned rowBytes = unsigned(rowValues) * unsigned(image.nbyper);
-  std::vector<char> row(rowBytes);
-  labels.reserve(rowValues * rows);
-  for (std::size_t n = 0; n < rows; ++n)
-  {
-    if (gzread(file.get(), row.data(), rowBytes) != int(rowBytes))
-    {
-      throw Error(truncated);
-    }
-    if (image.byteorder != nifti_short_order())
-    {
-      nifti_swap_Nbytes(std::int64_t(rowValues), image.swapsize, row.data());
-    }
-    appendNumbers(conversion, image.datatype, row.data(), rowValues, labels);
-  }
-  char next = 0;
-  int status = Z_OK;
-  gzread(file.get(), &next, 1); // only past the last byte does zlib compare the checksum
-  gzerror(file.get(), &status);
-  if (status != Z_OK)
-  {
-    throw Error(truncated);
-  }
-  return labels;
+  bytes.skip(std::uint64_t(image.iname_offset) + std::uint64_t(phase) * phaseBytes);
+  const bool scaled = image.scl_slope != 0.0;
+  return { path,
+           placement,
+           type,
+           image.byteorder != nifti_short_order(),
+           scaled ? double(image.scl_slope) : 1.0,
+           scaled ? double(image.scl_inter) : 0.0,
+           1,
+           false,
+           std::move(bytes) };
 }
 
 Image makeImage(const std::string& path, const LabelVolume& volume)
@@ -264,17 +244,18 @@ LabelPhases readNiftiPhases(const std::string& path)
   return { int(std::max<std::int64_t>(image->nt, 1)), stepS > 0.0 ? stepS : 1.0 };
 }
 
-LabelVolume readNifti(const std::string& path, int phase)
+VoxelFile openNifti(const std::string& path, int phase)
+{
+  return voxelsOf(*readHeader(path), path, phase);
+}
+
+LabelVolume readNifti(const std::string& path, int phase, const Progress& progress)
 {
   const Image image = readHeader(path);
-  if (phase < 0 || phase >= std::max<std::int64_t>(image->nt, 1))
-  {
-    throw Error("'" + path + "' has " + std::to_string(std::max<std::int64_t>(image->nt, 1)) + " phases, so phase " +
-                std::to_string(phase) + ", counted from 0, is not among them; choose another.");
-  }
+  VoxelFile file = voxelsOf(*image, path, phase);
   LabelVolume volume;
-  volume.placement = placementOf(*image, path);
-  volume.voxels = readVoxels(*image, path, phase);
+  volume.placement = file.placement;
+  volume.voxels = readLabelNumbers(file, progress);
   for (int n = 0; n < image->num_ext; ++n)
   {
     const nifti1_extension& extension = image->ext_list[n];

@@ -5,6 +5,8 @@
 #include "Labels/LabelCode.h"
 #include "Labels/LabelConversion.h"
 #include "Labels/NrrdFile.h"
+#include "Labels/VoxelFile.h"
+#include "Labels/VoxelRuns.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -99,48 +101,58 @@ GridPlacement placementOf(const Nrrd& nrrd, const Axes& axes, const std::string&
   return placementFromAffine(size, columns, origin, path);
 }
 
-std::vector<std::uint16_t> readNumbers(const Nrrd& nrrd, const LabelConversion& conversion)
+NumberType numberTypeOf(const Nrrd& nrrd)
 {
-  const std::size_t count = nrrdElementNumber(&nrrd);
-  std::vector<std::uint16_t> numbers;
-  numbers.reserve(count);
   switch (nrrd.type)
   {
     case nrrdTypeChar:
-      conversion.append(numbers, static_cast<const signed char*>(nrrd.data), count);
-      break;
+      return NumberType::Int8;
     case nrrdTypeUChar:
-      conversion.append(numbers, static_cast<const unsigned char*>(nrrd.data), count);
-      break;
+      return NumberType::UInt8;
     case nrrdTypeShort:
-      conversion.append(numbers, static_cast<const short*>(nrrd.data), count);
-      break;
+      return NumberType::Int16;
     case nrrdTypeUShort:
-      conversion.append(numbers, static_cast<const unsigned short*>(nrrd.data), count);
-      break;
+      return NumberType::UInt16;
     case nrrdTypeInt:
-      conversion.append(numbers, static_cast<const int*>(nrrd.data), count);
-      break;
+      return NumberType::Int32;
     case nrrdTypeUInt:
-      conversion.append(numbers, static_cast<const unsigned int*>(nrrd.data), count);
-      break;
+      return NumberType::UInt32;
     case nrrdTypeLLong:
-      conversion.append(numbers, static_cast<const airLLong*>(nrrd.data), count);
-      break;
+      return NumberType::Int64;
     case nrrdTypeULLong:
-      conversion.append(numbers, static_cast<const airULLong*>(nrrd.data), count);
-      break;
+      return NumberType::UInt64;
     case nrrdTypeFloat:
-      conversion.append(numbers, static_cast<const float*>(nrrd.data), count);
-      break;
-    case nrrdTypeDouble:
-      conversion.append(numbers, static_cast<const double*>(nrrd.data), count);
-      break;
+      return NumberType::Float32;
     default:
-      throw Error("'" + conversion.path +
-                  "' has voxels that are not numbers; a label map holds whole numbers 0..65535.");
+      return NumberType::Float64; // openNrrdFile has refused what is no number
   }
-  return numbers;
+}
+
+void refuseColours(const Nrrd& nrrd, const Axes& axes, const std::string& path)
+{
+  const int kind = axes.layers < 0 ? int(nrrdKindUnknown) : nrrd.axis[axes.layers].kind;
+  if (kind == nrrdKindRGBColor || kind == nrrdKindRGBAColor || kind == nrrdKind3Color || kind == nrrdKind4Color ||
+      kind == nrrdKindHSVColor || kind == nrrdKindXYZColor)
+  {
+    throw Error("'" + path + "' is a colour image (" + airEnumStr(nrrdKind, kind) +
+                "); choose the segmentation or scan that it was painted from.");
+  }
+}
+
+VoxelFile voxelsOf(NrrdFile& file, const std::string& path)
+{
+  const Axes axes = findAxes(*file.header, path);
+  refuseColours(*file.header, axes, path);
+  const std::size_t layers = axes.layers >= 0 ? file.header->axis[axes.layers].size : 1;
+  return { path,
+           placementOf(*file.header, axes, path),
+           numberTypeOf(*file.header),
+           file.swapped,
+           1.0,
+           0.0,
+           layers,
+           axes.layers == 0,
+           std::move(file.data) };
 }
 
 /// A segment of a .seg.nrrd file.
@@ -228,72 +240,129 @@ void makeIdsUnique(std::vector<Segment>& segments)
   }
 }
 
-std::vector<std::uint16_t> flattenLayers(const std::vector<std::uint16_t>& numbers, std::size_t layerCount,
-                                         bool layersFirst, const std::vector<Segment>& segments,
-                                         const std::string& path)
+/// Collects the voxels of a layer's segments.
+class LayerRuns
 {
-  std::map<std::pair<int, int>, std::size_t> rankOf; // (layer, value) to 1 + position in the list of segments
-  for (std::size_t n = 0; n < segments.size(); ++n)
+public:
+  LayerRuns(std::size_t layer, const std::vector<Segment>& segments, std::vector<Structure>& structures,
+            const std::string& path)
+    : layer_(layer)
+    , path_(path)
   {
-    rankOf[{ segments[n].layer, segments[n].value }] = n + 1;
-  }
-  const std::size_t voxelCount = numbers.size() / layerCount;
-  std::vector<std::size_t> winner(voxelCount, 0);
-  for (std::size_t layer = 0; layer < layerCount; ++layer)
-  {
-    std::size_t rank = 0;
-    int lastValue = 0;
-    for (std::size_t voxel = 0; voxel < voxelCount; ++voxel)
+    for (std::size_t n = 0; n < segments.size(); ++n)
     {
-      const int value = numbers[layersFirst ? voxel * layerCount + layer : layer * voxelCount + voxel];
-      if (value != lastValue)
+      if (std::size_t(segments[n].layer) == layer)
       {
-        const auto found = rankOf.find({ int(layer), value });
-        if (value != 0 && found == rankOf.end())
-        {
-          throw Error("'" + path + "' holds " + std::to_string(value) + " in layer " + std::to_string(layer) +
-                      ", which no segment of its header claims; save it again from the program that made it.");
-        }
-        rank = value == 0 ? 0 : found->second;
-        lastValue = value;
+        voxelsOf_[segments[n].value] = &structures[n].voxels;
       }
-      winner[voxel] = std::max(winner[voxel], rank);
     }
   }
-  std::vector<std::uint16_t> labels(voxelCount);
-  std::transform(winner.begin(), winner.end(), labels.begin(), [&segments](std::size_t rank) {
-    return rank == 0 ? std::uint16_t(0) : std::uint16_t(segments[rank - 1].label.id);
+
+  void add(std::uint16_t value, std::size_t voxel, std::size_t count)
+  {
+    if (value == 0)
+    {
+      return;
+    }
+    if (value != value_)
+    {
+      const auto found = voxelsOf_.find(value);
+      if (found == voxelsOf_.end())
+      {
+        throw Error("'" + path_ + "' holds " + std::to_string(value) + " in layer " + std::to_string(layer_) +
+                    ", which no segment of its header claims; save it again from the program that made it.");
+      }
+      value_ = value;
+      voxels_ = found->second;
+    }
+    voxels_->add(voxel, count);
+  }
+
+private:
+  std::size_t layer_;
+  std::string path_;
+  std::map<int, VoxelRuns*> voxelsOf_;
+  std::uint16_t value_ = 0; // of `voxels_`
+  VoxelRuns* voxels_ = nullptr;
+};
+
+void readLayers(VoxelFile& file, const std::vector<Segment>& segments, LabelVolume& volume, const Progress& progress)
+{
+  std::vector<Structure> structures(segments.size());
+  for (std::size_t n = 0; n < segments.size(); ++n)
+  {
+    structures[n].label = std::uint16_t(segments[n].label.id);
+    structures[n].name = segments[n].label.name;
+  }
+  const LabelConversion conversion(file);
+  std::map<std::size_t, LayerRuns> layers; // as they are met: a header may promise any number
+  const auto layer = [&](std::size_t n) -> LayerRuns& {
+    return layers.try_emplace(n, n, segments, structures, file.path).first->second;
+  };
+  const std::size_t voxelCount = file.placement.voxelCount();
+  std::vector<std::uint16_t> values;
+  readNumbers(file, progress, [&](const auto* numbers, std::size_t count, std::size_t position) {
+    values.resize(count);
+    conversion.convert(numbers, count, position, values.data());
+    for (std::size_t n = 0; n < count;)
+    {
+      const std::size_t at = position + n;
+      if (file.layersFirst)
+      {
+        if (values[n] != 0)
+        {
+          layer(at % file.layers).add(values[n], at / file.layers, 1);
+        }
+        ++n;
+        continue;
+      }
+      const std::size_t voxel = at % voxelCount;
+      const std::size_t last = n + std::min(count - n, voxelCount - voxel);
+      const std::size_t begin = n;
+      n = std::size_t(std::find_if(values.begin() + std::ptrdiff_t(n), values.begin() + std::ptrdiff_t(last),
+                                   [&](std::uint16_t value) { return value != values[begin]; }) -
+                      values.begin());
+      if (values[begin] != 0)
+      {
+        layer(at / voxelCount).add(values[begin], voxel, n - begin);
+      }
+    }
   });
-  return labels;
+  FlattenedStructures flat = flattenStructures(structures, voxelCount, "'" + file.path + "'");
+  volume.voxels = std::move(flat.voxels);
+  volume.notice = std::move(flat.overlap);
 }
 
 } // namespace
 
-LabelVolume readNrrd(const std::string& path)
+VoxelFile openNrrd(const std::string& path)
 {
-  const NrrdPointer nrrd = loadNrrd(path);
-  refuseFractions(*nrrd, path);
-  const Axes axes = findAxes(*nrrd, path);
-  const bool layered = axes.layers >= 0;
-  const std::size_t layerCount = layered ? nrrd->axis[axes.layers].size : 1;
+  NrrdFile nrrd = openNrrdFile(path);
+  return voxelsOf(nrrd, path);
+}
+
+LabelVolume readNrrd(const std::string& path, const Progress& progress)
+{
+  NrrdFile nrrd = openNrrdFile(path);
+  refuseFractions(*nrrd.header, path);
+  VoxelFile file = voxelsOf(nrrd, path);
+  const bool layered = file.layers > 1 || nrrd.header->dim > 3;
 
   LabelVolume volume;
-  volume.placement = placementOf(*nrrd, axes, path);
-  std::vector<Segment> segments = readSegments(*nrrd, layered);
-  if (layerCount > 1 && segments.empty())
+  volume.placement = file.placement;
+  std::vector<Segment> segments = readSegments(*nrrd.header, layered);
+  if (file.layers > 1 && segments.empty())
   {
     throw Error("'" + path + "' has more than three dimensions and no segments; choose one volume of it.");
   }
-
-  LabelConversion conversion;
-  conversion.path = path;
-  conversion.size = volume.placement.size;
-  conversion.valuesPerVoxel = axes.layers == 0 ? layerCount : 1;
-  volume.voxels = readNumbers(*nrrd, conversion);
-  if (layerCount > 1)
+  if (file.layers > 1)
   {
     makeIdsUnique(segments);
-    volume.voxels = flattenLayers(volume.voxels, layerCount, axes.layers == 0, segments, path);
+    readLayers(file, segments, volume, progress);
+  }
+  else
+  {
+    volume.voxels = readLabelNumbers(file, progress);
   }
   for (Segment& segment : segments)
   {
