@@ -2,6 +2,7 @@
 
 #include "Labels/KnownNumbers.h"
 #include "Labels/LabelTable.h"
+#include "Labels/ReadDicomSeg.h"
 #include "Labels/ReadLabelMap.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
@@ -78,15 +79,9 @@ std::string listOfNames(const std::string& name)
   return sono::dataFile("label_lists/" + file + ".csv");
 }
 
-std::shared_ptr<const sono::LabelVolume> readVolume(const std::string& fileName, int phase, const std::string& names)
+bool isVti(const std::string& fileName)
 {
-  auto volume = std::make_shared<sono::LabelVolume>(endsWith(fileName, ".vti") ? readVti(fileName)
-                                                                               : sono::readLabelMap(fileName, phase));
-  if (names != "From File")
-  {
-    sono::readLabelTable(listOfNames(names), *volume);
-  }
-  return volume;
+  return endsWith(fileName, ".vti");
 }
 
 /// When each phase is: of one file as the file says, of several 0, 1, 2, ...
@@ -94,11 +89,11 @@ std::vector<double> timesOf(const std::vector<std::string>& fileNames)
 {
   if (fileNames.empty())
   {
-    throw sono::Error("No label map is named; set FileName to a .nii, .nii.gz, .nrrd, .mha, .mhd or .vti file.");
+    throw sono::Error("No label map is named; set FileName to a .nii, .nii.gz, .nrrd, .mha, .mhd, .dcm or .vti file.");
   }
   const bool isOne = fileNames.size() == 1;
   const sono::LabelPhases phases =
-    isOne && !endsWith(fileNames[0], ".vti") ? sono::readLabelPhases(fileNames[0]) : sono::LabelPhases();
+    isOne && !isVti(fileNames[0]) ? sono::readLabelPhases(fileNames[0]) : sono::LabelPhases();
   std::vector<double> times(isOne ? std::size_t(phases.count) : fileNames.size());
   for (std::size_t i = 0; i < times.size(); ++i)
   {
@@ -156,10 +151,21 @@ void vtkSonoLabelMapReader::RemoveAllFileNames()
   }
 }
 
-std::shared_ptr<const sono::LabelVolume> vtkSonoLabelMapReader::ReadPhase(int phase) const
+sono::LabelVolume vtkSonoLabelMapReader::ReadPhase(int phase)
 {
-  return this->FileNames.size() == 1 ? readVolume(this->FileNames[0], phase, this->LabelNames)
-                                     : readVolume(this->FileNames[std::size_t(phase)], 0, this->LabelNames);
+  const bool isOne = this->FileNames.size() == 1;
+  const std::string& fileName = this->FileNames[isOne ? 0 : std::size_t(phase)];
+  sono::LabelVolume volume =
+    isVti(fileName) ? readVti(fileName) : sono::readLabelMap(fileName, isOne ? phase : 0, sono::progressOf(this));
+  if (this->LabelNames != "From File")
+  {
+    sono::readLabelTable(listOfNames(this->LabelNames), volume);
+  }
+  if (!volume.notice.empty() && this->Noticed.insert(volume.notice).second)
+  {
+    sono::warn(this, volume.notice);
+  }
+  return volume;
 }
 
 int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
@@ -171,16 +177,16 @@ int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
       return 1;
     }
   }
-  return 0;
+  return fileName && endsWith(fileName, ".dcm") && sono::isDicomSeg(fileName) ? 1 : 0;
 }
 
 int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
     this->Times = timesOf(this->FileNames);
-    this->Volume = this->ReadPhase(0);
     vtkInformation* outInfo = output->GetInformationObject(0);
-    sono::announceLabelImage(this->Volume->placement, outInfo);
+    const std::string& first = this->FileNames[0];
+    sono::announceLabelImage(isVti(first) ? readVti(first).placement : sono::readLabelPlacement(first), outInfo);
     outInfo->Remove(Pipeline::TIME_STEPS());
     outInfo->Remove(Pipeline::TIME_RANGE());
     if (this->Times.size() > 1)
@@ -202,12 +208,11 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
     const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time + 1e-9);
     const int phase = std::max(0, static_cast<int>(after - this->Times.begin()) - 1);
 
-    const auto first = std::move(this->Volume);
-    const auto volume = phase == 0 && first ? first : this->ReadPhase(phase);
+    const sono::LabelVolume volume = this->ReadPhase(phase);
     vtkImageData* image = vtkImageData::GetData(output);
     int announced[6];
     outInfo->Get(Pipeline::WHOLE_EXTENT(), announced);
-    sono::imageFromLabelVolume(*volume, image);
+    sono::imageFromLabelVolume(volume, image);
     if (!std::equal(announced, announced + 6, image->GetExtent()))
     {
       const std::string name = this->FileNames[this->FileNames.size() == 1 ? 0 : std::size_t(phase)];

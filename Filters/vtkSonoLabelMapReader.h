@@ -4,7 +4,7 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
-#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,7 +17,9 @@ struct LabelVolume;
  * @brief Reads a label map and places it in the world
  *
  * Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and VTK images (.vti, whose point
- * scalars are the labels and whose field data may name them as this reader's does). The output has unsigned short point
+ * scalars are the labels and whose field data may name them as this reader's does), DICOM Segmentations (.dcm), and a
+ * folder of masks (vtkSonoMaskFolderReader). Where structures overlap, the one with fewer voxels counts, and a warning
+ * says so once. The output has unsigned short point
  * scalars "Labels" and stands in world coordinates, LPS mm, with its direction matrix. Its field data name the labels
  * that occur: LabelIds, LabelNames, LabelColors (red, green, blue from 0 to 1) and, where there are any,
  * LabelCodes, one row a label. Where the label map
@@ -59,7 +61,7 @@ public:
   ///@}
 
   /**
-   * Whether the name ends like a label map's.
+   * Whether the name ends like a label map's; of .dcm only segmentations are.
    */
   static int CanReadFile(const char* fileName);
 
@@ -74,12 +76,12 @@ private:
   vtkSonoLabelMapReader(const vtkSonoLabelMapReader&) = delete;
   void operator=(const vtkSonoLabelMapReader&) = delete;
 
-  std::shared_ptr<const sono::LabelVolume> ReadPhase(int phase) const;
+  sono::LabelVolume ReadPhase(int phase);
 
   std::vector<std::string> FileNames;
   std::string LabelNames = "From File";
-  std::vector<double> Times;                       // of the phases
-  std::shared_ptr<const sono::LabelVolume> Volume; // the first: from the information pass, which needs its size
+  std::vector<double> Times;     // of the phases
+  std::set<std::string> Noticed; // what was said of the files: once is enough
 };
 
 #endif

@@ -48,7 +48,6 @@ struct LabelInfo
   bool guessed = false; ///< whether that tissue is a guess (assignTissues), for a person to look at
   std::array<float, 3> color{ 0.5f, 0.5f, 0.5f };
   bool hasColor = false; ///< whether the file gave the colour
-  std::string code;      ///< of a terminology, SCHEME VALUE such as "SCT 64033007"; empty: none
 };
 
 /// A label map: one label id per voxel, i fastest. `labels` holds every id that occurs in `voxels`, ascending.

@@ -1,9 +1,11 @@
 #include "Labels/ReadIntensities.h"
 
+#include "Labels/ReadDicomSeries.h"
 #include "Labels/ReadNifti.h"
 #include "Labels/VoxelFile.h"
 
 #include <cmath>
+#include <filesystem>
 #include <new>
 
 namespace sono {
@@ -45,7 +47,9 @@ IntensityVolume readIntensities(const std::string& path, const Progress& progres
 {
   try
   {
-    return readVoxelFile(path, progress);
+    std::error_code error;
+    const bool isSeries = std::filesystem::is_directory(path, error) || isDicomFile(path);
+    return isSeries ? readDicomSeries(path, progress) : readVoxelFile(path, progress);
   }
   catch (const std::bad_alloc&)
   {

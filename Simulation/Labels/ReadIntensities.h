@@ -17,10 +17,10 @@ struct IntensityVolume
 };
 
 /// Reads a CT or MR volume and places it in the world (LPS mm): NIfTI, NRRD and MetaImage as readLabelMap places them
-/// (NIfTI's scl_slope and scl_inter applied), or a DICOM series: its folder, or one of its files (.dcm or without an
-/// ending), with RescaleSlope and RescaleIntercept applied and its slices in the order of their positions.
-/// Throws Error for what readLabelMap refuses of a file but its numbers, for NaN and infinity, layers and phases, and
-/// for a series that is incomplete, of colours, or one of several in its folder; and Aborted.
+/// (NIfTI's scl_slope and scl_inter applied), or a DICOM series: its folder, or one of its files, with RescaleSlope and
+/// RescaleIntercept applied and its slices in the order of their positions.
+/// Throws Error for what readLabelMap refuses of a file but its numbers, for NaN and infinity, colours, layers and
+/// phases, and for a series that lacks slices, or one of several in its folder; and Aborted.
 IntensityVolume readIntensities(const std::string& path, const Progress& progress = {});
 
 } // namespace sono

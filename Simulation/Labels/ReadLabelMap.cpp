@@ -4,12 +4,15 @@
 #include "Labels/CsvFile.h"
 #include "Labels/KnownNumbers.h"
 #include "Labels/LabelTable.h"
+#include "Labels/ReadDicomSeg.h"
+#include "Labels/ReadMaskFolder.h"
 #include "Labels/ReadMeta.h"
 #include "Labels/ReadNifti.h"
 #include "Labels/ReadNrrd.h"
 #include "Labels/VoxelFile.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <new>
 #include <set>
@@ -39,52 +42,94 @@ void copyDescription(const LabelInfo& from, LabelInfo& to)
   }
 }
 
+bool isFolder(const std::string& path)
+{
+  std::error_code error;
+  return std::filesystem::is_directory(path, error);
+}
+
+LabelVolume readVoxels(const std::string& path, int phase, const Progress& progress)
+{
+  if (isNiftiName(path))
+  {
+    return readNifti(path, phase, progress);
+  }
+  return isMetaName(path) ? readMeta(path, progress) : readNrrd(path, progress);
+}
+
+/// Names of a table beside the label map STEM.nii for labels that the file itself does not name.
+void addNamesBeside(const std::string& stem, LabelVolume& volume)
+{
+  const std::string table = labelTableBeside(stem);
+  if (table.empty())
+  {
+    return;
+  }
+  std::set<int> named;
+  for (const LabelInfo& label : volume.labels)
+  {
+    if (!label.name.empty())
+    {
+      named.insert(label.id);
+    }
+  }
+  for (LabelInfo& label : readLabels(table))
+  {
+    if (named.count(label.id) == 0)
+    {
+      volume.labels.push_back(std::move(label));
+    }
+  }
+}
+
 } // namespace
 
 LabelPhases readLabelPhases(const std::string& path)
 {
+  if (!isNiftiName(path))
+  {
+    return LabelPhases();
+  }
   needVoxelFile(path, 0);
-  return isNiftiName(path) ? readNiftiPhases(path) : LabelPhases();
+  return readNiftiPhases(path);
+}
+
+GridPlacement readLabelPlacement(const std::string& path)
+{
+  if (isFolder(path))
+  {
+    return maskFolderPlacement(path);
+  }
+  return isDicomFile(path) ? dicomSegPlacement(path) : openVoxels(path).placement;
 }
 
 LabelVolume readLabelMap(const std::string& path, int phase, const Progress& progress)
 {
-  needVoxelFile(path, phase);
   LabelVolume volume;
+  std::string stem = path;
   try
   {
-    if (isNiftiName(path))
+    if (isFolder(path))
     {
-      volume = readNifti(path, phase, progress);
+      return readMaskFolder(path, progress);
+    }
+    if (isDicomFile(path))
+    {
+      volume = readDicomSeg(path, progress);
+      stem = std::filesystem::path(path).replace_extension().string();
     }
     else
     {
-      volume = isMetaName(path) ? readMeta(path, progress) : readNrrd(path, progress);
+      needVoxelFile(path, phase);
+      volume = readVoxels(path, phase, progress);
+      stem.resize(stem.size() - voxelFileEnding(path).size());
     }
   }
   catch (const std::bad_alloc&)
   {
     throw Error("cannot read '" + path + "': it does not fit into memory; crop or resample it.");
   }
-  const std::string table = labelTableBeside(path.substr(0, path.size() - voxelFileEnding(path).size()));
-  if (!table.empty())
-  {
-    std::set<int> named;
-    for (const LabelInfo& label : volume.labels)
-    {
-      if (!label.name.empty())
-      {
-        named.insert(label.id);
-      }
-    }
-    for (LabelInfo& label : readLabels(table))
-    {
-      if (named.count(label.id) == 0)
-      {
-        volume.labels.push_back(std::move(label));
-      }
-    }
-  }
+  addNamesBeside(stem, volume);
   volume.collectLabels();
   nameKnownNumbers(volume);
   return volume;

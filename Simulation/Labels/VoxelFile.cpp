@@ -5,6 +5,7 @@
 #include "Labels/ReadNrrd.h"
 
 #include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -53,6 +54,15 @@ std::string voxelFileEnding(const std::string& path)
     }
   }
   return {};
+}
+
+bool isDicomFile(const std::string& path)
+{
+  char magic[4] = {};
+  std::ifstream stream(path, std::ios::binary);
+  stream.seekg(128);
+  stream.read(magic, sizeof(magic));
+  return stream && std::memcmp(magic, "DICM", sizeof(magic)) == 0;
 }
 
 void needVoxelFile(const std::string& path, int phase)

@@ -58,6 +58,9 @@ std::string voxelFileEnding(const std::string& path);
 bool isNiftiName(const std::string& path);
 bool isMetaName(const std::string& path);
 
+/// Whether a file says of itself that it is DICOM ("DICM" at byte 128), whatever its name.
+bool isDicomFile(const std::string& path);
+
 /// Throws Error when openVoxels cannot read it, whatever is in it.
 void needVoxelFile(const std::string& path, int phase);
 
