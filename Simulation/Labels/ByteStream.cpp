@@ -146,7 +146,7 @@ ByteStream::ByteStream(std::FILE* file, Packing packing, std::string name)
   }
   impl_->start = std::uint64_t(start);
   impl_->fileBytes = std::uint64_t(status.st_size - start);
-  impl_->buffer.resize(bufferBytes);
+  impl_->buffer.resize(std::size_t(std::clamp<std::uint64_t>(impl_->fileBytes, 1, bufferBytes)));
   if (packing == Packing::Deflate)
   {
     // ISA-L: three to five times as fast as zlib on label maps, and as libdeflate would be if it could stream.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace sono {
 
@@ -93,13 +94,10 @@ void LabelVolume::collectLabels()
   {
     occurs[id] = true;
   }
-  std::vector<LabelInfo> known(65536);
+  std::map<int, LabelInfo> known;
   for (LabelInfo& label : labels)
   {
-    if (label.id >= 0 && label.id < 65536)
-    {
-      known[std::size_t(label.id)] = std::move(label);
-    }
+    known[label.id] = std::move(label);
   }
   labels.clear();
   for (int id = 0; id < 65536; ++id)
@@ -108,7 +106,7 @@ void LabelVolume::collectLabels()
     {
       continue;
     }
-    LabelInfo label = std::move(known[std::size_t(id)]);
+    LabelInfo label = std::move(known[id]);
     label.id = id;
     if (label.name.empty())
     {

@@ -71,7 +71,9 @@ void needVoxelFile(const std::string& path, int phase)
   if (ending.empty())
   {
     throw Error("cannot read '" + path +
-                "': its name ends in none of .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd, .mha, .mhd; convert it.");
+                "': its name ends in none of .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd, .mha, .mhd, and it is neither "
+                "DICOM nor a folder of "
+                "masks; convert it.");
   }
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || !std::ifstream(path))

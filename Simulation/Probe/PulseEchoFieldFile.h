@@ -14,7 +14,8 @@ namespace sono {
 ///   axis mins: 0 0 0                            position of the first value along each axis; values lie at nodes
 ///   spacings: 0.25 0.5 1.25                     distance of two values, > 0
 /// \endcode
-/// and the values are two-way amplitudes (not dB, not power) of at least 0, of any number type, encoding and scale.
+/// and the values are two-way amplitudes (not dB, not power) of at least 0, of any number type and scale; raw, gzip,
+/// text or hexadecimal.
 /// A lateral or elevational axis that starts at 0 holds half of a symmetric beam. From MATLAB, with w(lateral,
 /// elevational, depth) at x, y and z mm, for instance the root mean square of Field II's calc_hhp at each position:
 /// \code{.unparsed}

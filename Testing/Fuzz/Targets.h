@@ -17,6 +17,9 @@ struct Target
 
 const std::vector<Target>& targets();
 
+/// Where the bytes lie as a file; whoever ends well removes it.
+std::string workFolder();
+
 } // namespace sono::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count);

@@ -1,7 +1,7 @@
 // Fuzz CORPUS TARGET INPUTS [SEED]: hands a reader the files of CORPUS/TARGET, then INPUTS mutations of them, which
 // depend on SEED and their number alone. A fault ends the program with what the sanitizer says; the bytes are then in
-// sono_fuzz_PID in the folder for temporary files. Targets.cpp is libFuzzer's as well: build it with
-// -fsanitize=fuzzer instead of this file and name the target in SONOVDB_FUZZ.
+// /dev/shm/sono_fuzz_PID. Targets.cpp is libFuzzer's as well: build it with -fsanitize=fuzzer instead of this file and
+// name the target in SONOVDB_FUZZ.
 #include "Mutate.h"
 #include "Targets.h"
 
@@ -70,7 +70,7 @@ int main(int argc, char** argv)
     alarm(slowestS);
     LLVMFuzzerTestOneInput(input.data(), input.size());
   }
-  fs::remove_all(fs::temp_directory_path() / ("sono_fuzz_" + std::to_string(getpid())));
+  fs::remove_all(sono::fuzz::workFolder());
   std::printf("%s: %zu files and %llu mutations of them were read.\n", argv[2], corpus.size(),
               static_cast<unsigned long long>(inputs));
 }

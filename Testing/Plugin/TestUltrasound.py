@@ -5,7 +5,7 @@ import sys
 import tempfile
 import unittest
 
-from paraview import simple, smstate, smtrace
+from paraview import servermanager, simple, smstate, smtrace
 from paraview.servermanager import Fetch
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow
@@ -186,6 +186,22 @@ class TestUltrasound(unittest.TestCase):
                 pictures.append(grey_now(ultrasound))
         self.assertFalse((pictures[0] == pictures[1]).all())
         self.assertTrue((pictures[0] == pictures[2]).all())
+
+    def test_folder_of_masks_is_opened(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, voxels in (("liver", "0 1 1 0"), ("spleen", "0 0 0 1")):
+                pathlib.Path(folder, name + ".nrrd").write_text("NRRD0004\ntype: uchar\nencoding: ascii\ndimension: 3\n"
+                                                                f"sizes: 4 1 1\n\n{voxels}\n")
+            for reader in (simple.OpenDataFile(folder), simple.MaskFolderReader(FileName=folder)):
+                self.assertEqual(reader.GetXMLName(), "SonoMaskFolderReader")
+                reader.UpdatePipeline()
+                image = reader.GetClientSideObject().GetOutputDataObject(0)
+                self.assertEqual(list(vtk_to_numpy(image.GetPointData().GetArray("Labels"))), [0, 1, 1, 2])
+            factory = servermanager.ProxyManager().GetReaderFactory()  # what File > Open asks
+            readers = factory.GetReaders(str(pathlib.Path(folder, "liver.nrrd")), servermanager.ActiveConnection.Session)
+            names = [readers.GetString(i) for i in range(readers.GetNumberOfStrings())]
+            self.assertIn("SonoMaskFolderReader", names)
+            self.assertIn("SonoLabelMapReader", names)
 
     def test_no_label_map_selected(self):
         """The menus offer the filters only for what can be their input; a script may go without."""
