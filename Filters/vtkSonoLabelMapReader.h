@@ -35,10 +35,13 @@ public:
   vtkTypeMacro(vtkSonoLabelMapReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
   /**
-   * Path of the only label map.
+   * Path of the only label map; of several the first is got.
    */
-  void SetFileName(const char* fileName);
+  virtual void SetFileName(const char* fileName);
+  const char* GetFileName() const { return this->FileNames.empty() ? "" : this->FileNames.front().c_str(); }
+  ///@}
 
   ///@{
   /**

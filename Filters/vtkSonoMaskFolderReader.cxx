@@ -8,10 +8,10 @@
 
 vtkStandardNewMacro(vtkSonoMaskFolderReader);
 
-void vtkSonoMaskFolderReader::SetFolder(const char* path)
+void vtkSonoMaskFolderReader::SetFileName(const char* path)
 {
   const std::string name = path ? path : "";
-  this->SetFileName((name.empty() ? name : sono::maskFolderOf(name)).c_str());
+  this->Superclass::SetFileName((name.empty() ? name : sono::maskFolderOf(name)).c_str());
 }
 
 int vtkSonoMaskFolderReader::CanReadFile(const char* path)

@@ -22,7 +22,7 @@ public:
   /**
    * Path of the folder, or of one of its files.
    */
-  void SetFolder(const char* path);
+  void SetFileName(const char* path) override;
 
   /**
    * Whether the path is a folder with files of label maps, or a mask with others beside it.

@@ -176,7 +176,7 @@ DicomStack stackPlanes(const DicomPlanes& planes, bool gaps)
                     heightMm - lastMm, stepMm);
       refuse(path, std::string(text) + "; copy the whole series");
     }
-    if (slice > 65535.0)
+    if (slice > 1000.0 + 100.0 * double(order.size())) // or two planes might ask for any amount of memory
     {
       refuse(path, "its slices lie too far apart; correct its positions");
     }

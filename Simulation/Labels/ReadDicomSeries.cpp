@@ -37,6 +37,19 @@ struct Slice
   std::optional<double> thicknessMm;
 };
 
+/// Refuses a slice whose file cannot hold its pixels, before memory is taken for them.
+void refuseEmptyPromise(DcmDataset& data, const Slice& slice)
+{
+  const DcmXfer syntax(data.getOriginalXfer());
+  const bool compressed = syntax.isEncapsulated() || syntax.getStreamCompression() != ESC_none;
+  const std::uint64_t pixels = std::uint64_t(slice.columns) * std::uint64_t(slice.rows);
+  std::error_code error;
+  if (pixels / (compressed ? ByteStream::largestInflation : 1) > fs::file_size(slice.path, error))
+  {
+    refuse(slice.path, "its pixels end too early; copy it again");
+  }
+}
+
 Slice readSlice(const std::string& path)
 {
   const std::unique_ptr<DcmFileFormat> file = openDicom(path, false);
@@ -50,6 +63,7 @@ Slice readSlice(const std::string& path)
   {
     return slice; // a report, a directory, a plan, a segmentation
   }
+  refuseEmptyPromise(data, slice);
   slice.series = dicomText(data, DCM_SeriesInstanceUID);
   slice.description = dicomText(data, DCM_SeriesDescription);
   slice.samples = dicomNumber(data, DCM_SamplesPerPixel).value_or(1.0);

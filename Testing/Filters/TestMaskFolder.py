@@ -41,8 +41,7 @@ class TestMaskFolder(unittest.TestCase):
         self.write("gallbladder")
         self.write("portal_vein", 2, 3)
         for path in (self.folder, self.folder / "liver.nii.gz"):
-            reader = vtkSonoMaskFolderReader()
-            reader.SetFolder(str(path))
+            reader = make(vtkSonoMaskFolderReader, FileName=str(path))
             warned = listen(reader, "WarningEvent")
             reader.Update()
             reader.Modified()
@@ -70,8 +69,7 @@ class TestMaskFolder(unittest.TestCase):
     def test_unequal_masks_are_one_sentence(self):
         self.write("liver", 0, 1)
         (self.folder / "spleen.nii").write_bytes(nifti(np.ones((1, 2, 5), np.uint8)))
-        reader = vtkSonoMaskFolderReader()
-        reader.SetFolder(str(self.folder))
+        reader = make(vtkSonoMaskFolderReader, FileName=str(self.folder))
         said = listen(reader)
         reader.Update()
         self.assertEqual(len(said), 1, said)

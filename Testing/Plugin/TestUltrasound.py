@@ -197,7 +197,7 @@ class TestUltrasound(unittest.TestCase):
                 reader.UpdatePipeline()
                 image = reader.GetClientSideObject().GetOutputDataObject(0)
                 self.assertEqual(list(vtk_to_numpy(image.GetPointData().GetArray("Labels"))), [0, 1, 1, 2])
-            factory = servermanager.ProxyManager().GetReaderFactory()  # what File > Open asks
+            factory = servermanager.vtkSMProxyManager.GetProxyManager().GetReaderFactory()  # what File > Open asks
             readers = factory.GetReaders(str(pathlib.Path(folder, "liver.nrrd")), servermanager.ActiveConnection.Session)
             names = [readers.GetString(i) for i in range(readers.GetNumberOfStrings())]
             self.assertIn("SonoMaskFolderReader", names)
