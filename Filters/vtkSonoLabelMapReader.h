@@ -35,13 +35,10 @@ public:
   vtkTypeMacro(vtkSonoLabelMapReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
-   * Path of the only label map; of several the first is got.
+   * Path of the only label map.
    */
   virtual void SetFileName(const char* fileName);
-  const char* GetFileName() const { return this->FileNames.empty() ? "" : this->FileNames.front().c_str(); }
-  ///@}
 
   ///@{
   /**
@@ -75,13 +72,14 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  std::vector<std::string> FileNames;
+
 private:
   vtkSonoLabelMapReader(const vtkSonoLabelMapReader&) = delete;
   void operator=(const vtkSonoLabelMapReader&) = delete;
 
   sono::LabelVolume ReadPhase(int phase);
 
-  std::vector<std::string> FileNames;
   std::string LabelNames = "From File";
   std::vector<double> Times;     // of the phases
   std::set<std::string> Noticed; // what was said of the files: once is enough

@@ -19,10 +19,13 @@ public:
   static vtkSonoMaskFolderReader* New();
   vtkTypeMacro(vtkSonoMaskFolderReader, vtkSonoLabelMapReader);
 
+  ///@{
   /**
-   * Path of the folder, or of one of its files.
+   * Path of the folder, or of one of its files; the folder's is got.
    */
   void SetFileName(const char* path) override;
+  const char* GetFileName() const { return this->FileNames.empty() ? "" : this->FileNames.front().c_str(); }
+  ///@}
 
   /**
    * Whether the path is a folder with files of label maps, or a mask with others beside it.
