@@ -65,6 +65,7 @@ const std::vector<Target>& targets()
     { "label_snap", "x.label", readTable },
     { "label_ctbl", "x.ctbl", readTable },
     { "label_txt", "x.txt", readTable },
+    { "label_tsv", "x.tsv", readTable },
     { "tissues", "x.csv", [](const std::string& path) { attempt([&] { TissueTable::read(path); }); } },
     { "label_tissues", "x.csv", [](const std::string& path) { attempt([&] { LabelTissueMap::read(path); }); } },
     { "pulse", "x.csv", [](const std::string& path) { attempt([&] { readPulse(path); }); } },
