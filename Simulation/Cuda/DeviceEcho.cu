@@ -67,6 +67,7 @@ void DeviceEcho::splatTissues(int first, int count, const TracedOnDevice& traced
   TissueLaunch launch{};
   launch.splat = splat(sceneBeams_.data() + first, tissueScale_, tissueSight_);
   launch.voxels = voxels_.data();
+  launch.detail = detail_.size() > 0 ? detail_.data() : nullptr;
   launch.size = size_;
   launch.perMm = 1.0f / spacing_;
   launch.extentMm = Vec3f(size_) * spacing_;
@@ -88,6 +89,7 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
   launch.traced = traced;
   launch.sums = nestedSum_.data();
   launch.voxels = voxels_.data();
+  launch.detail = detail_.size() > 0 ? detail_.data() : nullptr;
   launch.size = size_;
   launch.perMm = 1.0f / spacing_;
   launch.extentMm = Vec3f(size_) * spacing_;

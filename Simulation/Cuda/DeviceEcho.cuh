@@ -85,8 +85,7 @@ private:
   int chunks() const { return (sumCount_ + chunkSamples - 1) / chunkSamples; }
   void splatTissues(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
   void splatPoints(int first, int count, cudaStream_t stream);
-  void uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
-                    Traffic& traffic);
+  void uploadVoxels(const VoxelJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic& traffic);
   void uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffic& traffic);
@@ -120,6 +119,7 @@ private:
   bool tissues_ = false;
   std::uint64_t sceneId_ = 0;
   DeviceArray<std::uint8_t> voxels_;
+  DeviceArray<std::uint8_t> detail_; ///< empty: none
   DeviceArray<ScatteringMedium> media_;
   DeviceArray<NestedMedium> nestedMedia_;
   Sight tissueSight_;

@@ -83,13 +83,20 @@ struct SightJob
   float elevationalMm = 0.0f;
 };
 
+/// A scene's voxels, kept on the device while it is the same; the scene must outlive the job.
+struct VoxelJob
+{
+  const std::vector<std::uint8_t>* tissues = nullptr;
+  const std::vector<std::uint8_t>* detail = nullptr; ///< empty where there is none
+  std::uint64_t sceneId = 0;
+  Vec3i size{ 0 };
+  Vec3f spacing{ 1.0f };
+};
+
 /// Procedural scatterers of a volume of tissues.
 struct TissueJob
 {
-  SharedVector<std::uint8_t> voxels; ///< belong to the scene where it made the job, which it must outlive
-  std::uint64_t sceneId = 0;         ///< the voxels are kept on the device while it is the same
-  Vec3i size{ 0 };
-  Vec3f spacing{ 1.0f };
+  VoxelJob voxels;
   std::array<ScatteringMedium, 256> media{};
   float cellMm = 0.5f;
   std::uint64_t seed = 1;
@@ -99,13 +106,10 @@ struct TissueJob
 /// Nested scatterers of a volume of tissues (see NestedScatterers).
 struct NestedJob
 {
-  SharedVector<std::uint8_t> voxels; ///< belong to the scene where it made the job, which it must outlive
-  std::uint64_t sceneId = 0;         ///< the voxels and fibres are kept on the device while it is the same
-  Vec3i size{ 0 };
-  Vec3f spacing{ 1.0f };
+  VoxelJob voxels;
   std::array<NestedMedium, 256> media{};
   std::array<float, 256> fibreScale{}; ///< amplitude times exp(-(fibreScale fibre . axis)^2); 0: no fibres
-  const FibreField* fibres = nullptr;  ///< of the scene; null: none
+  const FibreField* fibres = nullptr;  ///< of the scene, kept as its voxels are; null: none
   std::uint64_t seed = 1;
   DensityView density; ///< its tables are those below
   std::vector<float> perMm3;

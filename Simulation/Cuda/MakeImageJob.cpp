@@ -90,14 +90,17 @@ SightJob makeSight(const FieldSight& sight)
   return job;
 }
 
+VoxelJob makeVoxels(const Scene& scene)
+{
+  return { &scene.tissueVoxels(), &scene.detail(), scene.id(), scene.placement().size,
+           Vec3f(scene.placement().spacingMm) };
+}
+
 TissueJob makeTissues(const EchoSetup& setup)
 {
   const Scene& scene = *setup.sources.scene;
   TissueJob job;
-  job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
-  job.sceneId = scene.id();
-  job.size = scene.placement().size;
-  job.spacing = Vec3f(scene.placement().spacingMm);
+  job.voxels = makeVoxels(scene);
   job.media = setup.tissues->media();
   job.cellMm = float(setup.settings.scattererCellMm);
   job.seed = setup.settings.seed;
@@ -112,10 +115,7 @@ NestedJob makeNested(const EchoSetup& setup)
 {
   const Scene& scene = *setup.sources.scene;
   NestedJob job;
-  job.voxels = SharedVector<std::uint8_t>(std::shared_ptr<void>(), &scene.tissueVoxels());
-  job.sceneId = scene.id();
-  job.size = scene.placement().size;
-  job.spacing = Vec3f(scene.placement().spacingMm);
+  job.voxels = makeVoxels(scene);
   job.media = setup.nested->media();
   job.fibreScale = setup.nested->fibreScale();
   job.fibres = setup.nested->fibres();

@@ -2,6 +2,7 @@
 
 #include "Cuda/DeviceEcho.cuh"
 #include "Cuda/SplatChunk.cuh"
+#include "Kernel/DetailCode.h"
 #include "Kernel/FibreView.h"
 #include "Kernel/NestedCells.h"
 
@@ -26,6 +27,7 @@ struct NestedLaunch
   NestedLevel levels[nestedLevels];
   int* sums; // lines x sumCount x (re, im)
   const std::uint8_t* voxels;
+  const std::uint8_t* detail; // codes, or null
   Vec3i size;
   Vec3f perMm;
   Vec3f extentMm;
@@ -148,6 +150,7 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
     {
       return;
     }
+    amplitude *= launch.detail ? detailFactor(launch.detail[at]) : 1.0f;
     if (fibreScale[tissue] > 0.0f)
     {
       const float cosine = glm::dot(launch.fibres.at(voxel), beam.axis) * fibreScale[tissue];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Cuda/SplatChunk.cuh"
+#include "Kernel/DetailCode.h"
 #include "Kernel/Scatterer.h"
 
 #include <cstdint>
@@ -16,6 +17,7 @@ struct TissueLaunch
 {
   SplatLaunch splat;
   const std::uint8_t* voxels;
+  const std::uint8_t* detail; // codes, or null
   Vec3i size;
   Vec3f perMm;
   Vec3f extentMm;
@@ -77,9 +79,10 @@ __global__ void __launch_bounds__(blockThreads) splatTissueCells(TissueLaunch la
     }
     const std::size_t at =
       std::size_t(voxel.x) + std::size_t(launch.size.x) * (std::size_t(voxel.y) + std::size_t(launch.size.y) * voxel.z);
-    const float amplitude = scattererAmplitude(media[launch.voxels[at]], seed.presence, seed.deviate);
+    float amplitude = scattererAmplitude(media[launch.voxels[at]], seed.presence, seed.deviate);
     if (amplitude != 0.0f)
     {
+      amplitude *= launch.detail ? detailFactor(launch.detail[at]) : 1.0f;
       addScatterer(sums, splitScatterer(times(echo.weight, amplitude), echo.position, splat.grid), chunk.first,
                    splat.scale);
     }

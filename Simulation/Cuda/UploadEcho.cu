@@ -1,6 +1,7 @@
 #include "Cuda/DeviceEcho.cuh"
 
 #include "Cuda/SplatKernels.cuh"
+#include "Kernel/DetailCode.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,26 +128,28 @@ void DeviceEcho::uploadSight(const std::optional<SightJob>& job, const std::vect
   sight.pieces.upload(pieces, stream, traffic);
 }
 
-void DeviceEcho::uploadVoxels(const std::vector<std::uint8_t>& voxels, std::uint64_t sceneId, cudaStream_t stream,
-                              Traffic& traffic)
+void DeviceEcho::uploadVoxels(const VoxelJob& job, cudaStream_t stream, Traffic& traffic)
 {
-  if (sceneId_ != sceneId)
+  if (sceneId_ != job.sceneId)
   {
     sceneId_ = 0; // stays so when the upload fails
-    voxels_.upload(voxels, stream, traffic);
-    sceneId_ = sceneId;
+    voxels_.upload(*job.tissues, stream, traffic);
+    detail_.upload(*job.detail, stream, traffic);
+    sceneId_ = job.sceneId;
   }
+  size_ = job.size;
+  spacing_ = job.spacing;
 }
 
 void DeviceEcho::uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic& traffic)
 {
   const NestedJob& job = *echo.nested;
-  uploadVoxels(*job.voxels, job.sceneId, stream, traffic);
-  if (job.fibres && fibresSceneId_ != job.sceneId)
+  uploadVoxels(job.voxels, stream, traffic);
+  if (job.fibres && fibresSceneId_ != job.voxels.sceneId)
   {
     fibresSceneId_ = 0; // stays so when the upload fails
     fibreWords_.upload(job.fibres->packed(), stream, traffic);
-    fibresSceneId_ = job.sceneId;
+    fibresSceneId_ = job.voxels.sceneId;
   }
   fibres_ = job.fibres ? job.fibres->view() : FibreView{};
   fibres_.packed = job.fibres ? fibreWords_.data() : nullptr;
@@ -165,8 +168,6 @@ void DeviceEcho::uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic&
     const float brickMm = nestedCellMm(density_.finest + int(n)) * float(nestedBrickCells);
     uploadSight(sight, echo.sceneBeams, brickMm, nestedSights_[n], stream, traffic);
   }
-  size_ = job.size;
-  spacing_ = job.spacing;
   seed_ = job.seed;
   float largest = 0.0f;
   for (const NestedMedium& m : job.media)
@@ -174,8 +175,9 @@ void DeviceEcho::uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic&
     largest = std::max(largest, m.amplitude);
   }
   // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
-  largest *=
-    makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale * std::max(1.0f, float(echo.beam.largestWeight));
+  largest *= (job.voxels.detail->empty() ? 1.0f : largestDetailFactor) *
+             makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale *
+             std::max(1.0f, float(echo.beam.largestWeight));
   nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
 }
 
@@ -330,11 +332,9 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   if (tissues_)
   {
     const TissueJob& tissues = *job.tissues;
-    uploadVoxels(*tissues.voxels, tissues.sceneId, stream, traffic);
+    uploadVoxels(tissues.voxels, stream, traffic);
     media_.upload(tissues.media.data(), tissues.media.size(), stream, traffic);
     uploadSight(tissues.sight, job.sceneBeams, tissues.cellMm * brickCells, tissueSight_, stream, traffic);
-    size_ = tissues.size;
-    spacing_ = tissues.spacing;
     cellMm_ = tissues.cellMm;
     seed_ = tissues.seed;
     float largest = 0.0f;
@@ -342,6 +342,7 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
     {
       largest = std::max(largest, std::fabs(m.mean) + 6.0f * std::fabs(m.sigma)); // no deviate is beyond 5.5
     }
+    largest *= tissues.voxels.detail->empty() ? 1.0f : largestDetailFactor;
     // Amplitudes that come together in a sample, on average, and a wide margin; 32 bits hold them with 24 to spare for
     // their fractions.
     const double together =

@@ -138,6 +138,7 @@ void NestedScatterers::generate(int level, const Vec3i& brick, int candidates, B
     const std::size_t at =
       std::size_t(voxel.x) + std::size_t(size.x) * (std::size_t(voxel.y) + std::size_t(size.y) * std::size_t(voxel.z));
     tissue[n] = inside ? tissues[at] : nowhere;
+    c.sign[n] *= inside ? scene_.detailAt(at) : 1.0f;
     hasFibres |= fibreScale_[tissue[n]] > 0.0f;
   }
   buffer.hasFibres = hasFibres && fibres_;

@@ -81,8 +81,9 @@ ScattererView TissueScatterers::generate(const Vec3i& brick, Buffer& buffer) con
     const std::size_t at =
       std::size_t(voxel.x) + std::size_t(size.x) * (std::size_t(voxel.y) + std::size_t(size.y) * std::size_t(voxel.z));
     const ScatteringMedium& medium = media_[inside ? tissues[at] : nowhere];
-    c.mean[n] = medium.mean;
-    c.sigma[n] = medium.sigma;
+    const float detail = inside ? scene_.detailAt(at) : 1.0f;
+    c.mean[n] = detail * medium.mean;
+    c.sigma[n] = detail * medium.sigma;
     c.probability[n] = medium.probability;
   }
   decide(c);

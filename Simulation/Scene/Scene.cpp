@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/Policy.h"
+#include "Kernel/DetailCode.h"
 
 #include <tbb/task_arena.h>
 
@@ -93,15 +94,25 @@ struct Scene::Making
   std::shared_future<SharedRegion> region; ///< null where memory ran out; its end is waited for
 };
 
-Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue)
+Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail)
   : id_(nextId())
   , volume_(std::move(volume))
+  , detail_(std::move(detail))
 {
+  for (std::size_t code = 0; code < detailFactors_.size(); ++code)
+  {
+    detailFactors_[code] = detailFactor(std::uint8_t(code));
+  }
   volume_.placement.validate("the label map");
   if (volume_.voxels.size() != volume_.placement.voxelCount())
   {
     throw Error("the label map has " + std::to_string(volume_.voxels.size()) + " voxels where its size says " +
                 std::to_string(volume_.placement.voxelCount()) + ": load it again");
+  }
+  if (!detail_.empty() && detail_.size() != volume_.voxels.size())
+  {
+    throw Error("the scan's detail has " + std::to_string(detail_.size()) + " voxels where the label map has " +
+                std::to_string(volume_.voxels.size()) + ": make it for this label map");
   }
   std::map<std::string, int> indexOf;
   tissueOfLabel_.assign(65536, 0);

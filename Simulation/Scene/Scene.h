@@ -9,6 +9,7 @@
 #include "Scene/SurfacePieces.h"
 #include "Scene/VoxelBox.h"
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -31,9 +32,11 @@ class Scene
 {
 public:
   /// Every label needs a tissue of `table` (see assignTissues); `outsideTissue` names the tissue that counts as
-  /// acoustic coupling between the transducer and the body (usually "air").
-  /// Throws Error for an empty volume, a label without tissue, or more than 255 different tissues in use.
-  Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue);
+  /// acoustic coupling between the transducer and the body (usually "air"). `detail` holds the codes of scanDetail, one
+  /// a voxel; empty: none.
+  /// Throws Error for an empty volume, a label without tissue, more than 255 different tissues in use, or a detail of
+  /// another size.
+  Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail = {});
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -49,6 +52,10 @@ public:
   const std::vector<std::uint8_t>& tissueOfLabel() const { return tissueOfLabel_; }
   /// One tissue index a voxel, i fastest.
   const std::vector<std::uint8_t>& tissueVoxels() const { return tissueVoxels_; }
+  /// The backscatter's level within each tissue, as a scan has it (see scanDetail), one code a voxel; empty: none.
+  const std::vector<std::uint8_t>& detail() const { return detail_; }
+  /// Of the amplitudes at a voxel, by its number in tissueVoxels(); 1 where there is no detail.
+  float detailAt(std::size_t voxel) const { return detail_.empty() ? 1.0f : detailFactors_[detail_[voxel]]; }
 
   Vec3d localFromWorld(const Vec3d& world) const;
   Vec3d worldFromLocal(const Vec3d& local) const;
@@ -99,6 +106,8 @@ private:
   std::vector<Tissue> tissues_;
   std::vector<std::uint8_t> tissueOfLabel_;
   std::vector<std::uint8_t> tissueVoxels_;
+  std::vector<std::uint8_t> detail_;
+  std::array<float, 256> detailFactors_;
   int outsideIndex_ = -1;
 
   mutable std::mutex mutex_; // for what follows; not held while any of it is made

@@ -1,0 +1,261 @@
+#include "Labels/MatchedScan.h"
+
+#include "Core/ParallelFor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <sstream>
+
+namespace sono {
+
+namespace {
+
+constexpr float largestValue = 32767.0f;
+constexpr double leastShare = 0.5; // of the labelled voxels that must lie within the scan
+
+bool sameGrid(const GridPlacement& a, const GridPlacement& b)
+{
+  const Vec3d last(a.size - 1);
+  const double within = 0.01 * std::min({ a.spacingMm.x, a.spacingMm.y, a.spacingMm.z });
+  return a.size == b.size && glm::distance(a.worldFromIndex(Vec3d(0.0)), b.worldFromIndex(Vec3d(0.0))) < within &&
+         glm::distance(a.worldFromIndex(last), b.worldFromIndex(last)) < within &&
+         glm::distance(a.worldFromIndex({ last.x, 0.0, 0.0 }), b.worldFromIndex({ last.x, 0.0, 0.0 })) < within;
+}
+
+/// From the scan's values to those that are kept.
+struct ValueScale
+{
+  bool isCt;
+  float factor;
+
+  explicit ValueScale(const IntensityVolume& scan)
+  {
+    const auto [low, high] = std::minmax_element(scan.values.begin(), scan.values.end());
+    isCt = scan.modality.empty() ? *low < -200.0f && *high <= largestValue : scan.modality == "CT";
+    const float most = std::max(std::fabs(*low), std::fabs(*high));
+    factor = isCt || !(most > 0.0f) ? 1.0f : largestValue / most;
+  }
+  std::int16_t operator()(float value) const
+  {
+    return std::int16_t(std::lround(std::clamp(value * factor, -largestValue, largestValue)));
+  }
+};
+
+/// The scan's value at an index of its own, linear between voxels' centres; beyond the outermost ones theirs, for half
+/// a voxel.
+float valueAt(const IntensityVolume& scan, const Vec3d& index)
+{
+  const Vec3i& n = scan.placement.size;
+  const Vec3d at = glm::clamp(index, Vec3d(0.0), Vec3d(n - 1));
+  const Vec3i low = glm::min(Vec3i(at), glm::max(n - 2, Vec3i(0)));
+  const Vec3i high = glm::min(low + 1, n - 1);
+  const Vec3f share(at - Vec3d(low));
+  const auto row = [&](int j, int k) {
+    const float* values = scan.values.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+    return values[low.x] + share.x * (values[high.x] - values[low.x]);
+  };
+  const float below = row(low.y, low.z) + share.y * (row(high.y, low.z) - row(low.y, low.z));
+  const float above = row(low.y, high.z) + share.y * (row(high.y, high.z) - row(low.y, high.z));
+  return below + share.z * (above - below);
+}
+
+std::string placeOf(const GridPlacement& placement)
+{
+  Vec3d low(std::numeric_limits<double>::infinity());
+  Vec3d high = -low;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const Vec3d end(corner & 1 ? placement.size.x : 0, corner & 2 ? placement.size.y : 0,
+                    corner & 4 ? placement.size.z : 0);
+    const Vec3d world = placement.worldFromIndex(end - 0.5);
+    low = glm::min(low, world);
+    high = glm::max(high, world);
+  }
+  std::ostringstream text;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    text << (axis > 0 ? ", " : "") << "LPS"[axis] << ' ' << std::lround(low[axis]) << " to " << std::lround(high[axis]);
+  }
+  return text.str();
+}
+
+/// What a mean tells of a tissue, HU; empty where none is expected.
+struct Expected
+{
+  double low;
+  double high;
+};
+
+bool expects(const std::string& tissue, Expected& range)
+{
+  static const std::map<std::string, Expected> known{ { "cortical_bone", { 80.0, 1e9 } },
+                                                      { "lung", { -1e9, -350.0 } },
+                                                      { "air", { -1e9, -250.0 } },
+                                                      { "fat", { -250.0, 40.0 } },
+                                                      { "renal_sinus", { -250.0, 200.0 } } };
+  const auto found = known.find(tissue);
+  range = found == known.end() ? Expected{ -150.0, 600.0 } : found->second;
+  return tissue != "skin" && tissue != "gi_tract"; // thin, or full of gas
+}
+
+} // namespace
+
+MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, const Progress& progress)
+{
+  scan.placement.validate("the scan");
+  if (scan.values.size() != scan.placement.voxelCount())
+  {
+    throw Error("the scan has " + std::to_string(scan.values.size()) + " values where its size says " +
+                std::to_string(scan.placement.voxelCount()) + ": load it again.");
+  }
+  const ValueScale scale(scan);
+  const GridPlacement& grid = labels.placement;
+  const Vec3i n = grid.size;
+  const std::size_t slice = std::size_t(n.x) * n.y;
+  MatchedScan matched;
+  matched.isCt = scale.isCt;
+  matched.values.resize(labels.voxels.size());
+  if (sameGrid(grid, scan.placement))
+  {
+    parallelFor(n.z, progress, [&](int k) {
+      const float* from = scan.values.data() + slice * k;
+      std::transform(from, from + slice, matched.values.data() + slice * k, scale);
+    });
+    return matched;
+  }
+  std::mutex mutex;
+  std::size_t labelled = 0;
+  std::size_t reached = 0;
+  const Vec3d first = scan.placement.indexFromWorld(grid.worldFromIndex(Vec3d(0.0)));
+  Mat3d step;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    Vec3d one(0.0);
+    one[axis] = 1.0;
+    step[axis] = scan.placement.indexFromWorld(grid.worldFromIndex(one)) - first;
+  }
+  const Vec3d end = Vec3d(scan.placement.size) - 0.5;
+  parallelFor(n.z, progress, [&](int k) {
+    std::size_t labelledHere = 0;
+    std::size_t reachedHere = 0;
+    std::size_t at = slice * k;
+    for (int j = 0; j < n.y; ++j)
+    {
+      for (int i = 0; i < n.x; ++i, ++at)
+      {
+        const Vec3d index = first + step * Vec3d(i, j, k);
+        const bool isIn = glm::all(glm::greaterThanEqual(index, Vec3d(-0.5))) && glm::all(glm::lessThan(index, end));
+        matched.values[at] = isIn ? scale(valueAt(scan, index)) : MatchedScan::nothing;
+        labelledHere += labels.voxels[at] != 0 ? 1 : 0;
+        reachedHere += isIn && labels.voxels[at] != 0 ? 1 : 0;
+      }
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    labelled += labelledHere;
+    reached += reachedHere;
+  });
+  if (double(reached) < leastShare * double(labelled))
+  {
+    throw Error(
+      "The scan is not of this label map: " + std::to_string(std::lround(100.0 * double(reached) / double(labelled))) +
+      " % of the labelled voxels lie in it (the scan lies at " + placeOf(scan.placement) + " mm, the label map at " +
+      placeOf(grid) + " mm); connect the scan that was segmented.");
+  }
+  return matched;
+}
+
+std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedScan& scan, const Progress& progress)
+{
+  struct Sums
+  {
+    std::int64_t voxels = 0;
+    std::int64_t sum = 0;
+    std::int64_t squares = 0;
+  };
+  std::vector<int> indexOf(65536, 0);
+  for (std::size_t l = 0; l < labels.labels.size(); ++l)
+  {
+    indexOf[std::size_t(labels.labels[l].id)] = int(l);
+  }
+  std::mutex mutex;
+  std::vector<Sums> all(labels.labels.size());
+  const Vec3i n = labels.placement.size;
+  const std::size_t slice = std::size_t(n.x) * n.y;
+  parallelFor(n.z, progress, [&](int k) {
+    std::vector<Sums> own(all.size());
+    for (std::size_t at = slice * k; at < slice * (k + 1); ++at)
+    {
+      const std::int64_t value = scan.values[at];
+      if (value != MatchedScan::nothing)
+      {
+        Sums& s = own[std::size_t(indexOf[labels.voxels[at]])];
+        ++s.voxels;
+        s.sum += value;
+        s.squares += value * value;
+      }
+    }
+    const std::lock_guard<std::mutex> lock(mutex); // whole numbers: in whatever order
+    for (std::size_t l = 0; l < all.size(); ++l)
+    {
+      all[l].voxels += own[l].voxels;
+      all[l].sum += own[l].sum;
+      all[l].squares += own[l].squares;
+    }
+  });
+  std::vector<ScanOfLabel> result;
+  for (const Sums& s : all)
+  {
+    ScanOfLabel label{ s.voxels, 0.0, 0.0 };
+    if (s.voxels > 0)
+    {
+      label.mean = double(s.sum) / double(s.voxels);
+      label.deviation = std::sqrt(std::max(0.0, double(s.squares) / double(s.voxels) - label.mean * label.mean));
+    }
+    result.push_back(label);
+  }
+  return result;
+}
+
+void requireSamePatient(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means)
+{
+  if (!scan.isCt)
+  {
+    return;
+  }
+  std::int64_t telling = 0;
+  std::int64_t off = 0;
+  double furthest = 0.0;
+  std::string sentence;
+  for (std::size_t l = 0; l < labels.labels.size(); ++l)
+  {
+    const LabelInfo& label = labels.labels[l];
+    Expected range{};
+    if (label.id == 0 || means[l].voxels == 0 || !expects(label.tissue, range))
+    {
+      continue;
+    }
+    telling += means[l].voxels;
+    const double distance = std::max(range.low - means[l].mean, means[l].mean - range.high);
+    if (distance > 0.0)
+    {
+      off += means[l].voxels;
+    }
+    if (distance > furthest)
+    {
+      furthest = distance;
+      sentence = "label " + std::to_string(label.id) + " ('" + label.name + "', " + label.tissue + ") has " +
+                 std::to_string(std::lround(means[l].mean)) + " HU there";
+    }
+  }
+  if (4 * off > telling)
+  {
+    throw Error("The CT does not show what the labels say, as one of another patient would not: " + sentence +
+                ", and " + std::to_string(std::lround(100.0 * double(off) / double(telling))) +
+                " % of the voxels are as wrong; connect the CT that was segmented, or correct the tissues.");
+  }
+}
+
+} // namespace sono

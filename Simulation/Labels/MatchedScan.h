@@ -1,0 +1,46 @@
+#pragma once
+
+#include "Core/Progress.h"
+#include "Labels/LabelVolume.h"
+#include "Labels/ReadIntensities.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace sono {
+
+/// A CT or MR at the voxels of a label map.
+struct MatchedScan
+{
+  static constexpr std::int16_t nothing = -32768; ///< where the scan does not reach
+
+  std::vector<std::int16_t> values; ///< one a voxel of the label map, i fastest: of a CT, Hounsfield units
+  bool isCt = false;
+};
+
+/// Interpolates a scan, linearly between the centres of its voxels, where a label map has its own. It is a CT where its
+/// modality says so or, where that is not known, where its values are those of one: some below -200, none above 32767.
+/// An MR is scaled so that its largest value becomes 32767.
+/// Throws Error where less than half of the labelled voxels (those but 0) lie within the scan, with how much does and
+/// where the two lie, and Aborted.
+MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, const Progress& progress = {});
+
+/// What a scan has in the voxels of a label.
+struct ScanOfLabel
+{
+  std::int64_t voxels = 0; ///< that the scan reaches
+  double mean = 0.0;
+  double deviation = 0.0;
+};
+
+/// Parallel to the labels.
+std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedScan& scan,
+                                      const Progress& progress = {});
+
+/// Throws Error when a CT shows other tissues than the labels are, as that of another patient does: where a quarter of
+/// the voxels whose tissues tell are of labels whose mean lies outside of what theirs have: bone above 80 HU, lung
+/// below -350, air below -250, fat -250 to 40, others -150 to 600. The sentence names the label that is furthest off.
+/// An MR tells nothing. `means` are those of scanOfLabels; each label has its tissue.
+void requireSamePatient(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means);
+
+} // namespace sono

@@ -1,0 +1,168 @@
+#include "Scene/ScanDetail.h"
+
+#include "Core/ParallelFor.h"
+#include "Kernel/DetailCode.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+namespace sono {
+
+namespace {
+
+constexpr double mostDb = 12.0;
+constexpr double contrastHu = 90.0;   // of blood: without a contrast agent it has 30 to 60
+constexpr double perDeviation = 10.0; // HU that count as one of an MR's
+
+/// Of the levels 10^(L/10), in whole units so that their sum does not depend on its order.
+constexpr double powerUnit = 1048576.0;
+
+bool hasContrastAgent(const LabelVolume& labels, const std::vector<ScanOfLabel>& means)
+{
+  double sum = 0.0;
+  double voxels = 0.0;
+  for (std::size_t l = 0; l < means.size(); ++l)
+  {
+    if (labels.labels[l].tissue == "blood")
+    {
+      sum += means[l].mean * double(means[l].voxels);
+      voxels += double(means[l].voxels);
+    }
+  }
+  return voxels > 0.0 && sum / voxels > contrastHu;
+}
+
+/// dB a unit of the scan, of each label.
+std::vector<float> slopes(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means,
+                          const std::string& outsideTissue, const ScanDetailSettings& settings)
+{
+  const bool falls = settings.direction == DetailDirection::Falls ||
+                     (settings.direction == DetailDirection::Automatic && scan.isCt && hasContrastAgent(labels, means));
+  std::vector<float> result;
+  for (std::size_t l = 0; l < means.size(); ++l)
+  {
+    double slope = (falls ? -0.01 : 0.01) * settings.detailDbPer100Hu;
+    if (!scan.isCt)
+    {
+      slope = means[l].deviation > 0.0 ? slope * perDeviation / means[l].deviation : 0.0;
+    }
+    result.push_back(labels.labels[l].tissue == outsideTissue ? 0.0f : float(slope));
+  }
+  return result;
+}
+
+/// Smooths a slice of values over voxels of the same label.
+class LabelSmoother
+{
+public:
+  LabelSmoother(const LabelVolume& labels, const MatchedScan& scan)
+    : size_(labels.placement.size)
+    , labels_(labels.voxels.data())
+    , values_(scan.values.data())
+  {
+  }
+
+  /// At a voxel that the scan reaches.
+  float at(int i, int j, int k) const
+  {
+    const std::size_t row = std::size_t(size_.x);
+    const std::size_t here = std::size_t(i) + row * (std::size_t(j) + std::size_t(size_.y) * k);
+    const std::uint16_t label = labels_[here];
+    int sum = 0;
+    int weights = 0;
+    for (int dk = k > 0 ? -1 : 0; dk <= (k + 1 < size_.z ? 1 : 0); ++dk)
+    {
+      for (int dj = j > 0 ? -1 : 0; dj <= (j + 1 < size_.y ? 1 : 0); ++dj)
+      {
+        const std::ptrdiff_t shift = (std::ptrdiff_t(dk) * size_.y + dj) * std::ptrdiff_t(row);
+        const int across = (2 - std::abs(dk)) * (2 - std::abs(dj));
+        for (int di = i > 0 ? -1 : 0; di <= (i + 1 < size_.x ? 1 : 0); ++di)
+        {
+          const std::size_t there = std::size_t(std::ptrdiff_t(here) + shift + di);
+          const bool counts = labels_[there] == label && values_[there] != MatchedScan::nothing;
+          const int weight = counts ? across * (2 - std::abs(di)) : 0;
+          sum += weight * values_[there];
+          weights += weight;
+        }
+      }
+    }
+    return float(sum) / float(weights);
+  }
+
+private:
+  Vec3i size_;
+  const std::uint16_t* labels_;
+  const std::int16_t* values_;
+};
+
+} // namespace
+
+std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedScan& scan,
+                                     const std::vector<ScanOfLabel>& means, const std::string& outsideTissue,
+                                     const ScanDetailSettings& settings, const Progress& progress)
+{
+  requireInRange(settings);
+  const std::size_t count = labels.labels.size();
+  const std::vector<float> slope = slopes(labels, scan, means, outsideTissue, settings);
+  std::vector<int> indexOf(65536, 0);
+  for (std::size_t l = 0; l < count; ++l)
+  {
+    indexOf[std::size_t(labels.labels[l].id)] = int(l);
+  }
+  std::array<std::int64_t, 256> powerOf{};
+  for (int code = 0; code < 256; ++code)
+  {
+    powerOf[std::size_t(code)] = std::llround(powerUnit * std::pow(10.0, 0.1 * detailStepDb * (code - detailNone)));
+  }
+  constexpr int mostSteps = int(mostDb / detailStepDb);
+  const Vec3i n = labels.placement.size;
+  const std::size_t slice = std::size_t(n.x) * n.y;
+  const LabelSmoother smoother(labels, scan);
+  std::vector<std::uint8_t> codes(labels.voxels.size(), std::uint8_t(detailNone));
+  std::vector<std::int64_t> power(count, 0);
+  std::mutex mutex;
+  parallelFor(n.z, partOf(progress, 0.0, 0.85), [&](int k) {
+    std::vector<std::int64_t> own(count, 0);
+    std::size_t at = slice * k;
+    for (int j = 0; j < n.y; ++j)
+    {
+      for (int i = 0; i < n.x; ++i, ++at)
+      {
+        const std::size_t l = std::size_t(indexOf[labels.voxels[at]]);
+        if (slope[l] == 0.0f || scan.values[at] == MatchedScan::nothing)
+        {
+          continue;
+        }
+        const float steps = slope[l] * (smoother.at(i, j, k) - float(means[l].mean)) / detailStepDb;
+        codes[at] = std::uint8_t(detailNone + std::lround(std::clamp(steps, -float(mostSteps), float(mostSteps))));
+        own[l] += powerOf[codes[at]];
+      }
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::transform(own.begin(), own.end(), power.begin(), power.begin(), std::plus<>());
+  });
+  std::vector<int> offset(count, 0);
+  for (std::size_t l = 0; l < count; ++l)
+  {
+    if (slope[l] != 0.0f && means[l].voxels > 0)
+    {
+      const double mean = double(power[l]) / powerUnit / double(means[l].voxels);
+      offset[l] = int(std::lround(-10.0 * std::log10(mean) / detailStepDb));
+    }
+  }
+  parallelFor(n.z, partOf(progress, 0.85, 1.0), [&](int k) {
+    for (std::size_t at = slice * k; at < slice * (k + 1); ++at)
+    {
+      const std::size_t l = std::size_t(indexOf[labels.voxels[at]]);
+      if (offset[l] != 0 && scan.values[at] != MatchedScan::nothing)
+      {
+        codes[at] = std::uint8_t(std::clamp(int(codes[at]) + offset[l], 0, 255));
+      }
+    }
+  });
+  return codes;
+}
+
+} // namespace sono
