@@ -9,6 +9,7 @@
 #include "Image/BModeSettings.h"
 #include "Labels/BodyFill.h"
 #include "Probe/ScanGeometry.h"
+#include "Scene/ScanDetail.h"
 #include "SonoChestDefaults.h"
 #include "Trace/TraceSettings.h"
 
@@ -81,6 +82,7 @@ std::vector<Described> parametersOf(const std::string& settings)
                         [](const auto& s, const auto& visitor) { sono::EchoSettings::visitSampling(s, visitor); });
       } },
     { "ProbeSettings", describe<sono::ProbeSettings> },
+    { "ScanDetailSettings", describe<sono::ScanDetailSettings> },
     { "ScanGeometry", describe<sono::ScanGeometry> },
     { "TraceSettings", describeWithChest<sono::TraceSettings> },
   };

@@ -15,6 +15,7 @@
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedShortArray.h"
 
 #include <algorithm>
@@ -36,24 +37,6 @@ std::array<double, 9> rowMajor(const Mat3d& direction)
     }
   }
   return rows;
-}
-
-GridPlacement placementOf(vtkImageData* image)
-{
-  int extent[6];
-  image->GetExtent(extent);
-  GridPlacement placement;
-  image->GetDimensions(&placement.size.x);
-  image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], &placement.originMm.x);
-  image->GetSpacing(&placement.spacingMm.x);
-  for (int r = 0; r < 3; ++r)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      placement.direction[c][r] = image->GetDirectionMatrix()->GetElement(r, c);
-    }
-  }
-  return placement;
 }
 
 std::string nameOf(vtkDataArray* array)
@@ -106,6 +89,39 @@ void readLabelTable(vtkFieldData* field, LabelVolume& volume)
 
 } // namespace
 
+GridPlacement placementOfImage(vtkImageData* image)
+{
+  int extent[6];
+  image->GetExtent(extent);
+  GridPlacement placement;
+  image->GetDimensions(&placement.size.x);
+  image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], &placement.originMm.x);
+  image->GetSpacing(&placement.spacingMm.x);
+  for (int r = 0; r < 3; ++r)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      placement.direction[c][r] = image->GetDirectionMatrix()->GetElement(r, c);
+    }
+  }
+  return placement;
+}
+
+void placeImage(const GridPlacement& placement, vtkImageData* image)
+{
+  image->SetDimensions(placement.size.x, placement.size.y, placement.size.z);
+  image->SetOrigin(&placement.originMm.x);
+  image->SetSpacing(&placement.spacingMm.x);
+  image->SetDirectionMatrix(rowMajor(placement.direction).data());
+}
+
+std::vector<std::uint8_t> scanDetailOf(vtkImageData* image)
+{
+  auto* codes = vtkUnsignedCharArray::SafeDownCast(image->GetPointData()->GetArray(scanDetailArray));
+  return codes ? std::vector<std::uint8_t>(codes->GetPointer(0), codes->GetPointer(0) + codes->GetNumberOfValues())
+               : std::vector<std::uint8_t>();
+}
+
 void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
 {
   const Vec3i& size = placement.size;
@@ -119,11 +135,7 @@ void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
 
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image)
 {
-  const GridPlacement& placement = volume.placement;
-  image->SetDimensions(placement.size.x, placement.size.y, placement.size.z);
-  image->SetOrigin(&placement.originMm.x);
-  image->SetSpacing(&placement.spacingMm.x);
-  image->SetDirectionMatrix(rowMajor(placement.direction).data());
+  placeImage(volume.placement, image);
 
   vtkNew<vtkUnsignedShortArray> labels;
   labels->SetName("Labels");
@@ -144,7 +156,7 @@ LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels)
     throw Error("The label image has no point array with one component to take labels from; connect a label map.");
   }
   LabelVolume volume;
-  volume.placement = placementOf(image);
+  volume.placement = placementOfImage(image);
   volume.placement.validate("the label image");
   volume.voxels.resize(volume.placement.voxelCount());
   switch (labels->GetDataType())

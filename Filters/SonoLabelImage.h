@@ -2,6 +2,9 @@
 
 #include "Labels/LabelVolume.h"
 
+#include <cstdint>
+#include <vector>
+
 class vtkDataArray;
 class vtkFieldData;
 class vtkImageData;
@@ -11,6 +14,18 @@ namespace sono {
 
 /// Announces a label image of this grid: whole extent, origin, spacing, direction, unsigned short scalars.
 void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo);
+
+/// Point array of a label image with the codes of scanDetail, one a voxel.
+constexpr const char* scanDetailArray = "ScanDetail";
+
+/// The placement of an image.
+GridPlacement placementOfImage(vtkImageData* image);
+
+/// Sets an image's size and place.
+void placeImage(const GridPlacement& placement, vtkImageData* image);
+
+/// The codes of the scan's detail that a label image carries; empty: none.
+std::vector<std::uint8_t> scanDetailOf(vtkImageData* image);
 
 /// Fills `image` with the scalars "Labels" and the label table in its field data.
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image);

@@ -130,11 +130,12 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     {
       sono::warn(this, warning);
     }
+    std::vector<std::uint8_t> detail = sono::scanDetailOf(vtkImageData::GetData(input[0]));
     const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
     const std::shared_ptr<const sono::Scene> scene =
       cached ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,
-                                     sono::partOf(progress, 0.1, 0.6))
-             : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue);
+                                     sono::partOf(progress, 0.1, 0.6), std::move(detail))
+             : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue, std::move(detail));
     vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
     if (this->BuildSurfaces)
     {

@@ -17,11 +17,13 @@ enum class DetailDirection
   Falls
 };
 
-/// How a scan's values change the backscatter within each label.
+/// How a scan's values change the backscatter within each label, and what becomes of label 0.
 struct ScanDetailSettings
 {
   double detailDbPer100Hu = 30.0;
   DetailDirection direction = DetailDirection::Automatic;
+  bool fillFromCt = true;
+  double skinMm = 2.0;
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -37,6 +39,13 @@ struct ScanDetailSettings
                        "Whether backscatter rises or falls with the scan's values. Automatic: it falls in a CT with "
                        "contrast agent (blood above 90 HU), so that vessels are dark, and rises otherwise.",
                        { "Automatic", "Rises", "Falls" } });
+    visitor(self.fillFromCt, Parameter{ "fillFromCt",
+                                        "Fill From CT",
+                                        {},
+                                        "Whether what has label 0 inside the body becomes skin, fat, muscle, lung, "
+                                        "bone and gas, as a CT shows them." });
+    visitor(self.skinMm, Parameter{ "skinMm", "Skin (mm)", between(0, 20),
+                                    "Thickness of the skin that a CT's fill makes, in mm, 0 to 20." });
   }
 };
 

@@ -178,7 +178,8 @@ std::string sceneCacheKey(const LabelVolume& volume)
 }
 
 std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& table, const std::string& outsideTissue,
-                                       const std::string& cacheFolder, const Progress& progress)
+                                       const std::string& cacheFolder, const Progress& progress,
+                                       std::vector<std::uint8_t> detail)
 {
   std::error_code error;
   fs::create_directories(cacheFolder, error);
@@ -186,7 +187,7 @@ std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& ta
   {
     throw Error("cannot use '" + cacheFolder + "' as a cache: it is no folder and none can be made; choose another.");
   }
-  auto scene = std::make_unique<Scene>(std::move(volume), table, outsideTissue);
+  auto scene = std::make_unique<Scene>(std::move(volume), table, outsideTissue, std::move(detail));
   const std::string path = (fs::path(cacheFolder) / (sceneCacheKey(scene->volume()) + ".nvdb")).string();
   if (fs::exists(path, error))
   {

@@ -1,0 +1,119 @@
+#include "vtkSonoScanDetail.h"
+
+#include "Scene/AddScan.h"
+#include "SonoDataFile.h"
+#include "SonoLabelImage.h"
+#include "SonoSettings.h"
+#include "SonoStage.h"
+
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+
+vtkStandardNewMacro(vtkSonoScanDetail);
+
+namespace {
+
+template<class Value>
+void copyFloats(const Value* values, std::vector<float>& to)
+{
+  std::transform(values, values + to.size(), to.begin(), [](Value v) { return static_cast<float>(v); });
+}
+
+sono::IntensityVolume scanFromImage(vtkImageData* image)
+{
+  vtkDataArray* values = image ? image->GetPointData()->GetScalars() : nullptr;
+  if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != image->GetNumberOfPoints() ||
+      image->GetNumberOfPoints() == 0)
+  {
+    throw sono::Error("The scan has no point scalars with one component; connect a CT or MR, not a colour image.");
+  }
+  sono::IntensityVolume scan;
+  scan.placement = sono::placementOfImage(image);
+  scan.values.resize(std::size_t(values->GetNumberOfTuples()));
+  switch (values->GetDataType())
+  {
+    vtkTemplateMacro(copyFloats(static_cast<const VTK_TT*>(values->GetVoidPointer(0)), scan.values));
+    default:
+      throw sono::Error("The scan's scalars are not numeric; connect a CT or MR.");
+  }
+  if (!std::all_of(scan.values.begin(), scan.values.end(), [](float v) { return std::isfinite(v); }))
+  {
+    throw sono::Error("The scan holds values that are not finite; correct them or choose another one.");
+  }
+  auto* modality = vtkStringArray::SafeDownCast(image->GetFieldData()->GetAbstractArray("Modality"));
+  if (modality && modality->GetNumberOfValues() == 1)
+  {
+    scan.modality = modality->GetValue(0);
+  }
+  return scan;
+}
+
+} // namespace
+
+vtkSonoScanDetail::vtkSonoScanDetail()
+  : Parameters(new sono::SettingsOf<sono::ScanDetailSettings>)
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                               vtkDataSetAttributes::AttributeTypes::SCALARS);
+  this->SetProgressText("Adding the scan");
+}
+
+vtkSonoScanDetail::~vtkSonoScanDetail() = default;
+
+void vtkSonoScanDetail::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  this->Parameters->print(os, indent);
+  os << indent << "LabelTissueFile: " << this->LabelTissueFile << endl;
+}
+
+int vtkSonoScanDetail::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+int vtkSonoScanDetail::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+{
+  vtkDataObject::SetPointDataActiveScalarInfo(output->GetInformationObject(0), VTK_UNSIGNED_SHORT, 1);
+  return 1;
+}
+
+int vtkSonoScanDetail::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+{
+  return sono::requestWholeImage(input, 0) && sono::requestWholeImage(input, 1);
+}
+
+int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  return sono::runStage(this, output, [&] {
+    const sono::Progress progress = sono::progressOf(this);
+    sono::LabelVolume volume =
+      sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->GetInputArrayToProcess(0, input));
+    const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
+    const auto table = sono::TissueTable::read(sono::dataFile("tissues.csv"));
+    const sono::AddedScan added =
+      sono::addScan(volume, scanFromImage(vtkImageData::GetData(input[1])), map, table,
+                    sono::settingsIn<sono::ScanDetailSettings>(*this->Parameters), sono::partOf(progress, 0.1, 0.95));
+    vtkImageData* image = vtkImageData::GetData(output);
+    sono::imageFromLabelVolume(volume, image);
+    vtkNew<vtkUnsignedCharArray> detail;
+    detail->SetName(sono::scanDetailArray);
+    detail->SetNumberOfValues(static_cast<vtkIdType>(added.detail.size()));
+    std::copy(added.detail.begin(), added.detail.end(), detail->GetPointer(0));
+    image->GetPointData()->AddArray(detail);
+  });
+}

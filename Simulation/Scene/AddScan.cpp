@@ -1,0 +1,57 @@
+#include "Scene/AddScan.h"
+
+#include "Labels/CtFill.h"
+
+namespace sono {
+
+namespace {
+
+constexpr const char* outsideTissue = "air";
+constexpr const char* unknownTissue = "soft_tissue";
+
+double bloodHu(const LabelVolume& volume, const std::vector<ScanOfLabel>& means)
+{
+  double sum = 0.0;
+  double voxels = 0.0;
+  for (std::size_t l = 0; l < means.size(); ++l)
+  {
+    if (volume.labels[l].tissue == "blood")
+    {
+      sum += means[l].mean * double(means[l].voxels);
+      voxels += double(means[l].voxels);
+    }
+  }
+  return voxels > 0.0 ? sum / voxels : 0.0;
+}
+
+} // namespace
+
+AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelTissueMap& map, const TissueTable& table,
+                  const ScanDetailSettings& settings, const Progress& progress)
+{
+  requireInRange(settings);
+  volume.collectLabels();
+  LabelVolume named = volume; // with tissues
+  assignTissues(named, map, table, unknownTissue);
+  const MatchedScan matched = matchScan(named, scan, partOf(progress, 0.0, 0.2));
+  std::vector<ScanOfLabel> means = scanOfLabels(named, matched, partOf(progress, 0.2, 0.25));
+  requireSamePatient(named, matched, means);
+  AddedScan added;
+  added.isCt = matched.isCt;
+  if (matched.isCt && settings.fillFromCt)
+  {
+    added.names = fillFromCt(named, matched, settings.skinMm, bloodHu(named, means), partOf(progress, 0.25, 0.6));
+    assignTissues(named, map, table, unknownTissue);
+    means = scanOfLabels(named, matched, partOf(progress, 0.6, 0.65));
+  }
+  added.detail = scanDetail(named, matched, means, outsideTissue, settings, partOf(progress, 0.65, 1.0));
+  for (LabelInfo& label : named.labels)
+  {
+    const LabelInfo* before = volume.find(label.id);
+    label.tissue = before ? before->tissue : std::string();
+  }
+  volume = std::move(named);
+  return added;
+}
+
+} // namespace sono
