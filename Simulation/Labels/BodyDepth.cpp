@@ -69,28 +69,6 @@ void dropSmallParts(const CoarseGrid& grid, std::vector<float>& depthMm)
   }
 }
 
-/// Turns outside that touches no border of its slice to inside.
-void fillSliceHoles(const CoarseGrid& grid, int axialAxis, std::vector<float>& depthMm)
-{
-  std::vector<char> outside(depthMm.size());
-  std::transform(depthMm.begin(), depthMm.end(), outside.begin(), [](float d) { return d > 0.0f ? 0 : 1; });
-  forBlocks(grid, [&](const Vec3i& c) {
-    bool border = false;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      border = border || (axis != axialAxis && (c[axis] == 0 || c[axis] == grid.size[axis] - 1));
-    }
-    if (border && outside[grid.index(c)])
-    {
-      takeComponent(grid, outside, c, axialAxis);
-    }
-  });
-  for (std::size_t n = 0; n < depthMm.size(); ++n)
-  {
-    depthMm[n] = outside[n] ? deepInside : depthMm[n];
-  }
-}
-
 /// Marks of blocks, continued beyond the border by the outermost ones.
 std::vector<char> padded(const std::vector<char>& marks, const CoarseGrid& grid, const Vec3i& pad)
 {
@@ -137,6 +115,29 @@ std::vector<Vec3i> takeComponent(const CoarseGrid& grid, std::vector<char>& want
   return members;
 }
 
+void fillSliceHoles(const GridPlacement& fine, const CoarseGrid& grid, std::vector<char>& inside)
+{
+  int axial = 0;
+  for (int axis = 1; axis < 3; ++axis)
+  {
+    axial = std::abs(fine.direction[axis].z) > std::abs(fine.direction[axial].z) ? axis : axial;
+  }
+  std::vector<char> hole(inside.size());
+  std::transform(inside.begin(), inside.end(), hole.begin(), [](char mark) { return mark ? 0 : 1; });
+  forBlocks(grid, [&](const Vec3i& c) {
+    bool border = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      border = border || (axis != axial && (c[axis] == 0 || c[axis] == grid.size[axis] - 1));
+    }
+    if (border && hole[grid.index(c)])
+    {
+      takeComponent(grid, hole, c, axial);
+    }
+  });
+  std::transform(hole.begin(), hole.end(), inside.begin(), inside.begin(), [](char h, char mark) { return h | mark; });
+}
+
 BodyDepth::BodyDepth(const GridPlacement& fine, const std::vector<char>& known, const BodyEstimate& estimate)
   : grid_(fine)
 {
@@ -157,13 +158,13 @@ BodyDepth::BodyDepth(const GridPlacement& fine, const std::vector<char>& known, 
     depthMm_[grid_.index(c)] = fromBeyond[at] - float(estimate.closingMm);
   });
   dropSmallParts(grid_, depthMm_);
-  int axial = 0;
-  for (int axis = 1; axis < 3; ++axis)
+  std::vector<char> inside(depthMm_.size());
+  std::transform(depthMm_.begin(), depthMm_.end(), inside.begin(), [](float d) { return d > 0.0f ? 1 : 0; });
+  fillSliceHoles(fine, grid_, inside);
+  for (std::size_t n = 0; n < depthMm_.size(); ++n)
   {
-    const Mat3d& direction = fine.direction;
-    axial = std::abs(direction[axis].z) > std::abs(direction[axial].z) ? axis : axial;
+    depthMm_[n] = inside[n] && !(depthMm_[n] > 0.0f) ? deepInside : depthMm_[n];
   }
-  fillSliceHoles(grid_, axial, depthMm_);
   alongX_ = interpolation(fine.size.x, grid_.factor.x, grid_.size.x);
   alongY_ = interpolation(fine.size.y, grid_.factor.y, grid_.size.y);
   alongZ_ = interpolation(fine.size.z, grid_.factor.z, grid_.size.z);

@@ -25,6 +25,9 @@ struct CoarseGrid
 /// neighbours; -1: along all axes.
 std::vector<Vec3i> takeComponent(const CoarseGrid& grid, std::vector<char>& wanted, const Vec3i& seed, int exceptAxis);
 
+/// Marks what touches no border of its axial slice and is not inside.
+void fillSliceHoles(const GridPlacement& fine, const CoarseGrid& grid, std::vector<char>& inside);
+
 /// How a body is estimated from what is known to belong to it.
 struct BodyEstimate
 {

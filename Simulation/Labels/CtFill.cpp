@@ -164,6 +164,7 @@ std::vector<std::string> fillFromCt(LabelVolume& volume, const MatchedScan& ct, 
   std::vector<char> known(blocks.size());
   std::transform(blocks.begin(), blocks.end(), known.begin(),
                  [](const Block& b) { return b.labelledOrDense > b.others ? 1 : 0; });
+  fillSliceHoles(volume.placement, grid, known); // or the rims of lungs would count as skin
   const BodyDepth body(volume.placement, known, { closingMm, 0.0 });
   report(progress, 0.5);
   const std::vector<char> thin = classesOfBlocks(blocks, body);

@@ -95,9 +95,10 @@ bool expects(const std::string& tissue, Expected& range)
                                                       { "lung", { -1e9, -350.0 } },
                                                       { "air", { -1e9, -250.0 } },
                                                       { "fat", { -250.0, 40.0 } },
-                                                      { "renal_sinus", { -250.0, 200.0 } } };
+                                                      { "renal_sinus", { -250.0, 200.0 } },
+                                                      { "soft_tissue", { -150.0, 600.0 } } };
   const auto found = known.find(tissue);
-  range = found == known.end() ? Expected{ -150.0, 600.0 } : found->second;
+  range = found == known.end() ? Expected{ -40.0, 600.0 } : found->second;
   return tissue != "skin" && tissue != "gi_tract"; // thin, or full of gas
 }
 

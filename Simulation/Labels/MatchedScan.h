@@ -39,8 +39,8 @@ std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedSc
 
 /// Throws Error when a CT shows other tissues than the labels are, as that of another patient does: where a quarter of
 /// the voxels whose tissues tell are of labels whose mean lies outside of what theirs have: bone above 80 HU, lung
-/// below -350, air below -250, fat -250 to 40, others -150 to 600. The sentence names the label that is furthest off.
-/// An MR tells nothing. `means` are those of scanOfLabels; each label has its tissue.
+/// below -350, air below -250, fat -250 to 40, organs and muscles -40 to 600. The sentence names the label that is
+/// furthest off. An MR tells nothing. `means` are those of scanOfLabels; each label has its tissue.
 void requireSamePatient(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means);
 
 } // namespace sono

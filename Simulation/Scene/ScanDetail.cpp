@@ -12,7 +12,7 @@ namespace sono {
 
 namespace {
 
-constexpr double mostDb = 12.0;
+constexpr double mostDb = 10.0;
 constexpr double contrastHu = 90.0;   // of blood: without a contrast agent it has 30 to 60
 constexpr double perDeviation = 10.0; // HU that count as one of an MR's
 

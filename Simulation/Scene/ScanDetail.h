@@ -20,7 +20,7 @@ enum class DetailDirection
 /// How a scan's values change the backscatter within each label, and what becomes of label 0.
 struct ScanDetailSettings
 {
-  double detailDbPer100Hu = 30.0;
+  double detailDbPer100Hu = 15.0;
   DetailDirection direction = DetailDirection::Automatic;
   bool fillFromCt = true;
   double skinMm = 2.0;
@@ -51,7 +51,7 @@ struct ScanDetailSettings
 
 /// The backscatter's level against its tissue's table, in steps of `detailStepDb`, one code a voxel of the label map;
 /// Kernel/DetailCode.h says what a code means. Within each label (Data/docs/physics.md eq. 11.6)
-///   L = clamp(s (h - <h>), +-12 dB) - 10 log10 <10^(L/10)>
+///   L = clamp(s (h - <h>), +-10 dB) - 10 log10 <10^(L/10)>
 /// with the value h smoothed by (1 2 1)/4 along each axis over voxels of the same label, its mean <h> over the label
 /// and the slope s of the settings: so the label's mean backscatter coefficient stays that of its tissue. Where the
 /// scan does not reach and in labels of `outsideTissue` L = 0. `means` are those of scanOfLabels, each label has its
