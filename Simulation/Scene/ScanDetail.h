@@ -50,7 +50,7 @@ struct ScanDetailSettings
 };
 
 /// The backscatter's level against its tissue's table, in steps of `detailStepDb`, one code a voxel of the label map;
-/// Kernel/DetailCode.h says what a code means. Within each label (Data/docs/physics.md eq. 11.6)
+/// Kernel/DetailCode.h says what a code means. Within each label (Data/docs/physics.md eq. 11.5)
 ///   L = clamp(s (h - <h>), +-10 dB) - 10 log10 <10^(L/10)>
 /// with the value h smoothed by (1 2 1)/4 along each axis over voxels of the same label, its mean <h> over the label
 /// and the slope s of the settings: so the label's mean backscatter coefficient stays that of its tissue. Where the
