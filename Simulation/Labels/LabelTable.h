@@ -12,7 +12,7 @@ namespace sono {
 ///   (`LabelValue,Name,Color_R,Color_G,Color_B`, and the label's code in
 ///   `SegmentedPropertyTypeCodeSequence.CodingSchemeDesignator`, `.CodeValue` and `.CodeMeaning`); colours 0..255; a
 ///   column `tissue`, where it is filled, says which tissue the label is;
-/// - TSV of BIDS (`dseg.tsv`): the columns `index,name` and perhaps `color` (#rrggbb);
+/// - TSV of BIDS (`dseg.tsv`): the columns `index,name` and perhaps `color` (rrggbb behind a hash sign);
 /// - ITK-SNAP label description: lines of `id r g b alpha visible mesh "name"`; its "Clear Label" names nothing;
 /// - 3D Slicer colour table (.ctbl): lines of `id name r g b a`; a colour without a name is passed over;
 /// - plain text: lines of `id name`, perhaps with one number after it (a voxel count).
