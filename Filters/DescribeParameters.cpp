@@ -3,8 +3,8 @@
 //   <Parameters of="TraceSettings" simple="PathsPerLine"/>  stands for a property of each parameter of that struct,
 //   <Exposed of="TraceSettings" simple="PathsPerLine"/>     for the names of the same properties of a sub-proxy.
 //
-// `only` and `except` choose among them, `simple` are those that a panel always shows, `where` is a switch without
-// which it shows none of them. `method` takes the name and the value, in place of one method a property.
+// `only` and `except` choose among them, `simple` are those that a panel always shows, `where` is a switch (0 off,
+// 1 on, 2 automatic) without which it shows none of them. `method` takes the name and the value, in place of one method a property.
 #include "Echo/EchoSettings.h"
 #include "Image/BModeSettings.h"
 #include "Labels/BodyFill.h"
@@ -194,7 +194,7 @@ std::string property(const Attributes& attributes, const Described& d)
   const auto where = attributes.find("where");
   if (where != attributes.end())
   {
-    xml << decorator(where->second, "1");
+    xml << decorator(where->second, "1 2");
   }
   else if (!kinds.empty())
   {

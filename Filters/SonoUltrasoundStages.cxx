@@ -202,7 +202,15 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   announceDevice(chooseDevice(tracing));
   const auto lines = [&] { return makeScanLines(image.settings.geometry, image.pose); };
   const auto warnOfContact = [&] {
-    const std::string sentence = field_.preview ? "" : probeContactWarning(*simulator_.scene(), lines());
+    if (field_.preview)
+    {
+      return;
+    }
+    std::string sentence = probeContactWarning(*simulator_.scene(), lines());
+    if (sentence.empty())
+    {
+      sentence = probePlaceWarning(*simulator_.scene(), image.settings.geometry, image.pose);
+    }
     if (!sentence.empty())
     {
       warn(owner_, sentence);

@@ -2,6 +2,7 @@
 
 #include "Probe/AcousticWindow.h"
 #include "SonoAnatomy.h"
+#include "SonoDataFile.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneBuilder.h"
@@ -9,6 +10,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -18,15 +20,21 @@
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 
+#include <algorithm>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
 
 vtkStandardNewMacro(vtkSonoAcousticWindow);
 
 namespace {
 
 /// The scene of the input, or of the label image that it is.
-std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, bool fillBody, vtkAlgorithm* owner)
+std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, vtkAlgorithm* owner)
 {
   if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(input))
   {
@@ -58,9 +66,96 @@ std::optional<sono::ProbePose> carriedPose(vtkFieldData* field)
   return pose.orthonormalized();
 }
 
+sono::ProbeSettings probeFor(const std::string& preset, double frequencyMHz)
+{
+  if (!preset.empty())
+  {
+    return sono::readProbePreset(sono::dataFile("probes/" + preset + ".json"));
+  }
+  sono::ProbeSettings any;
+  any.centreFrequencyMHz = frequencyMHz;
+  return any;
+}
+
+/// With the probe for the target, or the one for deep targets where that shows next to nothing.
+std::vector<sono::AcousticWindow> findWindows(const sono::Scene& scene, const sono::WindowTarget& target,
+                                              double frequencyMHz, std::string& preset)
+{
+  constexpr double littlePercent = 10.0;
+  std::vector<sono::AcousticWindow> windows;
+  preset = target.preset;
+  try
+  {
+    windows = sono::findAcousticWindows(scene, target, probeFor(preset, frequencyMHz));
+  }
+  catch (const sono::Error&)
+  {
+    if (target.deepPreset.empty())
+    {
+      throw;
+    }
+  }
+  if (!target.deepPreset.empty() && (windows.empty() || windows.front().seenPercent < littlePercent))
+  {
+    windows = sono::findAcousticWindows(scene, target, probeFor(target.deepPreset, frequencyMHz));
+    preset = target.deepPreset;
+  }
+  return windows;
+}
+
+std::string rowOf(const sono::AcousticWindow& window, const std::string& preset, const std::string& sentence)
+{
+  std::ostringstream row;
+  row.precision(17);
+  row << sentence << '\t' << preset << '\t' << window.depthMm;
+  for (const sono::Vec3d& part : { window.pose.positionMm, window.pose.axial, window.pose.lateral })
+  {
+    row << '\t' << part.x << '\t' << part.y << '\t' << part.z;
+  }
+  return row.str();
+}
+
+/// An array with a tuple a window.
+template<class Value>
+void writeAll(const char* name, const std::vector<sono::AcousticWindow>& windows, const Value& value,
+              vtkFieldData* field)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  if constexpr (std::is_same_v<decltype(value(windows[0])), const sono::Vec3d&>)
+  {
+    array->SetNumberOfComponents(3);
+    for (const sono::AcousticWindow& window : windows)
+    {
+      array->InsertNextTuple(&value(window).x);
+    }
+  }
+  else
+  {
+    for (const sono::AcousticWindow& window : windows)
+    {
+      array->InsertNextValue(value(window));
+    }
+  }
+  field->AddArray(array);
+}
+
+vtkSmartPointer<vtkStringArray> strings(const char* name, const std::vector<std::string>& values)
+{
+  auto array = vtkSmartPointer<vtkStringArray>::New();
+  array->SetName(name);
+  for (const std::string& value : values)
+  {
+    array->InsertNextValue(value);
+  }
+  return array;
+}
+
 } // namespace
 
 vtkSonoAcousticWindow::vtkSonoAcousticWindow()
+  : Rows(vtkSmartPointer<vtkStringArray>::New())
+  , Targets(vtkSmartPointer<vtkStringArray>::New())
 {
   this->SetProgressText("Looking for an acoustic window");
 }
@@ -71,9 +166,29 @@ void vtkSonoAcousticWindow::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FillBody: " << this->FillBody << endl;
+  os << indent << "Target: " << this->Target << endl;
+  os << indent << "Candidate: " << this->Candidate << endl;
   os << indent << "ChooseTarget: " << this->ChooseTarget << endl;
   os << indent << "TargetMm: " << this->TargetMm[0] << " " << this->TargetMm[1] << " " << this->TargetMm[2] << endl;
   os << indent << "CentreFrequencyMHz: " << this->CentreFrequencyMHz << endl;
+  os << indent << "Rows: " << this->Rows->GetNumberOfValues() << endl;
+  os << indent << "Targets: " << this->Targets->GetNumberOfValues() << endl;
+  os << indent << "Refusal: " << this->Refusal << endl;
+}
+
+vtkStringArray* vtkSonoAcousticWindow::GetRows()
+{
+  return this->Rows;
+}
+
+vtkStringArray* vtkSonoAcousticWindow::GetTargets()
+{
+  return this->Targets;
+}
+
+const char* vtkSonoAcousticWindow::GetRefusal()
+{
+  return this->Refusal.c_str();
 }
 
 int vtkSonoAcousticWindow::FillInputPortInformation(int, vtkInformation* info)
@@ -90,36 +205,100 @@ int vtkSonoAcousticWindow::RequestUpdateExtent(vtkInformation*, vtkInformationVe
   return vtkImageData::GetData(input[0]) ? sono::requestWholeImage(input) : 1;
 }
 
+void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
+{
+  const auto scene = sceneOf(input, this->FillBody, this);
+  this->Targets = strings("Targets", sono::windowTargetNames(*scene));
+  const bool isFree = !this->ChooseTarget && this->Target.empty();
+  const auto carried = isFree ? carriedPose(input->GetFieldData()) : std::nullopt;
+  const sono::WindowTarget target =
+    this->ChooseTarget ? sono::windowTarget(sono::Vec3d(this->TargetMm[0], this->TargetMm[1], this->TargetMm[2]))
+                       : sono::windowTarget(*scene, this->Target);
+  std::vector<sono::AcousticWindow> windows(carried ? 1 : 0);
+  std::vector<std::string> sentences{ "The pose that the label map brings along." };
+  std::string preset;
+  if (carried)
+  {
+    windows[0].pose = *carried;
+  }
+  else
+  {
+    windows = findWindows(*scene, target, this->CentreFrequencyMHz, preset);
+    sentences.clear();
+    std::transform(windows.begin(), windows.end(), std::back_inserter(sentences),
+                   [&](const sono::AcousticWindow& window) { return sono::describe(window, target); });
+  }
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < windows.size(); ++i)
+  {
+    rows.push_back(rowOf(windows[i], preset, sentences[i]));
+  }
+  this->Rows = strings("Rows", rows);
+  if (std::size_t(this->Candidate) >= windows.size())
+  {
+    throw sono::Error("Candidate is " + std::to_string(this->Candidate) +
+                      ", and the windows that were found are 0 to " + std::to_string(windows.size() - 1) + ".");
+  }
+
+  const sono::AcousticWindow& chosen = windows[std::size_t(this->Candidate)];
+  constexpr double shownMm = 100.0; // of a pose that names no depth
+  const sono::Vec3d end = chosen.pose.positionMm + (carried ? shownMm : chosen.depthMm) * chosen.pose.axial;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  points->InsertNextPoint(&chosen.pose.positionMm.x);
+  points->InsertNextPoint(&end.x);
+  lines->InsertNextCell({ 0, 1 });
+  way->SetPoints(points);
+  way->SetLines(lines);
+  vtkFieldData* field = way->GetFieldData();
+  sono::writeVector("ProbePositionMm", chosen.pose.positionMm, field);
+  sono::writeVector("ProbeAxial", chosen.pose.axial, field);
+  sono::writeVector("ProbeLateral", chosen.pose.lateral, field);
+  using Window = sono::AcousticWindow;
+  const auto vectors = [&](const char* name, sono::Vec3d sono::ProbePose::*part) {
+    writeAll(
+      name, windows, [&](const Window& w) -> const sono::Vec3d& { return w.pose.*part; }, field);
+  };
+  vectors("CandidatePositionMm", &sono::ProbePose::positionMm);
+  vectors("CandidateAxial", &sono::ProbePose::axial);
+  vectors("CandidateLateral", &sono::ProbePose::lateral);
+  if (!carried)
+  {
+    writeAll(
+      "DepthMm", windows, [](const Window& w) { return w.depthMm; }, field);
+    writeAll(
+      "SeenPercent", windows, [](const Window& w) { return w.seenPercent; }, field);
+    writeAll(
+      "LossDb", windows, [](const Window& w) { return w.lossDb; }, field);
+    writeAll(
+      "InsidePercent", windows, [](const Window& w) { return w.insidePercent; }, field);
+  }
+  field->AddArray(strings("Sentence", sentences));
+  field->AddArray(strings("ProbePreset", { preset }));
+}
+
 int vtkSonoAcousticWindow::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
+  this->Rows = strings("Rows", {});
+  this->Refusal.clear();
   return sono::runStage(this, output, [&] {
-    if (!(this->CentreFrequencyMHz > 0.0))
+    try
     {
-      throw sono::Error("CentreFrequencyMHz must be above 0.");
+      if (!(this->CentreFrequencyMHz > 0.0))
+      {
+        throw sono::Error("CentreFrequencyMHz must be above 0.");
+      }
+      vtkDataObject* data = vtkDataObject::GetData(input[0]);
+      if (!data)
+      {
+        throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
+      }
+      this->Find(data, vtkPolyData::GetData(output));
     }
-    vtkDataObject* data = vtkDataObject::GetData(input[0]);
-    if (!data)
+    catch (const sono::Error& error)
     {
-      throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
+      this->Refusal = error.what();
+      throw;
     }
-    const auto scene = sceneOf(data, this->FillBody, this);
-    const auto carried = this->ChooseTarget ? std::nullopt : carriedPose(data->GetFieldData());
-    const sono::Vec3d target = this->ChooseTarget ? sono::Vec3d(this->TargetMm[0], this->TargetMm[1], this->TargetMm[2])
-                                                  : sono::defaultTarget(*scene);
-    const sono::ProbePose pose =
-      carried ? *carried : sono::findAcousticWindow(*scene, target, this->CentreFrequencyMHz);
-
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> lines;
-    const sono::Vec3d end = pose.positionMm + glm::dot(target - pose.positionMm, pose.axial) * pose.axial;
-    points->InsertNextPoint(&pose.positionMm.x);
-    points->InsertNextPoint(&end.x);
-    lines->InsertNextCell({ 0, 1 });
-    vtkPolyData* way = vtkPolyData::GetData(output);
-    way->SetPoints(points);
-    way->SetLines(lines);
-    sono::writeVector("ProbePositionMm", pose.positionMm, way->GetFieldData());
-    sono::writeVector("ProbeAxial", pose.axial, way->GetFieldData());
-    sono::writeVector("ProbeLateral", pose.lateral, way->GetFieldData());
   });
 }

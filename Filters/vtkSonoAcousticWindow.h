@@ -2,16 +2,26 @@
 #define vtkSonoAcousticWindow_h
 
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h"      // for the rows
 #include "vtkSonoFiltersModule.h" // for export macro
+
+#include <string>
+
+class vtkStringArray;
 
 /**
  * @class vtkSonoAcousticWindow
- * @brief Finds a place on the skin from which a probe sees the heart, or another organ
+ * @brief Finds places on the skin from which a probe sees the heart, or another organ
  *
- * Takes a label image or a scene, like vtkSonoUltrasound. The output shows the way of the sound, a line in world
- * coordinates, LPS mm, from the transducer's face to what it looks at; its field data hold the pose: ProbePositionMm,
- * ProbeAxial and ProbeLateral. A label image may bring a pose of its own along in its field data (A4CPositionMm,
- * A4CAxial, A4CLateral, as the bundled thorax does), which is then the answer.
+ * Takes a label image or a scene, like vtkSonoUltrasound, and offers up to five places, best first, with what is seen
+ * from each (sono::findAcousticWindows). The output shows the way of the sound from the chosen one, a line in world
+ * coordinates, LPS mm, from the transducer's face to the depth of the image. Its field data hold the pose:
+ * ProbePositionMm, ProbeAxial and ProbeLateral, and of all places, a tuple each, CandidatePositionMm, CandidateAxial,
+ * CandidateLateral, DepthMm, SeenPercent (of the target's largest section), LossDb (mean, one way), InsidePercent (of
+ * the image in the label map's box), Sentence and ProbePreset (the bundled preset for this target; empty: any).
+ *
+ * A label image may bring a pose of its own along in its field data (A4CPositionMm, A4CAxial, A4CLateral, as the
+ * bundled thorax does), which is then the only answer, unless a target is named.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoAcousticWindow : public vtkPolyDataAlgorithm
 {
@@ -22,17 +32,32 @@ public:
 
   ///@{
   /**
-   * Whether the body of a label image is filled first, see vtkSonoSceneBuilder. Default off.
+   * Whether the body of a label image is filled first, see vtkSonoSceneBuilder. Default 2, automatic.
    */
-  vtkSetMacro(FillBody, bool);
-  vtkGetMacro(FillBody, bool);
-  vtkBooleanMacro(FillBody, bool);
+  vtkSetClampMacro(FillBody, int, 0, 2);
+  vtkGetMacro(FillBody, int);
   ///@}
 
   ///@{
   /**
-   * Whether the probe looks at TargetMm, or at the middle of the heart's walls, where there are none of the liver,
-   * where there is none either of the body. Default off.
+   * What the probe looks at: an organ ("heart", "right kidney", "carotid") or any label by words of its name; empty:
+   * the heart, where there is none the liver, where there is none either the body. Default empty.
+   */
+  vtkSetStdStringFromCharMacro(Target);
+  vtkGetCharFromStdStringMacro(Target);
+  ///@}
+
+  ///@{
+  /**
+   * Which of the places, from 0, the best, to 4. Default 0.
+   */
+  vtkSetClampMacro(Candidate, int, 0, 4);
+  vtkGetMacro(Candidate, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the probe looks at TargetMm instead of Target. Default off.
    */
   vtkSetMacro(ChooseTarget, bool);
   vtkGetMacro(ChooseTarget, bool);
@@ -49,11 +74,26 @@ public:
 
   ///@{
   /**
-   * Frequency in MHz, above 0, for which tissues attenuate. Default 2.5.
+   * Frequency in MHz, above 0, for which tissues attenuate where the target has no probe of its own. Default 2.5.
    */
   vtkSetMacro(CentreFrequencyMHz, double);
   vtkGetMacro(CentreFrequencyMHz, double);
   ///@}
+
+  ///@{
+  /**
+   * After an update, as text: the places, fields separated by tabs (sentence, preset, DepthMm, and three numbers each
+   * of position, axial and lateral; a pose that the data bring along has the depth 0), and the names of possible
+   * targets.
+   */
+  vtkStringArray* GetRows();
+  vtkStringArray* GetTargets();
+  ///@}
+
+  /**
+   * Why there are none, one sentence, which is also an error of the update; empty when there are.
+   */
+  const char* GetRefusal();
 
 protected:
   vtkSonoAcousticWindow();
@@ -67,10 +107,17 @@ private:
   vtkSonoAcousticWindow(const vtkSonoAcousticWindow&) = delete;
   void operator=(const vtkSonoAcousticWindow&) = delete;
 
-  bool FillBody = false;
+  void Find(vtkDataObject* input, vtkPolyData* way);
+
+  int FillBody = 2;
+  std::string Target;
+  int Candidate = 0;
   bool ChooseTarget = false;
   double TargetMm[3] = { 0.0, 0.0, 0.0 };
   double CentreFrequencyMHz = 2.5;
+  std::string Refusal;
+  vtkSmartPointer<vtkStringArray> Rows;
+  vtkSmartPointer<vtkStringArray> Targets;
 };
 
 #endif

@@ -1,6 +1,7 @@
 #include "vtkSonoSceneBuilder.h"
 
 #include "Labels/AssignTissues.h"
+#include "Labels/BodyEnd.h"
 #include "Labels/BodyFill.h"
 #include "Labels/LabelCode.h"
 #include "Labels/ReadLabelMap.h"
@@ -104,7 +105,7 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
   const sono::Progress progress = sono::progressOf(this);
   sono::LabelVolume volume = sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->LabelArray(input));
   sono::report(progress, 0.05);
-  if (this->FillBody)
+  if (this->FillBody == FILL_ON)
   {
     const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);
     sono::fillBody(volume, settings, sono::partOf(progress, 0.05, 0.1));
@@ -116,6 +117,41 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
   return volume;
 }
 
+void vtkSonoSceneBuilder::AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume)
+{
+  const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
+  const std::vector<std::string> unmapped = sono::assignTissues(volume, map, table, this->FallbackTissue);
+  const std::string guesses = warningOfGuesses(volume.labels);
+  if (!guesses.empty())
+  {
+    sono::warn(this, guesses);
+  }
+  const sono::BodyEnd end = this->FillBody == FILL_AUTO ? sono::bodyEnd(volume, unmapped) : sono::BodyEnd::Skin;
+  const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);
+  if (end == sono::BodyEnd::NoSkin)
+  {
+    sono::fillBody(volume, settings);
+    sono::warn(this, "The label map has no skin: its body was filled with soft tissue and skin, whose place is an "
+                     "estimate (Fill Body is Auto; Off leaves it as it is).");
+  }
+  else if (end == sono::BodyEnd::BareOrgan)
+  {
+    sono::batheOrgan(volume, settings);
+    sono::warn(this, "The label map holds a bare organ without a body around it: a bath of soft tissue, " +
+                       std::to_string(int(sono::bathMm)) +
+                       " mm thick, was put around it (Fill Body is Auto; Off leaves it as it is).");
+  }
+  if (end != sono::BodyEnd::Skin)
+  {
+    sono::assignTissues(volume, map, table, this->FallbackTissue); // of what was added
+  }
+  if (sono::hasHeartWithoutChambers(volume))
+  {
+    sono::warn(this, "The heart is one label without blood in it: its chambers are missing and will look like muscle; "
+                     "take a segmentation that has chambers.");
+  }
+}
+
 int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
@@ -123,13 +159,7 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     sono::LabelVolume volume = this->ReadLabels(input);
     const auto table = std::make_shared<const sono::TissueTable>(
       sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
-    const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
-    sono::assignTissues(volume, map, *table, this->FallbackTissue);
-    const std::string warning = warningOfGuesses(volume.labels);
-    if (!warning.empty())
-    {
-      sono::warn(this, warning);
-    }
+    this->AssignTissues(*table, volume);
     std::vector<std::uint8_t> detail = sono::scanDetailOf(vtkImageData::GetData(input[0]));
     const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
     const std::shared_ptr<const sono::Scene> scene =

@@ -10,6 +10,7 @@
 
 namespace sono {
 struct LabelVolume;
+class TissueTable;
 }
 class vtkDataArray;
 
@@ -20,7 +21,8 @@ class vtkDataArray;
  * Takes a label image from any reader (point scalars that are whole numbers from 0 to 65535) and gives every label a
  * tissue by its name. The output holds one block a label, named after it, with its surface; its field data carry the
  * scene itself, for the ray tracer, and the label table with the tissues that were found. What has label 0 inside the
- * body may be filled first (FillBody), and surfaces that were built before may come from a folder (CacheFolder).
+ * body is filled first where the map has no skin (FillBody), and surfaces that were built before may come from a folder
+ * (CacheFolder).
  */
 class VTKSONOFILTERS_EXPORT vtkSonoSceneBuilder : public vtkMultiBlockDataSetAlgorithm
 {
@@ -72,15 +74,22 @@ public:
   vtkGetCharFromStdStringMacro(OutsideTissue);
   ///@}
 
+  enum FillBodyModes
+  {
+    FILL_OFF = 0,
+    FILL_ON = 1,
+    FILL_AUTO = 2
+  };
+
   ///@{
   /**
    * Whether label 0 inside the body becomes skin and soft tissue, for label maps whose 0 means both the air outside and
-   * tissue without a label. The label map does not show where the skin is: ClosingMm and WallMm estimate it. Default
-   * off.
+   * tissue without a label. The label map does not show where the skin is: ClosingMm and WallMm estimate it. FILL_AUTO
+   * does so, with a warning, where organs, bones or muscles lie bare, and puts a bath of tissue around a bare organ
+   * (sono::bodyEnd). Default FILL_AUTO.
    */
-  vtkSetMacro(FillBody, bool);
-  vtkGetMacro(FillBody, bool);
-  vtkBooleanMacro(FillBody, bool);
+  vtkSetClampMacro(FillBody, int, FILL_OFF, FILL_AUTO);
+  vtkGetMacro(FillBody, int);
   ///@}
 
   ///@{
@@ -125,6 +134,7 @@ private:
 
   vtkDataArray* LabelArray(vtkInformationVector** input);
   sono::LabelVolume ReadLabels(vtkInformationVector** input);
+  void AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume);
 
   std::string TissueTableFile;
   std::string LabelTissueFile;
@@ -132,7 +142,7 @@ private:
   std::string FallbackTissue = "soft_tissue";
   std::string OutsideTissue = "air";
   std::unique_ptr<sono::ParameterSet> Parameters;
-  bool FillBody = false;
+  int FillBody = FILL_AUTO;
   std::string CacheFolder;
   bool BuildSurfaces = true;
 };

@@ -12,6 +12,8 @@ constexpr double waterMRayl = 1.48;
 constexpr double mostReflected = 0.3; // of the intensity, at normal incidence
 constexpr double mostGapMm = 10.0;
 constexpr double farMm = 500.0;
+constexpr double mostInsideMm = 15.0;
+constexpr double leastImage = 0.5;
 
 /// Label of the voxel at a place in the world; nothing beyond the volume.
 const LabelInfo* labelAt(const Scene& scene, const Vec3d& world)
@@ -84,6 +86,54 @@ std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>&
   {
     return "The transducer's face is " + std::to_string(std::lround(gap)) +
            " mm off the body, and the gap counts as coupling gel: move the probe onto the skin.";
+  }
+  return {};
+}
+
+std::string probePlaceWarning(const Scene& scene, const ScanGeometry& geometry, const ProbePose& pose)
+{
+  if (geometry.lineOrigin() == LineOrigin::Catheter)
+  {
+    return {};
+  }
+  const ProbePose probe = pose.orthonormalized();
+  const auto isBody = [&](double behindMm) {
+    return !isOutside(scene, labelAt(scene, probe.positionMm - behindMm * probe.axial));
+  };
+  double insideMm = 0.0;
+  while (insideMm < farMm && isBody(insideMm))
+  {
+    insideMm += 1.0;
+  }
+  if (insideMm > mostInsideMm)
+  {
+    return "The transducer's face lies " + std::to_string(std::lround(insideMm)) +
+           " mm inside the body: press Find Window in the panel of the probe (in a script: Acoustic Window) to put it "
+           "onto the skin.";
+  }
+
+  ScanGeometry plane = geometry;
+  plane.kind = plane.isVolume() ? ScanKind::PhasedSector : plane.kind;
+  plane.lineCount = 33;
+  const auto lines = makeScanLines(plane, probe);
+  double all = 0.0;
+  double within = 0.0;
+  const double stepMm = plane.depthMm / 64.0;
+  for (double r = 0.5 * stepMm; r < plane.depthMm; r += stepMm)
+  {
+    const double areaMm2 =
+      stepMm * glm::distance(lines[16].originMm + r * lines[16].axis, lines[17].originMm + r * lines[17].axis);
+    for (const ScanLine& line : lines)
+    {
+      all += areaMm2;
+      within += labelAt(scene, line.originMm + r * line.axis) ? areaMm2 : 0.0;
+    }
+  }
+  if (within < leastImage * all)
+  {
+    return "Only " + std::to_string(std::lround(100.0 * within / all)) +
+           " % of the image lies within the label map's volume, and what lies beyond is unknown and stays dark: take "
+           "another place with Find Window in the panel of the probe (in a script: Acoustic Window), or less depth.";
   }
   return {};
 }

@@ -14,4 +14,9 @@ namespace sono {
 /// the body: what lies between is then taken for coupling gel.
 std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>& lines);
 
+/// What a person should know about where the whole image lies: one sentence with the way out, or nothing. A transducer
+/// that is no catheter is in the wrong place where its face lies more than 15 mm inside the body; and of an image of
+/// which less than half lies in the label map's box, most is unknown.
+std::string probePlaceWarning(const Scene& scene, const ScanGeometry& geometry, const ProbePose& pose);
+
 } // namespace sono

@@ -59,4 +59,45 @@ TEST(ProbeContact, MostOfTheFaceDecides)
   EXPECT_NE(probeContactWarning(*scene, { inSoft, inBone, inBone }), "");
 }
 
+/// A block of soft tissue, 100 x 100 x 100 mm, in front of 40 mm of air.
+std::unique_ptr<Scene> makeBlock()
+{
+  return makeScene(
+    Vec3i(70, 50, 50), Vec3d(2.0), { makeTissue("air", 0.0004, 343, 7.5), makeTissue("soft", 1.63, 1540, 0.5) },
+    [](const Vec3d& p) { return p.x > 40.0 ? 1 : 0; }, "air");
+}
+
+std::string placeOf(ScanGeometry geometry, const Vec3d& position)
+{
+  return probePlaceWarning(*makeBlock(), geometry, { position, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 } });
+}
+
+TEST(ProbeContact, SaysThatAFaceLiesInsideTheBody)
+{
+  ScanGeometry geometry;
+  geometry.depthMm = 40.0;
+  EXPECT_EQ(placeOf(geometry, { 40.5, 50.0, 50.0 }), "");
+  EXPECT_EQ(placeOf(geometry, { 50.0, 50.0, 50.0 }), "");
+  const std::string warning = placeOf(geometry, { 70.5, 50.0, 50.0 });
+  EXPECT_NE(warning.find("31 mm inside the body"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("Find Window"), std::string::npos);
+  geometry.kind = ScanKind::Radial; // a catheter belongs there
+  geometry.radiusMm = 2.0;
+  EXPECT_EQ(placeOf(geometry, { 70.5, 50.0, 50.0 }), "");
+}
+
+/// Parallel lines of 300 mm, of which 100 run through the volume.
+TEST(ProbeContact, SaysHowLittleOfTheImageIsInTheVolume)
+{
+  ScanGeometry geometry;
+  geometry.kind = ScanKind::Linear;
+  geometry.widthMm = 40.0;
+  geometry.depthMm = 300.0;
+  const std::string warning = placeOf(geometry, { 40.0, 50.0, 50.0 });
+  EXPECT_NE(warning.find("Only 33 % of the image"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("Find Window"), std::string::npos);
+  geometry.depthMm = 190.0;
+  EXPECT_EQ(placeOf(geometry, { 40.0, 50.0, 50.0 }), "");
+}
+
 } // namespace

@@ -1,0 +1,245 @@
+#include "Probe/WindowTarget.h"
+
+#include "Core/Error.h"
+#include "Labels/LabelWords.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace sono {
+namespace {
+
+using Words = std::set<std::string>;
+
+/// An organ that is asked for by a name of its own: labels with all words of one of the alternatives, which are
+/// separated by '|', and none of `without`.
+struct Organ
+{
+  const char* name;
+  const char* alternatives;
+  const char* without;
+  const char* preset;
+};
+
+const char* const phased = "phased_p4-2";
+const char* const curved = "curvilinear_c5-2";
+const char* const linear = "linear_l14";
+
+const Organ organs[] = {
+  { "heart",
+    "heart|myocardium|ventricle|atrium|ventricular|atrial|interventricular|interatrial|papillary|mitral|tricuspid",
+    "brain lateral third fourth vein artery", phased },
+  { "liver", "liver", "vessel tumor lesion", curved },
+  { "kidney", "kidney", "cyst tumor lesion", curved },
+  { "spleen", "spleen", "", curved },
+  { "gallbladder", "gallbladder", "", curved },
+  { "pancreas", "pancreas", "tumor lesion", curved },
+  { "stomach", "stomach", "", curved },
+  { "bladder", "bladder", "", curved },
+  { "prostate", "prostate", "", curved },
+  { "uterus", "uterus", "", curved },
+  { "aorta", "aorta", "", curved },
+  { "inferior vena cava", "inferior vena cava|ivc|postcava", "", curved },
+  { "portal vein", "portal vein", "", curved },
+  { "thyroid", "thyroid", "cartilage", linear },
+  { "carotid", "carotid", "", linear },
+  { "jugular vein", "jugular", "", linear },
+};
+
+/// As LabelWords.h has them; r and l are sides, and the gall bladder is no bladder.
+Words wordsOf(const std::string& name)
+{
+  Words words;
+  for (const std::string& word : wordsOfName(name))
+  {
+    words.insert(word == "r" ? "right" : word == "l" ? "left" : word);
+  }
+  if (words.count("gall") && words.erase("bladder"))
+  {
+    words.erase("gall");
+    words.insert("gallbladder");
+  }
+  return words;
+}
+
+bool hasAll(const Words& words, const Words& wanted)
+{
+  return std::includes(words.begin(), words.end(), wanted.begin(), wanted.end());
+}
+
+bool isOf(const Organ& organ, const Words& label)
+{
+  for (const std::string& word : wordsOf(organ.without))
+  {
+    if (label.count(word))
+    {
+      return false;
+    }
+  }
+  const std::string all = organ.alternatives;
+  for (std::size_t from = 0; from < all.size();)
+  {
+    const std::size_t end = std::min(all.find('|', from), all.size());
+    if (hasAll(label, wordsOf(all.substr(from, end - from))))
+    {
+      return true;
+    }
+    from = end + 1;
+  }
+  return false;
+}
+
+bool isOutside(const Scene& scene, const LabelInfo& label)
+{
+  return scene.tissueOfLabel()[std::size_t(label.id)] == scene.outsideIndex();
+}
+
+template<class Wanted>
+std::vector<int> labelsThat(const Scene& scene, const Wanted& wanted)
+{
+  std::vector<int> ids;
+  for (const LabelInfo& label : scene.volume().labels)
+  {
+    if (!isOutside(scene, label) && wanted(label))
+    {
+      ids.push_back(label.id);
+    }
+  }
+  return ids;
+}
+
+/// An organ of one side, or of both where none is named.
+std::vector<int> labelsOf(const Scene& scene, const Organ& organ, const Words& sides)
+{
+  return labelsThat(scene, [&](const LabelInfo& label) {
+    const Words words = wordsOf(label.name);
+    return isOf(organ, words) && hasAll(words, sides);
+  });
+}
+
+WindowTarget targetOf(const std::string& name, std::vector<int> labels, const std::string& preset)
+{
+  return { name, std::move(labels), {}, preset, preset == linear ? curved : "" };
+}
+
+std::string presetOf(const Scene& scene, const std::vector<int>& labels)
+{
+  for (const Organ& organ : organs)
+  {
+    if (isOf(organ, wordsOf(scene.volume().find(labels.front())->name)))
+    {
+      return organ.preset;
+    }
+  }
+  return curved;
+}
+
+WindowTarget defaultTarget(const Scene& scene)
+{
+  for (const Organ* organ : { &organs[0], &organs[1] })
+  {
+    const std::vector<int> labels = labelsOf(scene, *organ, {});
+    if (!labels.empty())
+    {
+      return targetOf(organ->name, labels, organ->preset);
+    }
+  }
+  const auto ofTissue = [&](const char* tissue) {
+    return labelsThat(scene, [&](const LabelInfo& label) { return label.tissue == tissue; });
+  };
+  if (const auto labels = ofTissue("myocardium"); !labels.empty())
+  {
+    return targetOf("heart", labels, phased);
+  }
+  if (const auto labels = ofTissue("liver"); !labels.empty())
+  {
+    return targetOf("liver", labels, curved);
+  }
+  const auto all = labelsThat(scene, [](const LabelInfo&) { return true; });
+  if (all.empty())
+  {
+    throw Error("The label map holds nothing but what is outside the body; choose one with labelled anatomy.");
+  }
+  return targetOf("body", all, "");
+}
+
+} // namespace
+
+WindowTarget windowTarget(const Scene& scene, const std::string& name)
+{
+  const Words words = wordsOf(name);
+  if (words.empty())
+  {
+    return defaultTarget(scene);
+  }
+  Words sides;
+  Words rest;
+  for (const std::string& word : words)
+  {
+    (word == "left" || word == "right" ? sides : rest).insert(word);
+  }
+  for (const Organ& organ : organs)
+  {
+    if (wordsOf(organ.name) == rest)
+    {
+      const std::vector<int> labels = labelsOf(scene, organ, sides);
+      if (!labels.empty())
+      {
+        return targetOf(name, labels, organ.preset);
+      }
+    }
+  }
+  const auto labels = labelsThat(scene, [&](const LabelInfo& label) { return hasAll(wordsOf(label.name), words); });
+  if (labels.empty())
+  {
+    constexpr std::size_t most = 40;
+    const std::vector<std::string> names = windowTargetNames(scene);
+    std::string list;
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+    {
+      list += (i == 0 ? "" : ", ") + names[i];
+    }
+    throw Error("The label map has no '" + name + "'; it has: " + list +
+                (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : "."));
+  }
+  return targetOf(name, labels, presetOf(scene, labels));
+}
+
+WindowTarget windowTarget(const Vec3d& pointMm)
+{
+  return { "target", {}, pointMm, "", "" };
+}
+
+std::vector<std::string> windowTargetNames(const Scene& scene)
+{
+  std::vector<std::string> names;
+  for (const Organ& organ : organs)
+  {
+    if (labelsOf(scene, organ, {}).empty())
+    {
+      continue;
+    }
+    names.emplace_back(organ.name);
+    // The heart's labels have sides, too, but of its chambers.
+    const bool hasSides = organ.preset != phased && !labelsOf(scene, organ, { "right" }).empty() &&
+                          !labelsOf(scene, organ, { "left" }).empty();
+    for (const char* side : { "right", "left" })
+    {
+      if (hasSides)
+      {
+        names.push_back(side + std::string(" ") + organ.name);
+      }
+    }
+  }
+  for (const LabelInfo& label : scene.volume().labels)
+  {
+    if (!isOutside(scene, label) && std::find(names.begin(), names.end(), label.name) == names.end())
+    {
+      names.push_back(label.name);
+    }
+  }
+  return names;
+}
+
+} // namespace sono
