@@ -1,50 +1,91 @@
 #include "SonoFirstPose.h"
 
-#include "vtkPVArrayInformation.h"
-#include "vtkPVDataInformation.h"
-#include "vtkPVDataSetAttributesInformation.h"
+#include "SonoWindows.h"
+
+#include "vtkCommand.h"
+#include "vtkNew.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
-#include "vtkSmartPointer.h"
 
-#include <utility>
+namespace {
+
+const char* const parts[] = { "PositionMm", "Axial", "Lateral" };
+
+std::array<double, 9> poseOf(vtkSMSourceProxy* ultrasound)
+{
+  std::array<double, 9> pose{};
+  for (std::size_t part = 0; part < 3; ++part)
+  {
+    vtkSMPropertyHelper(ultrasound, parts[part]).Get(&pose[3 * part], 3);
+  }
+  return pose;
+}
+
+/// Where the best window is; nothing where there is none, of which the search has said why.
+void place(vtkSMSourceProxy* ultrasound)
+{
+  const SonoWindows found = sonoFindWindows(ultrasound, SonoWindowsOf::Input, "");
+  if (found.windows.empty())
+  {
+    return;
+  }
+  const SonoWindow& best = found.windows.front();
+  if (!best.preset.empty())
+  {
+    for (const auto& [name, value] : sonoPresetNumbers(ultrasound->GetSessionProxyManager(), best.preset))
+    {
+      vtkSMPropertyHelper(ultrasound, name.c_str()).Set(value);
+    }
+  }
+  if (best.depthMm > 0.0)
+  {
+    vtkSMPropertyHelper(ultrasound, "DepthMm").Set(best.depthMm);
+  }
+  for (std::size_t part = 0; part < 3; ++part)
+  {
+    vtkSMPropertyHelper(ultrasound, parts[part]).Set(&best.pose[3 * part], 3);
+  }
+  ultrasound->UpdateVTKObjects();
+}
+
+/// Of Fill Body.
+class PlaceAgain : public vtkCommand
+{
+public:
+  static PlaceAgain* New() { return new PlaceAgain; }
+  void Execute(vtkObject*, unsigned long, void*) override
+  {
+    if (!this->Ultrasound->GetSessionProxyManager()->GetInLoadXMLState() && poseOf(this->Ultrasound) == this->Found)
+    {
+      place(this->Ultrasound);
+      this->Found = poseOf(this->Ultrasound);
+    }
+  }
+
+  vtkSMSourceProxy* Ultrasound = nullptr; // which owns the property that is observed
+  std::array<double, 9> Found{};
+};
+
+} // namespace
 
 void sonoSetFirstPose(vtkSMSourceProxy* ultrasound)
 {
-  constexpr std::pair<const char*, const char*> parts[] = { { "PositionMm", "ProbePositionMm" },
-                                                            { "Axial", "ProbeAxial" },
-                                                            { "Lateral", "ProbeLateral" } };
-  for (const auto& [property, array] : parts)
+  for (const char* part : parts)
   {
-    if (!ultrasound->GetProperty(property)->IsValueDefault())
+    if (!ultrasound->GetProperty(part)->IsValueDefault())
     {
       return;
     }
   }
-  const vtkSMPropertyHelper input(ultrasound, "Input");
-  if (!input.GetAsProxy())
+  if (!vtkSMPropertyHelper(ultrasound, "Input").GetAsProxy())
   {
     return;
   }
-  auto window = vtkSmartPointer<vtkSMSourceProxy>::Take(
-    vtkSMSourceProxy::SafeDownCast(ultrasound->GetSessionProxyManager()->NewProxy("filters", "SonoAcousticWindow")));
-  vtkSMPropertyHelper(window, "Input").Set(input.GetAsProxy(), input.GetOutputPort());
-  vtkSMPropertyHelper(window, "FillBody").Set(vtkSMPropertyHelper(ultrasound, "FillBody").GetAsInt());
-  window->UpdateVTKObjects();
-  window->UpdatePipeline();
-  vtkPVDataSetAttributesInformation* field =
-    window->GetDataInformation()->GetAttributeInformation(vtkDataObject::FIELD);
-  for (const auto& [property, array] : parts)
-  {
-    if (vtkPVArrayInformation* values = field->GetArrayInformation(array))
-    {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        vtkSMPropertyHelper(ultrasound, property).Set(axis, values->GetComponentRange(axis)[0]);
-      }
-    }
-  }
-  ultrasound->UpdateVTKObjects();
+  place(ultrasound);
+  vtkNew<PlaceAgain> again;
+  again->Ultrasound = ultrasound;
+  again->Found = poseOf(ultrasound);
+  ultrasound->GetProperty("FillBody")->AddObserver(vtkCommand::ModifiedEvent, again);
 }

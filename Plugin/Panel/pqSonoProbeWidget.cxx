@@ -1,6 +1,8 @@
 #include "pqSonoProbeWidget.h"
 
 #include "SonoMovingViews.h"
+#include "SonoWindows.h"
+#include "pqSonoWindowFinder.h"
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
 #include "vtkSonoUltrasound.h"
@@ -39,6 +41,7 @@
 #include <QToolButton>
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace {
@@ -140,11 +143,18 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
     tr("Scans while the probe moves: coarse at first, in full quality when it rests. Off: as it stands on Apply."));
   grid->addWidget(show, row + 5, 0, 1, 2);
   grid->addWidget(this->Live, row + 5, 2, 1, 2);
+  if (smproxy->GetXMLName() == std::string("SonoUltrasound")) // which has an anatomy to look at
+  {
+    auto* finder = new pqSonoWindowFinder(smproxy, this);
+    grid->addWidget(finder, row + 6, 0, 1, 4);
+    this->connect(finder, &pqSonoWindowFinder::chosen, this, &pqSonoProbeWidget::stand);
+    this->connect(finder, &pqSonoWindowFinder::said, this, [this](const QString& said) { this->showMessage(said); });
+  }
   this->Message = new QLabel(this);
   this->Message->setObjectName("Message");
   this->Message->setWordWrap(true);
   this->Message->hide();
-  grid->addWidget(this->Message, row + 6, 0, 1, 4);
+  grid->addWidget(this->Message, row + 7, 0, 1, 4);
 
   this->connect(show, SIGNAL(toggled(bool)), SLOT(setWidgetVisible(bool)));
   show->connect(this, SIGNAL(widgetVisibilityToggled(bool)), SLOT(setChecked(bool)));
@@ -299,9 +309,43 @@ void pqSonoProbeWidget::resetPose()
   this->finish();
 }
 
+void pqSonoProbeWidget::stand(const SonoWindow& window)
+{
+  this->start();
+  vtkSMProxy* widget = this->widgetProxy();
+  vtkSMPropertyHelper(widget, "PositionMm").Set(window.pose.data(), 3);
+  vtkSMPropertyHelper(widget, "Axial").Set(window.pose.data() + 3, 3);
+  vtkSMPropertyHelper(widget, "Lateral").Set(window.pose.data() + 6, 3);
+  if (window.depthMm > 0.0)
+  {
+    vtkSMPropertyHelper(widget, "DepthMm").Set(window.depthMm);
+  }
+  widget->UpdateVTKObjects();
+  if (!window.preset.empty())
+  {
+    // As if it had been chosen among the presets; the depth is the window's.
+    vtkSMUncheckedPropertyHelper(this->proxy(), "PresetFile").Set("");
+    for (const auto& [name, value] : sonoPresetNumbers(this->proxy()->GetSessionProxyManager(), window.preset))
+    {
+      if (name != "DepthMm")
+      {
+        vtkSMUncheckedPropertyHelper(this->proxy(), name.c_str()).Set(value);
+      }
+    }
+  }
+  Q_EMIT this->changeAvailable();
+  this->render();
+  this->move();
+  this->finish();
+}
+
 void pqSonoProbeWidget::showMessage()
 {
-  const QString message = this->probe()->GetMessage();
+  this->showMessage(this->probe()->GetMessage());
+}
+
+void pqSonoProbeWidget::showMessage(const QString& message)
+{
   this->Message->setText(message);
   this->Message->setVisible(!message.isEmpty());
 }

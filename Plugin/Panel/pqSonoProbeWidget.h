@@ -14,6 +14,7 @@ class QDoubleSpinBox;
 class QGridLayout;
 class QLabel;
 class SonoMovingViews;
+struct SonoWindow;
 class pqPipelineSource;
 class vtkDataObject;
 class vtkSMPropertyGroup;
@@ -58,6 +59,7 @@ private Q_SLOTS:
   void snap();
   void resetPose();
   void forget(pqPipelineSource* source);
+  void stand(const SonoWindow& window);
 
 private:
   Q_DISABLE_COPY(pqSonoProbeWidget)
@@ -74,6 +76,7 @@ private:
   QList<QPair<QString, QVector<double>>> pose() const;
   void push(const QList<QPair<QString, QVector<double>>>& pose, bool preview);
   void showMessage();
+  void showMessage(const QString& message);
 
   QDoubleSpinBox* Step;
   QCheckBox* Live;

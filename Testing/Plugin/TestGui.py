@@ -232,6 +232,20 @@ class TestGui(GuiCase):
         self.assertEqual(files, [["linear_l14"], [""]])
         self.assertEqual(depth, [160])
 
+    def test_find_window(self):
+        """For an organ that is not there the probe stays where it is. For the liver the button places it on the skin,
+        with the probe for it, and offers four other places."""
+        with tempfile.TemporaryDirectory() as folder:
+            (sentence,) = self.play("window.xml", folder, f"--script={PLAYBACKS / 'window.py'}")
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("refused", "found")]
+            places = [self.probe_of(state, "SonoUltrasound")["PositionMm"] for state in states]
+            kinds = [self.values_of(state, "SonoUltrasound", "ScanKind") for state in states]
+        self.assertIn("no 'spleen'; it has: heart, liver", sentence)
+        self.assertLess(math.dist(places[0], [87.8, -86.5, -45]), 0.1)
+        self.assertEqual(kinds, [[1], [2]])
+        self.assertLess(places[1][0], 0)  # on the patient's right
+        self.assertGreater(math.dist(*places), 40)
+
     def test_probe_is_dragged_along_the_skin(self):
         """With real mouse events: it slides, the picture follows, a button tilts it. Undo takes back that and the
         drag, and redo drags again."""

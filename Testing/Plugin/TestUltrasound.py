@@ -1,14 +1,17 @@
 """Simulate Ultrasound as a proxy: its first pose, state files, traces, and what it says when something is missing."""
+import math
 import os
 import pathlib
 import sys
 import tempfile
 import unittest
 
+import numpy as np
 from paraview import servermanager, simple, smstate, smtrace
 from paraview.servermanager import Fetch
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIntArray, vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 PLUGIN = os.environ["SONOVDB_PLUGIN"]
 simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
@@ -50,6 +53,25 @@ def errors_of(proxy, **settings):
     return heard
 
 
+def bare_organ():
+    """A ball of label 1, liver, radius 60 mm around (120, 120, 120), with one of label 2, a rib, in its middle."""
+    z, y, x = np.mgrid[0:60, 0:60, 0:60] * 4.0
+    r = np.sqrt((x - 120)**2 + (y - 120)**2 + (z - 120)**2)
+    image = vtkImageData()
+    image.SetDimensions(60, 60, 60)
+    image.SetSpacing(4, 4, 4)
+    voxels = numpy_to_vtk(np.select([r < 8, r < 60], [2, 1], 0).astype(np.uint8).ravel(), deep=True)
+    voxels.SetName("Labels")
+    image.GetPointData().SetScalars(voxels)
+    ids, names = vtkIntArray(), vtkStringArray()
+    for array, name, values in ((ids, "LabelIds", (1, 2)), (names, "LabelNames", ("liver", "rib_left_5"))):
+        array.SetName(name)
+        for value in values:
+            array.InsertNextValue(value)
+        image.GetFieldData().AddArray(array)
+    return image
+
+
 class TestUltrasound(unittest.TestCase):
     def tearDown(self):
         for proxy in list(simple.GetSources().values()):
@@ -77,6 +99,27 @@ class TestUltrasound(unittest.TestCase):
 
     def test_a_pose_that_was_given_stays(self):
         self.assertEqual(list(make_ultrasound(PositionMm=[80, -86, -45]).PositionMm), [80, -86, -45])
+
+    def test_a_probe_that_was_not_moved_is_placed_anew_when_the_body_is_filled(self):
+        """A liver, radius 60 mm, with a rib in it: bare first, then in 10 mm of body wall. With the probe for a liver."""
+        def make():
+            producer = simple.PVTrivialProducer(registrationName="organ")
+            producer.GetClientSideObject().SetOutput(bare_organ())
+            return simple.SimulateUltrasound(registrationName="ultrasound", Input=producer, FillBody=0, **QUICK)
+
+        def distance(ultrasound):
+            return math.dist(ultrasound.PositionMm, (120, 120, 120))
+
+        untouched = make()
+        self.assertAlmostEqual(distance(untouched), 60, delta=6)
+        self.assertEqual(untouched.ScanKind, "Curvilinear")
+        untouched.FillBody = 1
+        self.assertAlmostEqual(distance(untouched), 70, delta=6)
+        self.tearDown()
+        moved = make()
+        moved.PositionMm = [120, 55, 120]
+        moved.FillBody = 1
+        self.assertEqual(list(moved.PositionMm), [120, 55, 120])
 
     def test_gain_does_not_build_or_trace_again(self):
         ultrasound = make_ultrasound()
