@@ -6,6 +6,7 @@
 #include "Labels/LabelCode.h"
 #include "Labels/ReadLabelMap.h"
 #include "Labels/TissueTable.h"
+#include "Scene/ScanDetail.h"
 #include "Scene/SceneFile.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
@@ -159,8 +160,13 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     sono::LabelVolume volume = this->ReadLabels(input);
     const auto table = std::make_shared<const sono::TissueTable>(
       sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
+    const sono::GridPlacement placement = volume.placement;
     this->AssignTissues(*table, volume);
     std::vector<std::uint8_t> detail = sono::scanDetailOf(vtkImageData::GetData(input[0]));
+    if (!detail.empty() && volume.placement.size != placement.size)
+    {
+      detail = sono::detailOnLargerGrid(detail, placement, volume.placement);
+    }
     const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
     const std::shared_ptr<const sono::Scene> scene =
       cached ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,

@@ -165,4 +165,23 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
   return codes;
 }
 
+std::vector<std::uint8_t> detailOnLargerGrid(const std::vector<std::uint8_t>& codes, const GridPlacement& own,
+                                             const GridPlacement& larger)
+{
+  const Vec3i before(glm::round(larger.indexFromWorld(own.worldFromIndex(Vec3d(0.0)))));
+  const Vec3i n = own.size;
+  const Vec3i m = larger.size;
+  std::vector<std::uint8_t> wide(larger.voxelCount(), std::uint8_t(detailNone));
+  for (int k = 0; k < n.z; ++k)
+  {
+    for (int j = 0; j < n.y; ++j)
+    {
+      const auto row = codes.begin() + std::ptrdiff_t(n.x) * (std::ptrdiff_t(j) + std::ptrdiff_t(n.y) * k);
+      const auto to = std::ptrdiff_t(m.x) * (std::ptrdiff_t(j + before.y) + std::ptrdiff_t(m.y) * (k + before.z));
+      std::copy(row, row + n.x, wide.begin() + to + before.x);
+    }
+  }
+  return wide;
+}
+
 } // namespace sono

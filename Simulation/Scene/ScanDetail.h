@@ -60,4 +60,8 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
                                      const std::vector<ScanOfLabel>& means, const std::string& outsideTissue,
                                      const ScanDetailSettings& settings, const Progress& progress = {});
 
+/// The codes of a grid on a larger one with the same voxels, such as batheOrgan makes; around them there is no detail.
+std::vector<std::uint8_t> detailOnLargerGrid(const std::vector<std::uint8_t>& codes, const GridPlacement& own,
+                                             const GridPlacement& larger);
+
 } // namespace sono

@@ -290,6 +290,23 @@ TEST(ScanDetail, IsWhatOneEchoesMore)
   }
 }
 
+TEST(ScanDetail, StaysWhereItIsOnALargerGrid)
+{
+  const GridPlacement own = gridOf({ 3, 4, 2 }, { 1.0, 2.0, 3.0 }, { 5.0, 6.0, 7.0 });
+  GridPlacement larger = own;
+  larger.size = { 6, 9, 5 };
+  larger.originMm -= own.spacingMm * Vec3d(2.0, 1.0, 3.0);
+  std::vector<std::uint8_t> codes(own.voxelCount());
+  forVoxels(own, [&](std::size_t at, const Vec3d& p) { codes[at] = std::uint8_t(7.0 * p.x + p.y + p.z); });
+  const std::vector<std::uint8_t> wide = detailOnLargerGrid(codes, own, larger);
+  forVoxels(larger, [&](std::size_t at, const Vec3d& p) {
+    const Vec3d index = own.indexFromWorld(p);
+    const bool isOwn =
+      glm::all(glm::greaterThan(index, Vec3d(-0.5))) && glm::all(glm::lessThan(index, Vec3d(own.size) - 0.5));
+    ASSERT_EQ(wide[at], isOwn ? std::uint8_t(7.0 * p.x + p.y + p.z) : detailNone);
+  });
+}
+
 TEST(AddScan, LeavesTheGuessToAnMr)
 {
   const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
