@@ -4,7 +4,8 @@
 //   <Exposed of="TraceSettings" simple="PathsPerLine"/>     for the names of the same properties of a sub-proxy.
 //
 // `only` and `except` choose among them, `simple` are those that a panel always shows, `where` is a switch (0 off,
-// 1 on, 2 automatic) without which it shows none of them. `method` takes the name and the value, in place of one method a property.
+// 1 on, 2 automatic) without which it shows none of them. `method` takes the name and the value, in place of one method
+// a property.
 #include "Echo/EchoSettings.h"
 #include "Image/BModeSettings.h"
 #include "Labels/BodyFill.h"

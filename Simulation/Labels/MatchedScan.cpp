@@ -91,12 +91,10 @@ struct Expected
 
 bool expects(const std::string& tissue, Expected& range)
 {
-  static const std::map<std::string, Expected> known{ { "cortical_bone", { 80.0, 1e9 } },
-                                                      { "lung", { -1e9, -350.0 } },
-                                                      { "air", { -1e9, -250.0 } },
-                                                      { "fat", { -250.0, 40.0 } },
-                                                      { "renal_sinus", { -250.0, 200.0 } },
-                                                      { "soft_tissue", { -150.0, 600.0 } } };
+  static const std::map<std::string, Expected> known{
+    { "cortical_bone", { 80.0, 1e9 } }, { "lung", { -1e9, -350.0 } },         { "air", { -1e9, -250.0 } },
+    { "fat", { -250.0, 40.0 } },        { "renal_sinus", { -250.0, 200.0 } }, { "soft_tissue", { -150.0, 600.0 } }
+  };
   const auto found = known.find(tissue);
   range = found == known.end() ? Expected{ -40.0, 600.0 } : found->second;
   return tissue != "skin" && tissue != "gi_tract"; // thin, or full of gas
