@@ -100,6 +100,28 @@ TEST(GpuAcoustic, ScatterersWithFibresInEveryBeam)
   expectSame(*scene, fan(8), s, "scatterers, array");
 }
 
+TEST(GpuAcoustic, ScatterersFollowAScan)
+{
+  SONO_GPU_OR_SKIP();
+  const auto plain = ballScene(Echoes::Scatterers, 0.0);
+  std::vector<std::uint8_t> detail(plain->tissueVoxels().size());
+  for (std::size_t at = 0; at < detail.size(); ++at)
+  {
+    detail[at] = std::uint8_t(48 + (at * 2654435761u >> 8) % 160); // -10 to 10 dB
+  }
+  TissueTable table;
+  for (const Tissue& tissue : plain->tissues())
+  {
+    table.add(tissue);
+  }
+  const Scene scene(plain->volume(), table, "none", detail);
+  Settings s = fanSettings();
+  s.echo.aperture = namedAperture();
+  expectSame(scene, fan(24), s, "scan's detail, Acoustic");
+  s.tracing.model = InterfaceModel::Amadou2024;
+  expectSame(scene, fan(24), s, "scan's detail, Amadou2024");
+}
+
 TEST(GpuAcoustic, SurfacesInEveryBeam)
 {
   SONO_GPU_OR_SKIP();
