@@ -2,12 +2,14 @@
 
 #include "Core/Progress.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
@@ -143,6 +145,19 @@ void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image)
   std::copy(volume.voxels.begin(), volume.voxels.end(), labels->GetPointer(0));
   image->GetPointData()->SetScalars(labels);
   writeLabelTable(volume.labels, image->GetFieldData());
+}
+
+vtkDataArray* labelArrayOf(vtkAlgorithm* algorithm, vtkInformationVector** input)
+{
+  vtkPointData* arrays = vtkImageData::GetData(input[0])->GetPointData();
+  if (arrays->GetNumberOfArrays() == 1)
+  {
+    return arrays->GetArray(0);
+  }
+  // ParaView names no array for an input that has not run yet, or that of another input.
+  const char* name = algorithm->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+  vtkDataArray* named = name && *name ? arrays->GetArray(name) : nullptr;
+  return named ? named : arrays->GetScalars();
 }
 
 LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels)

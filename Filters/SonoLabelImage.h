@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+class vtkAlgorithm;
 class vtkDataArray;
 class vtkFieldData;
 class vtkImageData;
 class vtkInformation;
+class vtkInformationVector;
 
 namespace sono {
 
@@ -29,6 +31,10 @@ std::vector<std::uint8_t> scanDetailOf(vtkImageData* image);
 
 /// Fills `image` with the scalars "Labels" and the label table in its field data.
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image);
+
+/// The labels of an algorithm's first input, an image: its only point array; else the one that the algorithm is set to
+/// process, or the scalars where that is not there.
+vtkDataArray* labelArrayOf(vtkAlgorithm* algorithm, vtkInformationVector** input);
 
 /// The label volume of an image from any reader, `labels` being its array of voxels: whole numbers 0 to 65535 of any
 /// type. Names, colours and codes come from the field data where they are. Throws Error for an image that is empty or

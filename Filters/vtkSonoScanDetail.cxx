@@ -102,7 +102,7 @@ int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input
   return sono::runStage(this, output, [&] {
     const sono::Progress progress = sono::progressOf(this);
     sono::LabelVolume volume =
-      sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->GetInputArrayToProcess(0, input));
+      sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), sono::labelArrayOf(this, input));
     const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
     const auto table = sono::TissueTable::read(sono::dataFile("tissues.csv"));
     const sono::AddedScan added =

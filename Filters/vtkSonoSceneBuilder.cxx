@@ -84,18 +84,6 @@ int vtkSonoSceneBuilder::FillInputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
-vtkDataArray* vtkSonoSceneBuilder::LabelArray(vtkInformationVector** input)
-{
-  vtkPointData* arrays = vtkImageData::GetData(input[0])->GetPointData();
-  if (arrays->GetNumberOfArrays() == 1)
-  {
-    return arrays->GetArray(0); // whatever name the property has kept from the input before
-  }
-  // ParaView names no array for an input that has not run yet.
-  const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  return name && !*name ? arrays->GetScalars() : this->GetInputArrayToProcess(0, input);
-}
-
 int vtkSonoSceneBuilder::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
   return sono::requestWholeImage(input);
@@ -104,7 +92,8 @@ int vtkSonoSceneBuilder::RequestUpdateExtent(vtkInformation*, vtkInformationVect
 sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
 {
   const sono::Progress progress = sono::progressOf(this);
-  sono::LabelVolume volume = sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), this->LabelArray(input));
+  sono::LabelVolume volume =
+    sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), sono::labelArrayOf(this, input));
   sono::report(progress, 0.05);
   if (this->FillBody == FILL_ON)
   {

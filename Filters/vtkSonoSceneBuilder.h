@@ -132,7 +132,6 @@ private:
   vtkSonoSceneBuilder(const vtkSonoSceneBuilder&) = delete;
   void operator=(const vtkSonoSceneBuilder&) = delete;
 
-  vtkDataArray* LabelArray(vtkInformationVector** input);
   sono::LabelVolume ReadLabels(vtkInformationVector** input);
   void AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume);
 

@@ -23,7 +23,7 @@ def described(class_name):
 
 STAGES = ("SceneBuilder", "Probe", "RayTracer", "ImageFormation", "BMode", "ScanConverter")
 # Labels that say something else than the name: what an input is, ParaView's own property, a word that a unit hides.
-OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneWriter", "Input"), ("SonoSceneBuilder", "SelectInputScalars"),
+OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneWriter", "Input"), ("SonoScanDetail", "SelectInputScalars"), ("SonoSceneBuilder", "SelectInputScalars"),
                 ("SonoUltrasound", "SelectInputScalars"), ("SonoSweep", "SelectInputScalars"),
                 ("SonoImageFormation", "Field"), ("EchoPictureWriter", "Input"),
                 ("EchoPictureWriter", "SelectInputScalars")}
@@ -51,7 +51,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 23)
+        self.assertEqual(len(CLASSES), 25)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()
