@@ -1,5 +1,6 @@
 // Any segmentation: names of public lists that no rule knows, or knows as another tissue; windows in volumes cut at
 // random.
+#include "HiddenVessels.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/CsvFile.h"
 #include "Labels/ReadLabelMap.h"
@@ -66,6 +67,7 @@ void measureWindows()
 void measureLabels()
 {
   measureNames();
+  measureHiddenVessels();
   measureWindows();
 }
 
