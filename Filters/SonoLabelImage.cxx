@@ -9,6 +9,8 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkMath.h"
@@ -135,6 +137,16 @@ void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_SHORT, 1);
 }
 
+void tellRange(double low, double high, vtkDataArray* array)
+{
+  const double range[2] = { low, high };
+  vtkNew<vtkInformationVector> components;
+  components->SetNumberOfInformationObjects(1);
+  components->GetInformationObject(0)->Set(vtkDataArray::COMPONENT_RANGE(), range, 2);
+  array->GetInformation()->Set(vtkAbstractArray::PER_COMPONENT(), components);
+  array->GetInformation()->Set(vtkAbstractArray::PER_FINITE_COMPONENT(), components);
+}
+
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image)
 {
   placeImage(volume.placement, image);
@@ -143,6 +155,12 @@ void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image)
   labels->SetName("Labels");
   labels->SetNumberOfValues(static_cast<vtkIdType>(volume.voxels.size()));
   std::copy(volume.voxels.begin(), volume.voxels.end(), labels->GetPointer(0));
+  if (!volume.labels.empty()) // each occurs
+  {
+    const auto [least, most] = std::minmax_element(volume.labels.begin(), volume.labels.end(),
+                                                   [](const LabelInfo& a, const LabelInfo& b) { return a.id < b.id; });
+    tellRange(least->id, most->id, labels);
+  }
   image->GetPointData()->SetScalars(labels);
   writeLabelTable(volume.labels, image->GetFieldData());
 }

@@ -29,6 +29,9 @@ void placeImage(const GridPlacement& placement, vtkImageData* image);
 /// The codes of the scan's detail that a label image carries; empty: none.
 std::vector<std::uint8_t> scanDetailOf(vtkImageData* image);
 
+/// Tells an array of one component its range, which VTK would look for in each value, serially and twice.
+void tellRange(double low, double high, vtkDataArray* array);
+
 /// Fills `image` with the scalars "Labels" and the label table in its field data.
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image);
 

@@ -114,6 +114,8 @@ int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input
     detail->SetName(sono::scanDetailArray);
     detail->SetNumberOfValues(static_cast<vtkIdType>(added.detail.size()));
     std::copy(added.detail.begin(), added.detail.end(), detail->GetPointer(0));
+    const auto [least, most] = std::minmax_element(added.detail.begin(), added.detail.end());
+    sono::tellRange(*least, *most, detail);
     image->GetPointData()->AddArray(detail);
   });
 }

@@ -61,6 +61,8 @@ int vtkSonoScanReader::RequestData(vtkInformation*, vtkInformationVector**, vtkI
     values->SetName("Intensities");
     values->SetNumberOfValues(static_cast<vtkIdType>(this->Volume->values.size()));
     std::copy(this->Volume->values.begin(), this->Volume->values.end(), values->GetPointer(0));
+    const auto [least, most] = std::minmax_element(this->Volume->values.begin(), this->Volume->values.end());
+    sono::tellRange(*least, *most, values);
     image->GetPointData()->SetScalars(values);
     if (!this->Volume->modality.empty())
     {

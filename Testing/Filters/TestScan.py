@@ -99,6 +99,11 @@ class Scan(unittest.TestCase):
         was_lung = np.isin(self.labels, [n for n, name in self.names.items() if "lung" in name])
         self.assertGreater((labels_of(output)[was_lung] == lung).mean(), 0.9)
         self.assertNotEqual(background, lung)
+        for name in ("Labels", "ScanDetail"):  # the array was told its range
+            array = output.GetPointData().GetArray(name)
+            values = vtk_to_numpy(array)
+            self.assertEqual(array.GetRange(), (values.min(), values.max()))
+            self.assertEqual(array.GetFiniteRange(), (values.min(), values.max()))
 
     def test_what_does_not_fit_is_refused(self):
         self.added(np.roll(self.ct, self.ct.shape[2] // 2, axis=2))
