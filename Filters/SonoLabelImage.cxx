@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <type_traits>
 
 namespace sono {
 namespace {
@@ -51,6 +52,11 @@ std::string nameOf(vtkDataArray* array)
 template<class Value>
 void copyWholeNumbers(const Value* values, vtkDataArray* array, std::vector<std::uint16_t>& voxels)
 {
+  if constexpr (std::is_same_v<Value, unsigned char> || std::is_same_v<Value, unsigned short>)
+  {
+    std::copy(values, values + voxels.size(), voxels.begin());
+    return;
+  }
   for (std::size_t i = 0; i < voxels.size(); ++i)
   {
     const auto value = static_cast<double>(values[i]);

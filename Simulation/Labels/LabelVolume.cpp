@@ -1,10 +1,11 @@
 #include "Labels/LabelVolume.h"
 
-#include "Core/Progress.h"
+#include "Core/ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 namespace sono {
 
@@ -89,11 +90,19 @@ const LabelInfo* LabelVolume::find(int id) const
 
 void LabelVolume::collectLabels()
 {
-  std::vector<bool> occurs(65536, false);
-  for (const std::uint16_t id : voxels)
-  {
-    occurs[id] = true;
-  }
+  constexpr std::size_t together = std::size_t(1) << 22;
+  std::vector<char> occurs(65536, 0);
+  std::mutex mutex;
+  parallelFor(int((voxels.size() + together - 1) / together), {}, [&](int part) {
+    std::vector<char> here(occurs.size(), 0);
+    const std::size_t first = std::size_t(part) * together;
+    for (std::size_t at = first; at < std::min(voxels.size(), first + together); ++at)
+    {
+      here[voxels[at]] = 1;
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::transform(here.begin(), here.end(), occurs.begin(), occurs.begin(), [](char a, char b) { return a | b; });
+  });
   std::map<int, LabelInfo> known;
   for (LabelInfo& label : labels)
   {

@@ -1,6 +1,7 @@
 #include "Scene/ScanDetail.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Kernel/DetailCode.h"
 
 #include <algorithm>
@@ -53,7 +54,20 @@ std::vector<float> slopes(const LabelVolume& labels, const MatchedScan& scan, co
   return result;
 }
 
-/// Smooths a slice of values over voxels of the same label.
+/// Adds `weight` times the values of a row that lie in the same label, and the weights.
+SONO_SIMD_CLONES void addNeighbours(int weight, const std::uint16_t* own, const std::uint16_t* labels,
+                                    const std::int16_t* values, int count, int* sums, int* weights)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    const bool counts = labels[i] == own[i] && values[i] != MatchedScan::nothing;
+    const int here = counts ? weight : 0;
+    sums[i] += here * values[i];
+    weights[i] += here;
+  }
+}
+
+/// Smooths rows of values over voxels of the same label.
 class LabelSmoother
 {
 public:
@@ -61,40 +75,43 @@ public:
     : size_(labels.placement.size)
     , labels_(labels.voxels.data())
     , values_(scan.values.data())
+    , sums_(std::size_t(size_.x))
+    , weights_(std::size_t(size_.x))
   {
   }
 
-  /// At a voxel that the scan reaches.
-  float at(int i, int j, int k) const
+  void smoothRow(int j, int k)
   {
-    const std::size_t row = std::size_t(size_.x);
-    const std::size_t here = std::size_t(i) + row * (std::size_t(j) + std::size_t(size_.y) * k);
-    const std::uint16_t label = labels_[here];
-    int sum = 0;
-    int weights = 0;
+    std::fill(sums_.begin(), sums_.end(), 0);
+    std::fill(weights_.begin(), weights_.end(), 0);
+    const std::uint16_t* own = labels_ + rowAt(j, k);
     for (int dk = k > 0 ? -1 : 0; dk <= (k + 1 < size_.z ? 1 : 0); ++dk)
     {
       for (int dj = j > 0 ? -1 : 0; dj <= (j + 1 < size_.y ? 1 : 0); ++dj)
       {
-        const std::ptrdiff_t shift = (std::ptrdiff_t(dk) * size_.y + dj) * std::ptrdiff_t(row);
-        const int across = (2 - std::abs(dk)) * (2 - std::abs(dj));
-        for (int di = i > 0 ? -1 : 0; di <= (i + 1 < size_.x ? 1 : 0); ++di)
+        const std::size_t row = rowAt(j + dj, k + dk);
+        for (int di = -1; di <= 1; ++di)
         {
-          const std::size_t there = std::size_t(std::ptrdiff_t(here) + shift + di);
-          const bool counts = labels_[there] == label && values_[there] != MatchedScan::nothing;
-          const int weight = counts ? across * (2 - std::abs(di)) : 0;
-          sum += weight * values_[there];
-          weights += weight;
+          const int first = std::max(0, -di);
+          const int count = size_.x - std::abs(di);
+          addNeighbours((2 - std::abs(dk)) * (2 - std::abs(dj)) * (2 - std::abs(di)), own + first,
+                        labels_ + row + first + di, values_ + row + first + di, count, sums_.data() + first,
+                        weights_.data() + first);
         }
       }
     }
-    return float(sum) / float(weights);
   }
+  /// Of the row, at a voxel that the scan reaches.
+  float at(int i) const { return float(sums_[std::size_t(i)]) / float(weights_[std::size_t(i)]); }
 
 private:
+  std::size_t rowAt(int j, int k) const { return std::size_t(size_.x) * (std::size_t(j) + std::size_t(size_.y) * k); }
+
   Vec3i size_;
   const std::uint16_t* labels_;
   const std::int16_t* values_;
+  std::vector<int> sums_;
+  std::vector<int> weights_;
 };
 
 } // namespace
@@ -119,15 +136,22 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
   constexpr int mostSteps = int(mostDb / detailStepDb);
   const Vec3i n = labels.placement.size;
   const std::size_t slice = std::size_t(n.x) * n.y;
-  const LabelSmoother smoother(labels, scan);
   std::vector<std::uint8_t> codes(labels.voxels.size(), std::uint8_t(detailNone));
   std::vector<std::int64_t> power(count, 0);
   std::mutex mutex;
   parallelFor(n.z, partOf(progress, 0.0, 0.85), [&](int k) {
     std::vector<std::int64_t> own(count, 0);
+    LabelSmoother smoother(labels, scan);
     std::size_t at = slice * k;
     for (int j = 0; j < n.y; ++j)
     {
+      const auto row = labels.voxels.begin() + std::ptrdiff_t(at);
+      if (std::none_of(row, row + n.x, [&](std::uint16_t id) { return slope[std::size_t(indexOf[id])] != 0.0f; }))
+      {
+        at += std::size_t(n.x);
+        continue;
+      }
+      smoother.smoothRow(j, k);
       for (int i = 0; i < n.x; ++i, ++at)
       {
         const std::size_t l = std::size_t(indexOf[labels.voxels[at]]);
@@ -135,7 +159,7 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
         {
           continue;
         }
-        const float steps = slope[l] * (smoother.at(i, j, k) - float(means[l].mean)) / detailStepDb;
+        const float steps = slope[l] * (smoother.at(i) - float(means[l].mean)) / detailStepDb;
         codes[at] = std::uint8_t(detailNone + std::lround(std::clamp(steps, -float(mostSteps), float(mostSteps))));
         own[l] += powerOf[codes[at]];
       }
