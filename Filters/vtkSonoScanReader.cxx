@@ -2,6 +2,7 @@
 
 #include "Labels/ReadIntensities.h"
 #include "SonoLabelImage.h"
+#include "SonoSharedArray.h"
 #include "SonoStage.h"
 
 #include "vtkDataObject.h"
@@ -57,10 +58,9 @@ int vtkSonoScanReader::RequestData(vtkInformation*, vtkInformationVector**, vtkI
     }
     vtkImageData* image = vtkImageData::GetData(output);
     sono::placeImage(this->Volume->placement, image);
-    vtkNew<vtkFloatArray> values;
-    values->SetName("Intensities");
-    values->SetNumberOfValues(static_cast<vtkIdType>(this->Volume->values.size()));
-    std::copy(this->Volume->values.begin(), this->Volume->values.end(), values->GetPointer(0));
+    const sono::SharedSpan<float> kept{ std::shared_ptr<const float>(this->Volume, this->Volume->values.data()),
+                                        this->Volume->values.size() };
+    const auto values = sono::sharedArray<vtkFloatArray>("Intensities", kept);
     const auto [least, most] = std::minmax_element(this->Volume->values.begin(), this->Volume->values.end());
     sono::tellRange(*least, *most, values);
     image->GetPointData()->SetScalars(values);
