@@ -100,7 +100,8 @@ struct CommonSink : PathSink
   {
     ++segments;
     depositByWarp(stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount),
-                  launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
+                  launch.binMm, binSumsOf(launch.view.model), lane,
+                  launch.shared + std::size_t(line) * launch.binCount);
   }
   __device__ void echo(const Vec3f& point, float amplitude)
   {
@@ -230,6 +231,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
       launch.sums[warpRow + b] = {};
     }
   }
+  const int sums = binSumsOf(launch.view.model);
   const std::uint32_t lineKey = launch.keyOf(line);
   for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
@@ -267,7 +269,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     untilFold -= __popc(waiting);
     for (; waiting; waiting &= waiting - 1)
     {
-      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
+      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, sums, lane, bins);
     }
     if (ManyPaths && untilFold <= 0)
     {

@@ -11,8 +11,9 @@ namespace sono {
 namespace {
 
 /// Adds the segment's mean over the whole bins [first, last) to the sums, whose factors count at a bin's middle.
-SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int first, int last,
-                                       std::array<std::vector<float>, binSumCount>& bins)
+template<int Sums>
+__attribute__((always_inline)) inline void depositWholeBins(const BeamSegment& g, float binMm, int first, int last,
+                                                            std::array<std::vector<float>, binSumCount>& bins)
 {
   const float inverseMu = 1.0f / g.mu;
   const float step = binMm * std::fabs(inverseMu);
@@ -20,8 +21,8 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int fi
   // Where a bin begins as seen by the path: its near end for either sense of travel.
   const float nearEdge = g.mu > 0.0f ? 0.0f : binMm;
   const BeamSegment local = g;
-  float* sums[binSumCount];
-  for (int sum = 0; sum < binSumCount; ++sum)
+  float* sums[Sums];
+  for (int sum = 0; sum < Sums; ++sum)
   {
     sums[sum] = bins[std::size_t(sum)].data();
   }
@@ -31,7 +32,7 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int fi
     const float near = (float(b) * binMm + nearEdge - local.r0) * inverseMu;
     const float onAxis = scale * expNegative(-local.decay * near);
     const float weights = gaussWeights(local, near, step);
-    for (int sum = 0; sum < binSumCount; ++sum)
+    for (int sum = 0; sum < Sums; ++sum)
     {
       sums[sum][b] += onAxis * binFactor(sum, local, near + 0.5f * step, 1.0f) * weights;
     }
@@ -40,8 +41,9 @@ SONO_SIMD_CLONES void depositWholeBins(const BeamSegment& g, float binMm, int fi
 
 } // namespace
 
-LineTally::LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm)
+LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm)
   : binCount_(binCount)
+  , sums_(sums)
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
@@ -63,7 +65,7 @@ void LineTally::start(const TraceLine& line, float coherenceMm)
 
 void LineTally::fold()
 {
-  for (std::size_t sum = 0; sum < binSumCount; ++sum)
+  for (std::size_t sum = 0; sum < std::size_t(sums_); ++sum)
   {
     for (std::size_t b = 0; b < bins_[sum].size(); ++b)
     {
@@ -77,7 +79,7 @@ std::vector<BinSums<double>> LineTally::takeBins(int paths)
 {
   fold();
   std::vector<BinSums<double>> means(bins_.front().size());
-  for (std::size_t sum = 0; sum < binSumCount; ++sum)
+  for (std::size_t sum = 0; sum < std::size_t(sums_); ++sum)
   {
     for (std::size_t b = 0; b < means.size(); ++b)
     {
@@ -99,22 +101,16 @@ void LineTally::takeEchoes(std::complex<float>* samples)
   lastEcho_ = -1;
 }
 
-SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
+template<int Sums>
+__attribute__((always_inline)) inline void LineTally::deposit(const BeamSegment& g, float low, float high)
 {
-  ++segments_;
-  const BeamSegment g = beamSegment(line_, s, coherenceMm_);
-  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
-  if (!(high > low))
-  {
-    return;
-  }
   const int last = binCount_ - 1;
   const int binLow = std::min(int(low / binMm_), last);
   const int binHigh = std::min(int(high / binMm_), last);
   const float inverseMu = 1.0f / g.mu;
   const auto part = [&](int bin, float from, float to) {
     const float value = meanOver(g, from, to, inverseMu) * (to - from) / binMm_;
-    for (int sum = 0; sum < binSumCount; ++sum)
+    for (int sum = 0; sum < Sums; ++sum)
     {
       bins_[std::size_t(sum)][std::size_t(bin)] += value * binFactor(sum, g, 0.5f * (from + to) - g.r0, inverseMu);
     }
@@ -125,8 +121,27 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
     return;
   }
   part(binLow, low, float(binLow + 1) * binMm_);
-  depositWholeBins(g, binMm_, binLow + 1, binHigh, bins_);
+  depositWholeBins<Sums>(g, binMm_, binLow + 1, binHigh, bins_);
   part(binHigh, float(binHigh) * binMm_, high);
+}
+
+SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
+{
+  ++segments_;
+  const BeamSegment g = beamSegment(line_, s, coherenceMm_);
+  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
+  if (!(high > low))
+  {
+    return;
+  }
+  if (sums_ == binSumCount)
+  {
+    deposit<binSumCount>(g, low, high);
+  }
+  else
+  {
+    deposit<1>(g, low, high);
+  }
 }
 
 void LineTally::echo(const Vec3f& point, float amplitude)

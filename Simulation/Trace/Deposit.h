@@ -16,7 +16,8 @@ namespace sono {
 class LineTally : public PathSink
 {
 public:
-  LineTally(int binCount, double binMm, int echoCount, double echoSampleMm, double wavesPerMm);
+  /// `sums`: the first so many of the sums are kept, the others are 0 (see binSumsOf).
+  LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm);
 
   /// From now on depths and distances are seen from this line.
   void start(const TraceLine& line, float coherenceMm);
@@ -37,7 +38,11 @@ public:
   void takeEchoes(std::complex<float>* samples);
 
 private:
+  template<int Sums>
+  void deposit(const BeamSegment& g, float low, float high);
+
   int binCount_;
+  int sums_;
   std::array<std::vector<float>, binSumCount> bins_;     ///< of the paths since the last fold
   std::array<std::vector<double>, binSumCount> binSums_; ///< of those before
   std::vector<std::complex<double>> echoes_;

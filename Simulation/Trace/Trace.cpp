@@ -141,7 +141,7 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   });
 
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
-    return LineTally(out.binCount, out.binMm, out.echoCount, out.echoSampleMm,
+    return LineTally(out.binCount, out.binMm, binSumsOf(settings.model), out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);
   });
   parallelFor(out.lineCount, tracing, [&](int i, const YieldPoint& yieldPoint) {

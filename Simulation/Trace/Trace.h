@@ -33,7 +33,8 @@ struct TracedLines
   std::vector<float> intensity;     ///< lineCount x binCount
   std::vector<float> standardError; ///< lineCount x binCount
   /// lineCount x binCount: the two-way exponent of the amplitude per MHz, B in exp(-B f), mean over the paths weighted
-  /// as the intensity is; 0 where nothing arrives. Empty: not known.
+  /// as the intensity is; 0 where nothing arrives, and in Amadou2024, whose pulse keeps its frequency. Empty: not
+  /// known.
   std::vector<float> attenuationNpPerMHz;
   int echoCount = 0;                                         ///< 0 for Acoustic
   double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm

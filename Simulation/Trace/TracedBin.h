@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Kernel/BeamDeposit.h"
+#include "Kernel/Interface.h"
 #include "Trace/PathBatches.h"
 
 #include <cmath>
@@ -18,6 +19,12 @@ enum BinSum
   absorbedSum,  ///< A, the attenuation that the path has met, Np of intensity
   binSumCount
 };
+
+/// The first of them that the model's picture needs: Amadou2024's pulse keeps its frequency whatever is absorbed.
+SONO_HD inline int binSumsOf(InterfaceModel model)
+{
+  return model == InterfaceModel::Acoustic ? binSumCount : 1;
+}
 
 template<class Real>
 struct alignas((binSumCount % 2 == 0 ? 2 : 1) * sizeof(Real)) BinSums

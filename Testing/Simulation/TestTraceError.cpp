@@ -131,7 +131,7 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
   const TraceLine line{ Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f) };
   const PathSegment segment{ Vec3f(0.1f, 0.0f, 1.3f), Vec3f(0.0f, 0.0f, 1.0f), 20.0f, 0.3f, 0.01f, 0.0f };
   const auto leave = [&](int count, std::vector<std::complex<float>>& echoes) {
-    LineTally tally(30, 1.0, 2000, 0.0154, 1.6);
+    LineTally tally(30, 1.0, binSumCount, 2000, 0.0154, 1.6);
     tally.start(line, 100.0f);
     tally.setEchoWeight(1.0f / float(count));
     for (int i = 0; i < count; ++i)

@@ -63,8 +63,8 @@ Space makeSpace(const DoubleInput& input, const std::vector<kernel::BvhNode>& no
 void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Space& space,
                const kernel::TraceLine& line, int index, kernel::TracedLines& out, double* absorbed)
 {
-  kernel::LineTally tally(input.binCount, input.settings.at("radialBinMm"), input.echoCount, input.echoSampleMm,
-                          input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
+  kernel::LineTally tally(input.binCount, input.settings.at("radialBinMm"), kernel::binSumsOf(view.model),
+                          input.echoCount, input.echoSampleMm, input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
   tally.start(line, view.coherenceMm);
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
   std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;

@@ -52,8 +52,8 @@ double secondsSince(std::clock_t begin)
 void traceLines(const TraceSetup& setup, const TraceSettings& tracing, const ShortCuts& cuts)
 {
   const auto space = setup.space();
-  LineTally tally(tracing.binCount(), tracing.radialBinMm, tracing.echoCount(), tracing.echoSampleMm,
-                  tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
+  LineTally tally(tracing.binCount(), tracing.radialBinMm, binSumsOf(tracing.model), tracing.echoCount(),
+                  tracing.echoSampleMm, tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
     tally.start(setup.lines[i], setup.view.coherenceMm);
