@@ -100,8 +100,7 @@ struct CommonSink : PathSink
   {
     ++segments;
     depositByWarp(stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount),
-                  launch.binMm, binSumsOf(launch.view.model), lane,
-                  launch.shared + std::size_t(line) * launch.binCount);
+                  launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
   }
   __device__ void echo(const Vec3f& point, float amplitude)
   {
@@ -231,7 +230,6 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
       launch.sums[warpRow + b] = {};
     }
   }
-  const int sums = binSumsOf(launch.view.model);
   const std::uint32_t lineKey = launch.keyOf(line);
   for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
@@ -269,7 +267,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     untilFold -= __popc(waiting);
     for (; waiting; waiting &= waiting - 1)
     {
-      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, sums, lane, bins);
+      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
     }
     if (ManyPaths && untilFold <= 0)
     {
@@ -334,7 +332,8 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
     return mean;
   };
   const bool hasPaths = launch.view.startsApart || launch.starts[line].meets;
-  const BinArrays bin = finishBin(shared, hasPaths ? launch.batches : 0, meanOf, launch.frequencyMHz);
+  const BinArrays bin =
+    finishBin(shared, hasPaths ? launch.batches : 0, meanOf, binSumsOf(launch.view.model), launch.frequencyMHz);
 #pragma unroll
   for (int array = 0; array < binArrayCount; ++array)
   {

@@ -41,22 +41,18 @@ __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& 
   return staged;
 }
 
-__device__ inline void addToBin(const StagedSegment& s, float value, float at, int sums, BinSums<float>& bin)
+__device__ inline void addToBin(const StagedSegment& s, float value, float at, BinSums<float>& bin)
 {
 #pragma unroll
   for (int sum = 0; sum < binSumCount; ++sum)
   {
-    if (sum < sums)
-    {
-      bin.of[sum] += value * binFactor(sum, s.beam, at, 1.0f);
-    }
+    bin.of[sum] += value * binFactor(sum, s.beam, at, 1.0f);
   }
 }
 
 /// A warp adds a segment to its bins; a bin always belongs to the same lane, so that the sum's order is that of the
 /// segments.
-__device__ inline void depositByWarp(const StagedSegment s, float binMm, int sums, int lane,
-                                     BinSums<float>* __restrict__ bins)
+__device__ inline void depositByWarp(const StagedSegment s, float binMm, int lane, BinSums<float>* __restrict__ bins)
 {
   int b = s.binLow + ((lane - s.binLow) & (warpLanes - 1));
   const float inverseMu = 1.0f / s.beam.mu;
@@ -67,8 +63,7 @@ __device__ inline void depositByWarp(const StagedSegment s, float binMm, int sum
     {
       const float to = fminf(s.high, float(b + 1) * binMm);
       const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
-      addToBin(s, s.scale * (to - from) * expNegative(-s.beam.decay * at) * beamWeightAt(s.beam, at), at, sums,
-               bins[b]);
+      addToBin(s, s.scale * (to - from) * expNegative(-s.beam.decay * at) * beamWeightAt(s.beam, at), at, bins[b]);
       from = float(b + warpLanes) * binMm;
     }
     return;
@@ -79,7 +74,7 @@ __device__ inline void depositByWarp(const StagedSegment s, float binMm, int sum
     const float from = fmaxf(s.low, float(b) * binMm);
     const float to = fminf(s.high, float(b + 1) * binMm);
     const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
-    addToBin(s, meanOver(s.beam, from, to, inverseMu) * (to - from) * perMm, at, sums, bins[b]);
+    addToBin(s, meanOver(s.beam, from, to, inverseMu) * (to - from) * perMm, at, bins[b]);
   }
 }
 

@@ -30,21 +30,6 @@ void forNeighbours(const CoarseGrid& grid, const Vec3i& c, int except, const Vis
   }
 }
 
-template<class Visit>
-void forBlocks(const CoarseGrid& grid, const Visit& visit)
-{
-  for (int k = 0; k < grid.size.z; ++k)
-  {
-    for (int j = 0; j < grid.size.y; ++j)
-    {
-      for (int i = 0; i < grid.size.x; ++i)
-      {
-        visit(Vec3i(i, j, k));
-      }
-    }
-  }
-}
-
 /// Turns what is no main part of the body to outside.
 void dropSmallParts(const CoarseGrid& grid, std::vector<float>& depthMm)
 {

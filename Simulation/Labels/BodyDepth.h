@@ -21,6 +21,22 @@ struct CoarseGrid
   std::size_t count() const { return std::size_t(size.x) * size.y * size.z; }
 };
 
+/// Calls visit(block) for each, i fastest.
+template<class Visit>
+void forBlocks(const CoarseGrid& grid, const Visit& visit)
+{
+  for (int k = 0; k < grid.size.z; ++k)
+  {
+    for (int j = 0; j < grid.size.y; ++j)
+    {
+      for (int i = 0; i < grid.size.x; ++i)
+      {
+        visit(Vec3i(i, j, k));
+      }
+    }
+  }
+}
+
 /// The connected blocks with wanted[i] != 0 around a seed; their marks are taken off. Blocks along `exceptAxis` are not
 /// neighbours; -1: along all axes.
 std::vector<Vec3i> takeComponent(const CoarseGrid& grid, std::vector<char>& wanted, const Vec3i& seed, int exceptAxis);

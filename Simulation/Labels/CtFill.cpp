@@ -98,19 +98,7 @@ std::vector<char> classesOfBlocks(const std::vector<Block>& blocks, const BodyDe
   const double voxelMm3 =
     grid.spacingMm.x * grid.spacingMm.y * grid.spacingMm.z / (double(grid.factor.x) * grid.factor.y * grid.factor.z);
   std::vector<char> classes(blocks.size(), 0);
-  const auto forBlocks = [&](const auto& visit) {
-    for (int k = 0; k < grid.size.z; ++k)
-    {
-      for (int j = 0; j < grid.size.y; ++j)
-      {
-        for (int i = 0; i < grid.size.x; ++i)
-        {
-          visit(Vec3i(i, j, k));
-        }
-      }
-    }
-  };
-  forBlocks([&](const Vec3i& c) {
+  forBlocks(grid, [&](const Vec3i& c) {
     if (!wanted[grid.index(c)])
     {
       return;
@@ -131,7 +119,7 @@ std::vector<char> classesOfBlocks(const std::vector<Block>& blocks, const BodyDe
     }
   });
   const std::vector<char> found = classes;
-  forBlocks([&](const Vec3i& c) {
+  forBlocks(grid, [&](const Vec3i& c) {
     const Vec3i low = glm::max(c - 1, Vec3i(0));
     const Vec3i high = glm::min(c + 1, grid.size - 1);
     for (int k = low.z; k <= high.z && !found[grid.index(c)]; ++k)

@@ -88,6 +88,16 @@ const LabelInfo* LabelVolume::find(int id) const
   return at != labels.end() && at->id == id ? &*at : nullptr;
 }
 
+std::vector<int> LabelVolume::indexOfId() const
+{
+  std::vector<int> index(65536, 0);
+  for (std::size_t l = 0; l < labels.size(); ++l)
+  {
+    index[std::size_t(labels[l].id)] = int(l);
+  }
+  return index;
+}
+
 void LabelVolume::collectLabels()
 {
   constexpr std::size_t together = std::size_t(1) << 22;

@@ -61,6 +61,9 @@ struct LabelVolume
   /// nullptr when no voxel carries the id.
   const LabelInfo* find(int id) const;
 
+  /// Index in `labels` of each id that a voxel can have: 65,536 entries, 0 where no label has it.
+  std::vector<int> indexOfId() const;
+
   /// Rebuilds `labels` from the voxels: keeps names that are there, adds "label_<id>" for the others
   /// ("background" for 0), drops ids without voxels.
   void collectLabels();

@@ -174,11 +174,7 @@ std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedSc
     std::int64_t sum = 0;
     std::int64_t squares = 0;
   };
-  std::vector<int> indexOf(65536, 0);
-  for (std::size_t l = 0; l < labels.labels.size(); ++l)
-  {
-    indexOf[std::size_t(labels.labels[l].id)] = int(l);
-  }
+  const std::vector<int> indexOf = labels.indexOfId();
   std::mutex mutex;
   std::vector<Sums> all(labels.labels.size());
   const Vec3i n = labels.placement.size;
@@ -216,6 +212,21 @@ std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedSc
     result.push_back(label);
   }
   return result;
+}
+
+double meanOfTissue(const LabelVolume& labels, const std::vector<ScanOfLabel>& means, const std::string& tissue)
+{
+  double sum = 0.0;
+  double voxels = 0.0;
+  for (std::size_t l = 0; l < means.size(); ++l)
+  {
+    if (labels.labels[l].tissue == tissue)
+    {
+      sum += means[l].mean * double(means[l].voxels);
+      voxels += double(means[l].voxels);
+    }
+  }
+  return voxels > 0.0 ? sum / voxels : 0.0;
 }
 
 void requireSamePatient(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means)

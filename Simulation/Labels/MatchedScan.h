@@ -37,6 +37,9 @@ struct ScanOfLabel
 std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedScan& scan,
                                       const Progress& progress = {});
 
+/// Of the voxels of a tissue's labels; 0 where the scan reaches none of them.
+double meanOfTissue(const LabelVolume& labels, const std::vector<ScanOfLabel>& means, const std::string& tissue);
+
 /// Throws Error when a CT shows other tissues than the labels are, as that of another patient does: where a quarter of
 /// the voxels whose tissues tell are of labels whose mean lies outside of what theirs have: bone above 80 HU, lung
 /// below -350, air below -250, fat -250 to 40, organs and muscles -40 to 600. The sentence names the label that is

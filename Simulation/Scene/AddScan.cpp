@@ -9,21 +9,6 @@ namespace {
 constexpr const char* outsideTissue = "air";
 constexpr const char* unknownTissue = "soft_tissue";
 
-double bloodHu(const LabelVolume& volume, const std::vector<ScanOfLabel>& means)
-{
-  double sum = 0.0;
-  double voxels = 0.0;
-  for (std::size_t l = 0; l < means.size(); ++l)
-  {
-    if (volume.labels[l].tissue == "blood")
-    {
-      sum += means[l].mean * double(means[l].voxels);
-      voxels += double(means[l].voxels);
-    }
-  }
-  return voxels > 0.0 ? sum / voxels : 0.0;
-}
-
 } // namespace
 
 AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelTissueMap& map, const TissueTable& table,
@@ -40,7 +25,8 @@ AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelT
   added.isCt = matched.isCt;
   if (matched.isCt && settings.fillFromCt)
   {
-    added.names = fillFromCt(named, matched, settings.skinMm, bloodHu(named, means), partOf(progress, 0.25, 0.6));
+    added.names =
+      fillFromCt(named, matched, settings.skinMm, meanOfTissue(named, means, "blood"), partOf(progress, 0.25, 0.6));
     assignTissues(named, map, table, unknownTissue);
     means = scanOfLabels(named, matched, partOf(progress, 0.6, 0.65));
   }

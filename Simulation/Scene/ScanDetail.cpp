@@ -20,27 +20,13 @@ constexpr double perDeviation = 10.0; // HU that count as one of an MR's
 /// Of the levels 10^(L/10), in whole units so that their sum does not depend on its order.
 constexpr double powerUnit = 1048576.0;
 
-bool hasContrastAgent(const LabelVolume& labels, const std::vector<ScanOfLabel>& means)
-{
-  double sum = 0.0;
-  double voxels = 0.0;
-  for (std::size_t l = 0; l < means.size(); ++l)
-  {
-    if (labels.labels[l].tissue == "blood")
-    {
-      sum += means[l].mean * double(means[l].voxels);
-      voxels += double(means[l].voxels);
-    }
-  }
-  return voxels > 0.0 && sum / voxels > contrastHu;
-}
-
 /// dB a unit of the scan, of each label.
 std::vector<float> slopes(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means,
                           const std::string& outsideTissue, const ScanDetailSettings& settings)
 {
-  const bool falls = settings.direction == DetailDirection::Falls ||
-                     (settings.direction == DetailDirection::Automatic && scan.isCt && hasContrastAgent(labels, means));
+  const bool falls =
+    settings.direction == DetailDirection::Falls || (settings.direction == DetailDirection::Automatic && scan.isCt &&
+                                                     meanOfTissue(labels, means, "blood") > contrastHu);
   std::vector<float> result;
   for (std::size_t l = 0; l < means.size(); ++l)
   {
@@ -123,11 +109,7 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
   requireInRange(settings);
   const std::size_t count = labels.labels.size();
   const std::vector<float> slope = slopes(labels, scan, means, outsideTissue, settings);
-  std::vector<int> indexOf(65536, 0);
-  for (std::size_t l = 0; l < count; ++l)
-  {
-    indexOf[std::size_t(labels.labels[l].id)] = int(l);
-  }
+  const std::vector<int> indexOf = labels.indexOfId();
   std::array<std::int64_t, 256> powerOf{};
   for (int code = 0; code < 256; ++code)
   {

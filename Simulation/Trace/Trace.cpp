@@ -25,7 +25,7 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
   for (std::size_t b = 0; b < shared.size(); ++b)
   {
     const auto meanOf = [&](int batch) { return batches[std::size_t(batch)][b]; };
-    const BinArrays bin = finishBin(shared[b], int(batches.size()), meanOf, frequencyMHz);
+    const BinArrays bin = finishBin(shared[b], int(batches.size()), meanOf, binSumsOf(out.model), frequencyMHz);
     const float* value = bin.of;
     const std::size_t at = std::size_t(line) * std::size_t(out.binCount) + b;
     TracedLines::visitBins(out, [&](std::vector<float>& values, const char*) { values[at] = *value++; });

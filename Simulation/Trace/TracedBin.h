@@ -20,7 +20,8 @@ enum BinSum
   binSumCount
 };
 
-/// The first of them that the model's picture needs: Amadou2024's pulse keeps its frequency whatever is absorbed.
+/// How many of them, the first ones, the model's picture needs: Amadou2024's pulse keeps its frequency whatever is
+/// absorbed. The GPU adds up all, since a branch costs it more.
 SONO_HD inline int binSumsOf(InterfaceModel model)
 {
   return model == InterfaceModel::Acoustic ? binSumCount : 1;
@@ -58,11 +59,11 @@ struct BinArrays
   float of[binArrayCount];
 };
 
-/// Of what all paths of a line leave and, for each of the batches, the mean of what its paths leave besides:
-/// `meanOf(batch)`. A path's intensity falls as the amplitude of the round trip does, so what is absorbed is B f. The
-/// standard error comes from the spread of the batches' means.
+/// Of the first `sums` sums (binSumsOf): of what all paths of a line leave and, for each of the batches, the mean of
+/// what its paths leave besides: `meanOf(batch)`. A path's intensity falls as the amplitude of the round trip does, so
+/// what is absorbed is B f. The standard error comes from the spread of the batches' means.
 template<class MeanOf>
-SONO_HD inline BinArrays finishBin(const BinSums<double>& shared, int batches, const MeanOf& meanOf,
+SONO_HD inline BinArrays finishBin(const BinSums<double>& shared, int batches, const MeanOf& meanOf, int sums,
                                    double frequencyMHz)
 {
   float means[batchCount];
@@ -89,7 +90,7 @@ SONO_HD inline BinArrays finishBin(const BinSums<double>& shared, int batches, c
   arrays.of[intensityArray] = intensity;
   arrays.of[standardErrorArray] = batches > 1 ? float(sqrt(spread / (double(batches) * (batches - 1)))) : 0.0f;
   arrays.of[attenuationArray] =
-    intensity > 0.0f ? float(all.of[absorbedSum] / (double(intensity) * frequencyMHz)) : 0.0f;
+    sums > absorbedSum && intensity > 0.0f ? float(all.of[absorbedSum] / (double(intensity) * frequencyMHz)) : 0.0f;
   return arrays;
 }
 

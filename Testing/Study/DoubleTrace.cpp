@@ -77,7 +77,8 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
       const std::size_t at = std::size_t(index) * shared.size() + b;
       const auto meanOf = [&](int batch) { return means[std::size_t(batch)][b]; };
       out.intensity[at] =
-        kernel::finishBin(shared[b], int(means.size()), meanOf, input.frequencyMHz).of[kernel::intensityArray];
+        kernel::finishBin(shared[b], int(means.size()), meanOf, kernel::binSumsOf(view.model), input.frequencyMHz)
+          .of[kernel::intensityArray];
       absorbed[at] = shared[b].of[kernel::absorbedSum];
       for (const auto& ofBatch : means)
       {
