@@ -101,6 +101,7 @@ void readLabelTable(vtkFieldData* field, LabelVolume& volume)
 
 GridPlacement placementOfImage(vtkImageData* image)
 {
+  auto* frame = vtkStringArray::SafeDownCast(image->GetFieldData()->GetAbstractArray(frameOfReferenceArray));
   int extent[6];
   image->GetExtent(extent);
   GridPlacement placement;
@@ -114,6 +115,7 @@ GridPlacement placementOfImage(vtkImageData* image)
       placement.direction[c][r] = image->GetDirectionMatrix()->GetElement(r, c);
     }
   }
+  placement.frameOfReference = frame && frame->GetNumberOfValues() == 1 ? frame->GetValue(0) : std::string();
   return placement;
 }
 
@@ -123,6 +125,13 @@ void placeImage(const GridPlacement& placement, vtkImageData* image)
   image->SetOrigin(&placement.originMm.x);
   image->SetSpacing(&placement.spacingMm.x);
   image->SetDirectionMatrix(rowMajor(placement.direction).data());
+  if (!placement.frameOfReference.empty())
+  {
+    vtkNew<vtkStringArray> frame;
+    frame->SetName(frameOfReferenceArray);
+    frame->InsertNextValue(placement.frameOfReference);
+    image->GetFieldData()->AddArray(frame);
+  }
 }
 
 std::vector<std::uint8_t> scanDetailOf(vtkImageData* image)

@@ -20,6 +20,9 @@ void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
 /// Point array of a label image with the codes of scanDetail, one a voxel.
 constexpr const char* scanDetailArray = "ScanDetail";
 
+/// Field array of an image with its GridPlacement::frameOfReference, where it has one.
+constexpr const char* frameOfReferenceArray = "FrameOfReference";
+
 /// The placement of an image.
 GridPlacement placementOfImage(vtkImageData* image);
 

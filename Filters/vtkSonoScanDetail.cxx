@@ -108,6 +108,10 @@ int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input
     const sono::AddedScan added =
       sono::addScan(volume, scanFromImage(vtkImageData::GetData(input[1])), map, table,
                     sono::settingsIn<sono::ScanDetailSettings>(*this->Parameters), sono::partOf(progress, 0.1, 0.95));
+    if (!added.notice.empty())
+    {
+      sono::warn(this, added.notice);
+    }
     vtkImageData* image = vtkImageData::GetData(output);
     sono::imageFromLabelVolume(volume, image);
     vtkNew<vtkUnsignedCharArray> detail;

@@ -19,6 +19,9 @@ struct GridPlacement
   Vec3d originMm{ 0.0, 0.0, 0.0 }; ///< centre of voxel (0,0,0)
   Vec3d spacingMm{ 1.0, 1.0, 1.0 };
   Mat3d direction{ 1.0 }; ///< columns are the unit world directions of i, j, k; may be left-handed
+  /// Which world: DICOM's Frame of Reference UID. Empty where the file names none. Places in two different ones cannot
+  /// be compared.
+  std::string frameOfReference;
 
   Vec3d worldFromIndex(const Vec3d& ijk) const { return originMm + direction * (spacingMm * ijk); }
   Vec3d indexFromWorld(const Vec3d& world) const

@@ -14,7 +14,10 @@ namespace sono {
 namespace {
 
 constexpr float largestValue = 32767.0f;
-constexpr double leastShare = 0.5; // of the labelled voxels that must lie within the scan
+constexpr float airAtMost = -200.0f; // HU: a scan that has less shows air as a CT does
+constexpr float leastOfAir = 0.02f;  // what air is below 0 in a CT, of its largest value: metal has up to 32767 HU
+constexpr float beyondHu = 1e5f;     // padding may have -32768, less 1024
+constexpr double leastShare = 0.5;   // of the labelled voxels that must lie within the scan
 
 bool sameGrid(const GridPlacement& a, const GridPlacement& b)
 {
@@ -34,8 +37,17 @@ struct ValueScale
   explicit ValueScale(const IntensityVolume& scan)
   {
     const auto [low, high] = std::minmax_element(scan.values.begin(), scan.values.end());
-    isCt = scan.modality.empty() ? *low < -200.0f && *high <= largestValue : scan.modality == "CT";
+    isCt = scan.modality.empty() ? *low < airAtMost && *high <= largestValue : scan.modality == "CT";
     const float most = std::max(std::fabs(*low), std::fabs(*high));
+    const bool hasAir = scan.modality.empty() && *low < airAtMost && *low < -leastOfAir * *high;
+    if ((isCt || hasAir) && most > beyondHu)
+    {
+      std::ostringstream text;
+      text << "The scan's values go from " << *low << " to " << *high
+           << ", where a CT has Hounsfield units (air -1000, water 0, bone 1000) and an MR hardly anything below 0; "
+              "divide them by what they were multiplied with, or choose the scan as the scanner has it.";
+      throw Error(text.str());
+    }
     factor = isCt || !(most > 0.0f) ? 1.0f : largestValue / most;
   }
   std::int16_t operator()(float value) const
@@ -60,6 +72,19 @@ float valueAt(const IntensityVolume& scan, const Vec3d& index)
   const float below = row(low.y, low.z) + share.y * (row(high.y, low.z) - row(low.y, low.z));
   const float above = row(low.y, high.z) + share.y * (row(high.y, high.z) - row(low.y, high.z));
   return below + share.z * (above - below);
+}
+
+/// Places of two frames of reference have nothing to do with each other, however close they are.
+void requireSameWorld(const GridPlacement& labels, const GridPlacement& scan)
+{
+  const std::string& own = labels.frameOfReference;
+  const std::string& other = scan.frameOfReference;
+  if (!own.empty() && !other.empty() && own != other)
+  {
+    throw Error("The scan has another DICOM frame of reference (" + other + ") than the label map (" + own +
+                "): places in one are not those in the other; connect the scan that was segmented, or register this "
+                "one to it and save it as NIfTI or NRRD, which name no frame.");
+  }
 }
 
 std::string placeOf(const GridPlacement& placement)
@@ -110,6 +135,7 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, co
     throw Error("the scan has " + std::to_string(scan.values.size()) + " values where its size says " +
                 std::to_string(scan.placement.voxelCount()) + ": load it again.");
   }
+  requireSameWorld(labels.placement, scan.placement);
   const ValueScale scale(scan);
   const GridPlacement& grid = labels.placement;
   const Vec3i n = grid.size;
@@ -156,12 +182,12 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, co
     labelled += labelledHere;
     reached += reachedHere;
   });
-  if (double(reached) < leastShare * double(labelled))
+  matched.reachedShare = labelled > 0 ? double(reached) / double(labelled) : 1.0;
+  if (matched.reachedShare < leastShare)
   {
-    throw Error(
-      "The scan is not of this label map: " + std::to_string(std::lround(100.0 * double(reached) / double(labelled))) +
-      " % of the labelled voxels lie in it (the scan lies at " + placeOf(scan.placement) + " mm, the label map at " +
-      placeOf(grid) + " mm); connect the scan that was segmented.");
+    throw Error("The scan is not of this label map: " + std::to_string(std::lround(100.0 * matched.reachedShare)) +
+                " % of the labelled voxels lie in it (the scan lies at " + placeOf(scan.placement) +
+                " mm, the label map at " + placeOf(grid) + " mm); connect the scan that was segmented.");
   }
   return matched;
 }

@@ -16,13 +16,15 @@ struct MatchedScan
 
   std::vector<std::int16_t> values; ///< one a voxel of the label map, i fastest: of a CT, Hounsfield units
   bool isCt = false;
+  double reachedShare = 1.0; ///< of the labelled voxels (those but 0), how many lie within the scan
 };
 
 /// Interpolates a scan, linearly between the centres of its voxels, where a label map has its own. It is a CT where its
 /// modality says so or, where that is not known, where its values are those of one: some below -200, none above 32767.
 /// An MR is scaled so that its largest value becomes 32767.
-/// Throws Error where less than half of the labelled voxels (those but 0) lie within the scan, with how much does and
-/// where the two lie, and Aborted.
+/// Throws Error where both name a frame of reference and not the same one; for values that are neither Hounsfield units
+/// nor an MR's; where less than half of the labelled voxels lie within the scan, with how much does and where the two
+/// lie; and Aborted.
 MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, const Progress& progress = {});
 
 /// What a scan has in the voxels of a label.

@@ -268,6 +268,7 @@ LabelVolume readDicomSeg(const std::string& path, const Progress& progress)
 
   const DicomStack stack = stackPlanes(frames.planes, true);
   volume.placement = stack.placement;
+  volume.placement.frameOfReference = dicomText(data, DCM_FrameOfReferenceUID);
   const std::uint64_t planePixels = std::uint64_t(frames.planes.columns) * std::uint64_t(frames.planes.rows);
   const std::size_t frameCount = stack.slices.size();
   Pixels pixels(data, (frameCount * planePixels * frames.bits + 7) / 8, path);

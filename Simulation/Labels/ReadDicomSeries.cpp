@@ -26,6 +26,7 @@ struct Slice
   std::string path;
   std::string series; // its UID; empty: no image
   std::string modality;
+  std::string frameOfReference;
   std::string description;
   int columns = 0;
   int rows = 0;
@@ -65,6 +66,7 @@ Slice readSlice(const std::string& path)
   }
   refuseEmptyPromise(data, slice);
   slice.series = dicomText(data, DCM_SeriesInstanceUID);
+  slice.frameOfReference = dicomText(data, DCM_FrameOfReferenceUID);
   slice.description = dicomText(data, DCM_SeriesDescription);
   slice.samples = dicomNumber(data, DCM_SamplesPerPixel).value_or(1.0);
   slice.frames = dicomNumber(data, DCM_NumberOfFrames).value_or(1.0);
@@ -225,6 +227,7 @@ IntensityVolume readDicomSeries(const std::string& path, const Progress& progres
   }
   IntensityVolume volume;
   volume.placement = stack.placement;
+  volume.placement.frameOfReference = slices.front().frameOfReference;
   volume.modality = slices.front().modality;
   volume.values.resize(volume.placement.voxelCount());
   const std::size_t planeVoxels = std::size_t(volume.placement.size.x) * std::size_t(volume.placement.size.y);

@@ -2,12 +2,15 @@
 
 #include "Labels/CtFill.h"
 
+#include <cmath>
+
 namespace sono {
 
 namespace {
 
 constexpr const char* outsideTissue = "air";
 constexpr const char* unknownTissue = "soft_tissue";
+constexpr double reachesAll = 0.98; // of the labelled voxels: masks may stand over the border by a voxel
 
 } // namespace
 
@@ -23,6 +26,12 @@ AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelT
   requireSamePatient(named, matched, means);
   AddedScan added;
   added.isCt = matched.isCt;
+  if (matched.reachedShare < reachesAll)
+  {
+    added.notice = "The scan ends before the labels: " + std::to_string(std::lround(100.0 * matched.reachedShare)) +
+                   " % of the labelled voxels lie in it, the others stay as the labels alone have them; if files of a "
+                   "DICOM series are missing, copy the whole series.";
+  }
   if (matched.isCt && settings.fillFromCt)
   {
     added.names =

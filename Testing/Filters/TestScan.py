@@ -7,7 +7,9 @@ import numpy as np
 from chain import Chain, label_image, listen, make
 from sonovdb.vtkSonoFilters import vtkSonoScanDetail, vtkSonoScanReader, vtkSonoUltrasound
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 HU = {"air": -1000, "lung": -850, "bone": 400, "fat": -100, "soft": 50}
 
@@ -118,6 +120,42 @@ class Scan(unittest.TestCase):
         errors = listen(stage)
         stage.Update()
         self.assertIn("colour image", " ".join(errors))
+
+    def test_another_frame_of_reference_is_refused(self):
+        def framed(image, uid):
+            frame = vtkStringArray()
+            frame.SetName("FrameOfReference")
+            frame.InsertNextValue(uid)
+            image.GetFieldData().AddArray(frame)
+
+        scan = scan_image(self.image, self.ct)
+        stage = make(vtkSonoScanDetail)
+        stage.SetInputDataObject(0, self.image)
+        stage.SetInputDataObject(1, scan)
+        errors = listen(stage)
+        framed(scan, "1.2.3")
+        stage.Update()
+        self.assertEqual(errors, [])  # the label map names none
+        framed(self.image, "1.2.4")
+        stage.Modified()
+        stage.Update()
+        self.assertEqual(len(errors), 1, errors)
+        for words in ("(1.2.3)", "(1.2.4)", "frame of reference", "register"):
+            self.assertIn(words, errors[0])
+
+    def test_a_scan_that_ends_before_the_labels_is_said_so(self):
+        stage = make(vtkSonoScanDetail)
+        stage.SetInputDataObject(0, self.image)
+        part = vtkExtractVOI()
+        part.SetInputData(scan_image(self.image, self.ct))
+        columns, rows, slices = self.image.GetDimensions()
+        part.SetVOI(0, columns - 1, 0, rows - 1, slices // 4, slices - 1)
+        stage.SetInputConnection(1, part.GetOutputPort())
+        errors, warned = listen(stage), listen(stage, "WarningEvent")
+        stage.Update()
+        self.assertEqual(errors, [])
+        self.assertEqual(len(warned), 1, warned)
+        self.assertIn("ends before the labels", warned[0])
 
     def test_reader(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,6 +1,7 @@
 #include "DicomBytes.h"
 #include "ErrorText.h"
 #include "LabelFolder.h"
+#include "Labels/MatchedScan.h"
 #include "Labels/ReadIntensities.h"
 
 #include <gtest/gtest.h>
@@ -179,6 +180,50 @@ TEST_F(DicomFiles, AnIncompleteSeriesIsRefused)
   expectContains(refusedScan("s0"), "colour image");
   DicomBytes("CT", 2, 1).bits(16, 16, true).slice("0\\0\\12", { 1 }).write(file("s3"));
   expectContains(refusedScan("s0"), "end too early");
+}
+
+TEST_F(DicomFiles, AnotherFrameOfReferenceIsRefused)
+{
+  const auto write = [&](const std::string& ofLabels, const std::string& ofScan) {
+    DicomBytes("SEG", 5, 3)
+      .segment(1, "liver", "10200004")
+      .segment(2, "vein", "32764006")
+      .put(DCM_FrameOfReferenceUID, ofLabels)
+      .frames("BINARY", twoSegments(1))
+      .write(file("seg.dcm"));
+    for (int n = 0; n < 4; ++n) // around the segments, which i and j of another grid have along y and -x
+    {
+      DicomBytes("CT", 10, 10)
+        .bits(16, 16, true)
+        .put(DCM_FrameOfReferenceUID, ofScan)
+        .slice("0\\10\\" + std::to_string(28 + 4 * n), std::vector<std::uint16_t>(100, 60))
+        .write(file("ct" + std::to_string(n)));
+    }
+  };
+  const auto match = [&] { matchScan(readLabelMap(file("seg.dcm")), readIntensities(file("ct0"))); };
+  write("1.2.9.1", "1.2.9.1");
+  EXPECT_EQ(readLabelMap(file("seg.dcm")).placement.frameOfReference, "1.2.9.1");
+  EXPECT_EQ(readIntensities(file("ct0")).placement.frameOfReference, "1.2.9.1");
+  EXPECT_EQ(errorOf(match), "no error");
+  write("1.2.9.1", "1.2.9.2");
+  const std::string sentence = errorOf(match);
+  expectContains(sentence, "another DICOM frame of reference (1.2.9.2) than the label map (1.2.9.1)");
+  expectContains(sentence, "connect the scan that was segmented");
+  write("1.2.9.1", ""); // an anonymised scan may have lost it
+  EXPECT_EQ(errorOf(match), "no error");
+}
+
+TEST_F(DicomFiles, AnOrientationThatIsNotAtRightAnglesIsRefused)
+{
+  for (int n = 0; n < 2; ++n)
+  {
+    DicomBytes("CT", 2, 1)
+      .bits(16, 16, true)
+      .slice("0\\0\\" + std::to_string(n), { 1, 2 })
+      .put(DCM_ImageOrientationPatient, "1\\0\\0\\0.3\\0.95\\0")
+      .write(file("s" + std::to_string(n)));
+  }
+  expectContains(refusedScan("s0"), "right angles");
 }
 
 TEST(DicomData, LiverIsWhatItsNrrdSays)

@@ -146,6 +146,25 @@ TEST(MatchedScan, OfAnotherPlaceOrPatientIsRefused)
   requireSamePatient(labels, right, scanOfLabels(labels, right));
 }
 
+TEST(MatchedScan, ValuesThatAreNoHounsfieldUnitsAreRefused)
+{
+  const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
+  const LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "liver" } }, isLiver);
+  for (const char* modality : { "", "CT" })
+  {
+    IntensityVolume scan = scanned(grid, [](const Vec3d& p) { return 1e5 * torsoHu(p); });
+    scan.modality = modality;
+    const std::string sentence = errorOf([&] { matchScan(labels, scan); });
+    expectContains(sentence, "from -1e+08 to 7e+07");
+    expectContains(sentence, "divide them");
+  }
+  const auto mr = [](const Vec3d& p) { return 1e5 * (500.0 + 3.0 * p.x); };
+  EXPECT_FALSE(matchScan(labels, scanned(grid, mr)).isCt); // an MR has any scale
+  IntensityVolume padded = scanned(grid, [](const Vec3d& p) { return p.x < -50.0 ? -32768.0 : torsoHu(p); });
+  padded.modality = "CT";
+  EXPECT_TRUE(matchScan(labels, padded).isCt);
+}
+
 TEST(CtFill, NamesWhatACtShowsOutsideOfTheLabels)
 {
   for (const Vec3d spacing : { Vec3d(1.5), Vec3d(1.0, 1.0, 4.0) })
@@ -305,6 +324,26 @@ TEST(ScanDetail, StaysWhereItIsOnALargerGrid)
       glm::all(glm::greaterThan(index, Vec3d(-0.5))) && glm::all(glm::lessThan(index, Vec3d(own.size) - 0.5));
     ASSERT_EQ(wide[at], isOwn ? std::uint8_t(7.0 * p.x + p.y + p.z) : detailNone);
   });
+}
+
+TEST(AddScan, SaysWhatTheScanDoesNotReach)
+{
+  const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
+  const LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "" } }, isLiver);
+  const auto map = LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv");
+  const auto table = TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  LabelVolume whole = labels;
+  EXPECT_EQ(addScan(whole, scanned(grid, torsoHu), map, table, {}).notice, "");
+  GridPlacement half = grid; // its upper eleven slices, as a series that was copied in part
+  half.size.z = 11;
+  half.originMm.z += 18.0;
+  LabelVolume cut = labels;
+  const AddedScan added = addScan(cut, scanned(half, torsoHu), map, table, {});
+  expectContains(added.notice, " % of the labelled voxels lie in it");
+  expectContains(added.notice, "DICOM series");
+  const auto last = std::size_t(grid.size.x) * grid.size.y * 9; // below that slice
+  EXPECT_TRUE(std::all_of(added.detail.begin(), added.detail.begin() + std::ptrdiff_t(last),
+                          [](std::uint8_t code) { return code == detailNone; }));
 }
 
 TEST(AddScan, LeavesTheGuessToAnMr)
