@@ -25,13 +25,13 @@ def read_screen(xwd):
     return width, height, pixels
 
 
-def save_screen(path, xwd):
-    """The 3-D view at half the size."""
+def save_screen(path, xwd, cut=VIEW, size="50%"):
+    """The 3-D view at half the size, or what else is asked for."""
     width, height, pixels = read_screen(xwd)
     with tempfile.NamedTemporaryFile(suffix=".ppm") as whole:
         whole.write(b"P6 %d %d 255\n" % (width, height) + pixels)
         whole.flush()
-        subprocess.run(["oiiotool", "--nosoftwareattrib", whole.name, "--cut", VIEW, "--resize", "50%", "-o", path],
+        subprocess.run(["oiiotool", "--nosoftwareattrib", whole.name, "--cut", cut, "--resize", size, "-o", path],
                        check=True)
 
 
@@ -80,9 +80,9 @@ class GuiCase(unittest.TestCase):
         return [line for line in done.stdout.splitlines() if "ERR|" in line]
 
     def paraview(self, folder, *arguments):
-        """Runs ParaView with the plugin until it ends by itself."""
+        """Runs ParaView with the plugin in a folder, which its dialogs begin with, until it ends by itself."""
         environment = dict(os.environ, DISPLAY=self.display, HOME=folder, XDG_RUNTIME_DIR=folder)
         return subprocess.run(
             ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
              f"--test-directory={folder}", *arguments],
-            env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=400)
+            env=environment, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=400)

@@ -1,0 +1,95 @@
+"""From a folder of masks to the picture with the events of a real mouse, each click counted. Needs Xvfb and
+python3-xlib; run by ctest -L gui."""
+import pathlib
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+from guicase import GuiCase, read_screen, save_screen
+from person import Person
+
+# The thorax as a segmentation tool leaves it: a mask a structure, neither skin nor what lies between the organs.
+MASKS = """
+import gzip
+import numpy
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+image = servermanager.Fetch(ThoraxPhantom(Spacingmm=4))
+labels = vtk_to_numpy(image.GetPointData().GetArray("Labels"))
+ids, names = (image.GetFieldData().GetAbstractArray(name) for name in ("LabelIds", "LabelNames"))
+header = ("NRRD0004\\ntype: uint8\\ndimension: 3\\nsizes: %d %d %d\\nencoding: gzip\\nspace: left-posterior-superior\\n"
+          "space directions: (%g,0,0) (0,%g,0) (0,0,%g)\\nspace origin: (%g,%g,%g)\\n\\n"
+          % (*image.GetDimensions(), *image.GetSpacing(), *image.GetOrigin())).encode()
+os.makedirs(sys.argv[1])
+for row in range(names.GetNumberOfValues()):
+    name = names.GetValue(row)
+    if name not in ("background", "skin", "muscle") and "fat" not in name:
+        mask = (labels == ids.GetValue(row)).astype(numpy.uint8)
+        with open(os.path.join(sys.argv[1], name + ".nrrd"), "wb") as file:
+            file.write(header + gzip.compress(mask.tobytes()))
+"""
+# Where things are on the screen, and what of them has a colour once they can be clicked.
+OPEN = (29, 42)  # the toolbar's button
+FOLDER, FOLDER_ICON = (437, 213), (403, 213)  # the first row of the dialog
+OK = (856, 487)
+APPLY, APPLY_EDGE = (60, 424), (15, 424)
+FAN = (757, 122)
+FLAT_VIEW = (735, 210, 400, 280)  # left, top, width, height; messages may lie below
+AWAY = (1390, 890)
+WINDOW = "1152x762+0+0"
+
+
+class TestGuiWalk(GuiCase):
+    def test_from_a_folder_of_masks_to_the_picture(self):
+        """Open, the folder, OK, Apply, the fan: five clicks."""
+        failures, greys = [], []
+        with tempfile.TemporaryDirectory() as folder:
+            self.run_script(MASKS, folder, pathlib.Path(folder, "segmentations"))
+            person = Person(self, folder)
+
+            def walk():
+                try:
+                    for place, coloured in ((OPEN, OPEN), (FOLDER, FOLDER_ICON), (OK, FOLDER_ICON), (APPLY, APPLY_EDGE),
+                                            (FAN, FAN)):
+                        person.await_colour(*coloured)
+                        time.sleep(2)  # it moves no more, and a hand takes as long
+                        person.click(*place)
+                        person.move(*AWAY)
+                    greys.append(self.await_picture(person))
+                    time.sleep(2)
+                    save_screen(pathlib.Path.cwd() / "walk.png", self.frame_buffer, WINDOW, "100%")
+                except Exception as failure:  # to be told by the test, not by the thread
+                    failures.append(failure)
+                person.move(600, 400)  # where the keys go
+                person.press_quit()
+
+            walking = threading.Thread(target=walk)
+            walking.start()
+            done = self.paraview(folder)
+            person.ended.set()
+            walking.join()
+        self.assertEqual(failures, [], done.stdout)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("ERR|", done.stdout)
+        self.assertIn("its body was filled", done.stdout)  # it is said that the skin is an estimate
+        self.assertGreater(greys[0], 40)
+        self.assertEqual(person.clicks, 5)
+
+    @staticmethod
+    def await_picture(person):
+        """How many different greys the flat view has, once there are many: speckle."""
+        left, top, columns, rows = FLAT_VIEW
+        greys = set()
+        for _ in range(600):
+            width, _, pixels = read_screen(person.frame_buffer)
+            for y in range(top, top + rows, 2):
+                line = pixels[3 * (width * y + left):3 * (width * y + left + columns)]
+                greys |= {line[i] for i in range(0, len(line), 3) if line[i] == line[i + 1] == line[i + 2]}
+            if len(greys) > 40 or person.ended.wait(0.2):
+                break
+        return len(greys)
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
