@@ -183,6 +183,13 @@ private:
     const Vec3d helper = std::abs(axis.x) < 0.9 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
     const Vec3d across = handleRadiusMm * glm::normalize(glm::cross(axis, helper));
     const Vec3d over = glm::cross(axis, across);
+    for (const Vec3d& offset : { Vec3d(0.0), across, -across, over, -over })
+    {
+      if (!grid_.isOpen(place + offset, -axis))
+      {
+        return false;
+      }
+    }
     for (double behindMm = 20.0; behindMm <= handleMm; behindMm += 10.0)
     {
       for (const Vec3d& offset : { across, -across, over, -over })

@@ -23,9 +23,10 @@ struct AcousticWindow
 /// The places from which a target can be seen best, best first; at most `count`, and no two that are neighbours.
 ///
 /// A probe can stand where the body's outer surface is skin: next to the air around it, not within 6 mm of the box's
-/// border (of a body that was filled 15 mm), since a cut ends there, and, in a map that has the tissue skin, where skin
-/// is. Its face (aperture, or the outermost lines) lies on the skin within 6 mm, its handle of 70 mm meets no body, and
-/// it looks at the target at no more than 45 degrees to the skin's normal (linear: 20), not from behind (more than 30
+/// border, since a cut ends there, and, in a map that has the tissue skin, where skin is. Of a body that was filled and
+/// goes on beyond the box, skin is an estimate: not within 15 mm of the border, and with 40 mm of the box in front. Its
+/// face (aperture, or the outermost lines) lies on the skin within 6 mm, its handle of 70 mm meets no body, and it
+/// looks at the target at no more than 45 degrees to the skin's normal (linear: 20), not from behind (more than 30
 /// degrees posterior of the frontal plane), nor steeply from the head or the feet (more than 50 degrees).
 ///
 /// There, the image's own lines run straight through a grid of about 2.5 mm. What is left of the amplitude of 1 beyond

@@ -15,6 +15,7 @@ constexpr double wantedCellMm = 2.5;
 constexpr double borderMm = 6.0;          // a surface so close to the border may be that of a cut
 constexpr double estimateBorderMm = 15.0; // beside a cut a body fill guesses
 constexpr double mostOfBox = 0.2;
+constexpr double wayOutMm = 40.0; // as much too deep may a part of a body have its skin
 constexpr double placesMm = 8.0;
 constexpr double skinDepthMm = 5.0;
 constexpr double normalRadiiMm[] = { 6.0, 12.0 };
@@ -52,6 +53,7 @@ WindowGrid::WindowGrid(const Scene& scene, const WindowTarget& target)
     markTargetPoint(*target.pointMm);
   }
   findOuter();
+  isCutEstimate_ = isEstimate && meetsBorder();
   measureTarget();
   if (target.pointMm)
   {
@@ -146,6 +148,22 @@ void WindowGrid::findOuter()
       }
     }
   }
+}
+
+/// Whether the body does: it was cut there.
+bool WindowGrid::meetsBorder() const
+{
+  const Vec3i last = size_ - 1;
+  for (std::size_t cell = 0; cell < outer_.size(); ++cell)
+  {
+    const Vec3i c(int(cell % std::size_t(size_.x)), int(cell / std::size_t(size_.x) % std::size_t(size_.y)),
+                  int(cell / (std::size_t(size_.x) * size_.y)));
+    if (!outer_[cell] && (glm::any(glm::equal(c, Vec3i(0))) || glm::any(glm::equal(c, last))))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 void WindowGrid::measureTarget()
@@ -271,6 +289,20 @@ Vec3d WindowGrid::entry(const Vec3d& local, const Vec3d& axis) const
     }
   }
   return local;
+}
+
+bool WindowGrid::isOpen(const Vec3d& local, const Vec3d& outward) const
+{
+  if (!isCutEstimate_)
+  {
+    return true;
+  }
+  double r = 0.0;
+  while (r < wayOutMm && isInside(local + r * outward))
+  {
+    r += stepMm_;
+  }
+  return r >= wayOutMm;
 }
 
 std::vector<WindowGrid::SkinPlace> WindowGrid::skinPlaces() const

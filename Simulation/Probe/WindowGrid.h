@@ -47,6 +47,9 @@ public:
   bool isCovered(const Vec3d& local, const Vec3d& outward) const;
   /// Where a way along `axis` (unit) through a place on the surface enters the body, by the voxels themselves.
   Vec3d entry(const Vec3d& local, const Vec3d& axis) const;
+  /// Whether the air before a place on the surface is known: of a cut body whose skin is an estimate, the way out
+  /// (along `outward`) must stay in the box for 40 mm. What was cut away may have been there.
+  bool isOpen(const Vec3d& local, const Vec3d& outward) const;
 
 private:
   std::size_t index(const Vec3i& c) const
@@ -58,6 +61,7 @@ private:
   void findOuter();
   void measureTarget();
   bool isSurface(const Vec3i& cell) const;
+  bool meetsBorder() const;
   int voxelTissue(const Vec3d& local) const; ///< -1 beyond the box
   double voxelStepMm() const;
   Vec3d outwardNormal(const Vec3d& local) const;
@@ -69,7 +73,8 @@ private:
   Vec3d boxMm_;
   Vec3d borderMm_{ 0.0 }; ///< where along each axis no surface counts
   double stepMm_;
-  int skinTissue_ = -1; ///< none in this map
+  int skinTissue_ = -1;        ///< none in this map
+  bool isCutEstimate_ = false; ///< whether skin is a body fill's, of a body that goes on beyond the box
   std::vector<std::uint8_t> tissue_;
   std::vector<char> target_;
   std::vector<char> outer_;

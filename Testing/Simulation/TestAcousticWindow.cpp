@@ -2,6 +2,7 @@
 
 #include "ErrorText.h"
 #include "Labels/AssignTissues.h"
+#include "Labels/BodyFill.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "TestScenes.h"
 #include "WindowCuts.h"
@@ -270,6 +271,51 @@ TEST(AcousticWindow, NeverOnACutFace)
   WindowCuts(makeThoraxPhantom(3.0), false, SONOVDB_DATA_DIR, 7).run(60, { "heart", "liver", "" }, figures);
   EXPECT_EQ(figures.onCutFaces, 0);
   EXPECT_GT(figures.windows, 100);
+}
+
+/// A ball without skin, filled. What the measure says of cut faces must itself be right.
+TEST(AcousticWindow, CutFacesOfAFilledBodyAreSeenAsSuch)
+{
+  LabelVolume ball;
+  ball.placement.size = { 60, 60, 60 };
+  ball.placement.spacingMm = Vec3d(3.0);
+  LabelInfo liver;
+  liver.id = 1;
+  liver.name = "liver";
+  ball.labels = { liver };
+  const Vec3d middle(88.5, 88.5, 86.0); // in the half's last slice
+  for (int n = 0; n < 60 * 60 * 60; ++n)
+  {
+    const Vec3d at = 3.0 * Vec3d(n % 60, n / 60 % 60, n / 3600);
+    ball.voxels.push_back(glm::distance(at, middle) < 50.0 ? 1 : 0);
+  }
+  LabelVolume half = ball;
+  half.placement.size.z = 30;
+  half.voxels.resize(half.placement.voxelCount());
+  const WindowCuts cuts(ball, true, SONOVDB_DATA_DIR, 1);
+  fillBody(half);
+  const auto radiusMm = [&](const Vec3d& outward) { // of the half's own skin
+    double r = 0.0;
+    const auto idAt = [&](const Vec3d& at) {
+      const Vec3i v(glm::round(at / 3.0));
+      return half.voxels[(std::size_t(v.z) * 60 + v.y) * 60 + v.x];
+    };
+    for (; idAt(middle + r * outward) != 0; r += 0.5)
+    {
+    }
+    return r;
+  };
+  const Vec3d front(0.0, -1.0, 0.0);
+  const Vec3d low = glm::normalize(Vec3d(0.0, -1.0, -1.0));
+  for (const Vec3d& outward : { front - Vec3d(0, 0, 0.4), low, Vec3d(-0.8, 0.0, -0.6) })
+  {
+    const Vec3d n = glm::normalize(outward);
+    EXPECT_TRUE(cuts.isOnSkin(half, middle + radiusMm(n) * n, n));
+  }
+  const Vec3d up(0.0, 0.0, 1.0);
+  EXPECT_FALSE(cuts.isOnSkin(half, middle, up));                                 // in the middle of the cut
+  EXPECT_FALSE(cuts.isOnSkin(half, middle + radiusMm(front) * front, up));       // at its edge, looking down
+  EXPECT_FALSE(cuts.isOnSkin(half, middle + (radiusMm(low) - 15.0) * low, low)); // inside
 }
 
 } // namespace

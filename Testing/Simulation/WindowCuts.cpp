@@ -14,8 +14,47 @@ namespace sono {
 namespace {
 
 constexpr double nearSkinMm = 5.0;
-constexpr double nearEstimatedSkinMm = 15.0; // a fill of a part guesses otherwise than one of the whole
+constexpr double halfWidthMm = 10.0;
+constexpr double longestWayMm = 60.0;
 constexpr double stepMm = 1.0;
+
+/// nullptr beyond the volume.
+const std::uint16_t* voxelAt(const LabelVolume& volume, const Vec3d& world)
+{
+  const Vec3i size = volume.placement.size;
+  const Vec3i v(glm::floor(volume.placement.indexFromWorld(world) + 0.5));
+  const bool isThere = glm::all(glm::greaterThanEqual(v, Vec3i(0))) && glm::all(glm::lessThan(v, size));
+  return isThere ? &volume.voxels[(std::size_t(v.z) * size.y + v.y) * size.x + v.x] : nullptr;
+}
+
+/// Beyond the volume, or in the air around the body.
+bool isOutside(const LabelVolume& volume, const Vec3d& world)
+{
+  const std::uint16_t* voxel = voxelAt(volume, world);
+  return !voxel || *voxel == 0;
+}
+
+bool hasSkinNear(const LabelVolume& volume, const Vec3d& world)
+{
+  const auto isSkin = [](const LabelInfo& label) { return label.name == "skin"; };
+  const auto skin = std::find_if(volume.labels.begin(), volume.labels.end(), isSkin);
+  for (double x = -nearSkinMm; x <= nearSkinMm && skin != volume.labels.end(); x += stepMm)
+  {
+    for (double y = -nearSkinMm; y <= nearSkinMm; y += stepMm)
+    {
+      for (double z = -nearSkinMm; z <= nearSkinMm; z += stepMm)
+      {
+        const Vec3d offset(x, y, z);
+        const std::uint16_t* voxel = voxelAt(volume, world + offset);
+        if (glm::length(offset) <= nearSkinMm && voxel && *voxel == skin->id)
+        {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
 
 } // namespace
 
@@ -92,35 +131,40 @@ LabelVolume WindowCuts::cutAskew()
   return part;
 }
 
-const std::string& WindowCuts::nameAt(const Vec3d& world) const
+bool WindowCuts::isOnSkin(const LabelVolume& part, const Vec3d& world, const Vec3d& outward) const
 {
-  static const std::string nothing = "beyond";
-  const Vec3i size = truth_.placement.size;
-  const Vec3i v(glm::floor(truth_.placement.indexFromWorld(world) + 0.5));
-  if (glm::any(glm::lessThan(v, Vec3i(0))) || glm::any(glm::greaterThanEqual(v, size)))
+  const LabelVolume& own = isFilled_ ? part : truth_;
+  if (!hasSkinNear(own, world) || !isOutside(own, world + (nearSkinMm + 5.0) * outward))
   {
-    return nothing;
+    return false;
   }
-  return truth_.find(truth_.voxels[(std::size_t(v.z) * size.y + v.y) * size.x + v.x])->name;
+  if (!isFilled_)
+  {
+    return true;
+  }
+  const Vec3d helper = std::abs(outward.x) < 0.9 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
+  const Vec3d across = halfWidthMm * glm::normalize(glm::cross(outward, helper));
+  const Vec3d over = glm::cross(outward, across);
+  const Vec3d starts[] = { world, world + across, world - across, world + over, world - over };
+  return std::all_of(std::begin(starts), std::end(starts), [&](const Vec3d& start) {
+    const double wayMm = wayOutMm(start, outward);
+    bool isInPart = wayMm < longestWayMm;
+    for (double r = 0.0; r < wayMm && isInPart; r += stepMm)
+    {
+      isInPart = voxelAt(part, start + r * outward) != nullptr;
+    }
+    return isInPart;
+  });
 }
 
-/// Whether the whole body has skin there, and nothing of the body lies outside of it.
-bool WindowCuts::isOnSkin(const Vec3d& world, const Vec3d& outward) const
+double WindowCuts::wayOutMm(const Vec3d& world, const Vec3d& outward) const
 {
-  const double nearMm = isFilled_ ? nearEstimatedSkinMm : nearSkinMm;
-  bool hasSkin = false;
-  for (double x = -nearMm; x <= nearMm && !hasSkin; x += stepMm)
+  double r = 0.0;
+  while (r < longestWayMm && !isOutside(truth_, world + r * outward))
   {
-    for (double y = -nearMm; y <= nearMm && !hasSkin; y += stepMm)
-    {
-      for (double z = -nearMm; z <= nearMm && !hasSkin; z += stepMm)
-      {
-        hasSkin = glm::length(Vec3d(x, y, z)) <= nearMm && nameAt(world + Vec3d(x, y, z)) == "skin";
-      }
-    }
+    r += stepMm;
   }
-  const std::string& around = nameAt(world + (nearMm + 5.0) * outward);
-  return hasSkin && (around == "beyond" || around == truth_.find(0)->name);
+  return r;
 }
 
 void WindowCuts::run(int count, const std::vector<std::string>& targets, CutFigures& figures)
@@ -143,14 +187,16 @@ void WindowCuts::run(int count, const std::vector<std::string>& targets, CutFigu
       figures.windows += int(windows.size());
       for (const AcousticWindow& window : windows)
       {
-        if (!isOnSkin(window.pose.positionMm, -window.pose.axial))
+        const Vec3d& p = window.pose.positionMm;
+        figures.deepestMm = std::max(figures.deepestMm, isFilled_ ? wayOutMm(p, -window.pose.axial) : 0.0);
+        if (!isOnSkin(scene.volume(), p, -window.pose.axial))
         {
           ++figures.onCutFaces;
-          const Vec3d& p = window.pose.positionMm;
           const Vec3d local = scene.localFromWorld(p);
           const Vec3d border = glm::min(local, boxMm - local);
-          std::fprintf(stderr, "cut %d, %s: no skin at (%.1f, %.1f, %.1f) mm, %.0f mm from the border\n", i,
-                       target.c_str(), p.x, p.y, p.z, std::min({ border.x, border.y, border.z }));
+          std::fprintf(
+            stderr, "cut %d, %s: no skin at (%.1f, %.1f, %.1f) mm, %.0f mm from the border, way out %.0f mm\n", i,
+            target.c_str(), p.x, p.y, p.z, std::min({ border.x, border.y, border.z }), wayOutMm(p, -window.pose.axial));
         }
       }
     }

@@ -42,7 +42,7 @@ void measureWindows()
   CutFigures figures;
   WindowCuts(makeThoraxPhantom(2.0), false, data, 1).run(1000, { "heart", "liver", "", "aorta lumen" }, figures);
   const std::filesystem::path shared = SONOVDB_SHARED_DATA_DIR;
-  CutFigures filled; // where the skin of the part and that of the whole are two estimates
+  CutFigures filled;
   const auto cutFile = [&](const char* file, bool isFilled, const std::vector<std::string>& targets) {
     if (std::filesystem::exists(shared / file))
     {
@@ -56,12 +56,16 @@ void measureWindows()
   };
   cutFile("thorax_heart/thorax_heart.nii.gz", false, { "heart", "liver", "right kidney", "thyroid" });
   cutFile("totalseg_s0327/s0327_total_v2_labelmap.nii.gz", true, { "heart", "liver", "spleen", "aorta" });
-  printFigure("windows_on_cut_faces", figures.onCutFaces, "windows", "0");
-  printFigure("windows_cuts", figures.cuts, "cuts");
-  printFigure("windows_found", figures.windows, "windows");
-  printFigure("windows_cuts_without", figures.withoutWindow, "cuts");
-  printFigure("windows_filled_off_skin", filled.onCutFaces, "windows");
+  std::fprintf(stderr,
+               "windows_on_cut_faces: windows that stand on no skin of the whole (within 5 mm, nothing of the "
+               "body outside). In a map without skin, where part and whole are filled: on no skin of the part's "
+               "fill, or from where the way out meets what was cut away of the body before it is outside.\n");
+  printFigure("windows_on_cut_faces", figures.onCutFaces + filled.onCutFaces, "windows", "0");
+  printFigure("windows_cuts", figures.cuts + filled.cuts, "cuts");
+  printFigure("windows_found", figures.windows + filled.windows, "windows");
+  printFigure("windows_cuts_without", figures.withoutWindow + filled.withoutWindow, "cuts");
   printFigure("windows_filled_found", filled.windows, "windows");
+  printFigure("windows_filled_deepest_mm", filled.deepestMm, "mm"); // below the skin that the whole's fill has
 }
 
 void measureLabels()
