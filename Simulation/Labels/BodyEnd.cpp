@@ -13,6 +13,7 @@ namespace sono {
 namespace {
 
 constexpr double organMm = 200.0;
+constexpr double leastOfSection = 0.2; // of the largest: more than a tip
 
 bool endsIn(const std::set<std::string>& tissues, const LabelInfo& label)
 {
@@ -32,6 +33,7 @@ struct Ends
   std::vector<std::size_t> faces = std::vector<std::size_t>(65536, 0);
   Vec3i low{ 1 << 30 };
   Vec3i high{ -1 };
+  std::vector<std::size_t> sections; ///< voxels with labels, of each slice
 };
 
 Ends endsOf(const LabelVolume& volume)
@@ -46,6 +48,7 @@ Ends endsOf(const LabelVolume& volume)
   parallelFor(int(slices.size()), {}, [&](int slice) {
     Ends& ends = slices[std::size_t(slice)];
     ends.faces.assign(65536, 0);
+    std::size_t section = 0;
     const int k = slice * every;
     for (int j = 0; j < n.y; j += every)
     {
@@ -55,6 +58,7 @@ Ends endsOf(const LabelVolume& volume)
       {
         if (row[i] != 0)
         {
+          ++section;
           ends.low = glm::min(ends.low, Vec3i(i, j, k));
           ends.high = glm::max(ends.high, Vec3i(i, j, k));
         }
@@ -65,15 +69,24 @@ Ends endsOf(const LabelVolume& volume)
         }
       }
     }
+    ends.sections = { section };
   });
   Ends all;
   for (const Ends& slice : slices)
   {
+    all.sections.insert(all.sections.end(), slice.sections.begin(), slice.sections.end());
     all.low = glm::min(all.low, slice.low);
     all.high = glm::max(all.high, slice.high);
     std::transform(all.faces.begin(), all.faces.end(), slice.faces.begin(), all.faces.begin(), std::plus<>());
   }
   return all;
+}
+
+/// Whether a stack of slices ends within the labels at either end, as a scan of a part of the body does.
+bool isCutAtBothEnds(const Ends& ends)
+{
+  const double most = double(*std::max_element(ends.sections.begin(), ends.sections.end()));
+  return double(std::min(ends.sections.front(), ends.sections.back())) > leastOfSection * most;
 }
 
 bool hasWord(const std::string& name, const std::string& word)
@@ -118,7 +131,7 @@ BodyEnd bodyEnd(const LabelVolume& volume, const std::vector<std::string>& unmap
     return BodyEnd::Skin;
   }
   const Vec3d size = Vec3d(ends.high - ends.low + 1) * volume.placement.spacingMm;
-  const bool isSmall = !isTrunk && glm::all(glm::lessThanEqual(size, Vec3d(organMm)));
+  const bool isSmall = !isTrunk && glm::all(glm::lessThanEqual(size, Vec3d(organMm))) && !isCutAtBothEnds(ends);
   const bool touchesBorder = glm::any(glm::lessThanEqual(ends.low, Vec3i(0))) ||
                              glm::any(glm::greaterThanEqual(ends.high, volume.placement.size - 2));
   if (known == 0 && (labels.size() < 3 || touchesBorder || !isSmall))

@@ -14,7 +14,7 @@ enum class BodyEnd
 {
   Skin,     ///< skin, or something else that may lie bare, or nobody can tell
   NoSkin,   ///< a body whose organs, bones or muscles lie bare, as TotalSegmentator leaves it
-  BareOrgan ///< one or a few organs alone: no bone or lung, and no more than 200 mm in any direction
+  BareOrgan ///< one or a few organs alone: no bone or lung, no more than 200 mm in any direction, not cut at both ends
 };
 
 /// By the tissues of the labels, which must be assigned; `unmapped` names those whose tissue is a guess. Labels without

@@ -48,6 +48,15 @@ double tableNumber(const CsvFile& csv, const CsvFile::Row& row, int column, doub
   return *value;
 }
 
+/// Whether each field of a column, where it is there, is a whole number: other tables have names in a column "label".
+bool isNumbers(const CsvFile& csv, int column)
+{
+  return column >= 0 && std::all_of(csv.rows.begin(), csv.rows.end(), [&](const CsvFile::Row& row) {
+           const auto value = parseNumber(row.fields[std::size_t(column)]);
+           return value && isWhole(*value, 65535.0);
+         });
+}
+
 /// The columns of a table, by what it calls the first; -1 for one that is not there.
 struct LabelColumns
 {
@@ -61,6 +70,7 @@ struct LabelColumns
     const bool isSlicers = csv.column("LabelValue") >= 0;
     const bool isBids = !isSlicers && csv.column("index") >= 0;
     id = csv.column(isSlicers ? "LabelValue" : isBids ? "index" : "id");
+    id = id < 0 && isNumbers(csv, csv.column("label")) ? csv.column("label") : id;
     name = csv.column(isSlicers ? "Name" : "name");
     const std::array<const char*, 3> colors = isSlicers ? std::array<const char*, 3>{ "Color_R", "Color_G", "Color_B" }
                                                         : std::array<const char*, 3>{ "r", "g", "b" };

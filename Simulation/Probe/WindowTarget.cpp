@@ -4,6 +4,7 @@
 #include "Labels/LabelWords.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -135,26 +136,59 @@ std::string presetOf(const Scene& scene, const std::vector<int>& labels)
   return curved;
 }
 
-WindowTarget defaultTarget(const Scene& scene)
+/// Whether an organ goes on beyond the box: its section with one of the box's faces is more than half of its largest
+/// section along that axis. Every other voxel of a row is looked at.
+bool isCutThrough(const Scene& scene, const std::vector<int>& labels)
 {
-  for (const Organ* organ : { &organs[0], &organs[1] })
+  std::vector<char> wanted(65536, 0);
+  for (const int id : labels)
   {
-    const std::vector<int> labels = labelsOf(scene, *organ, {});
-    if (!labels.empty())
+    wanted[std::size_t(id)] = 1;
+  }
+  const Vec3i n = scene.placement().size;
+  std::array<std::vector<int>, 3> sections; // voxels by slice
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    sections[std::size_t(axis)].assign(std::size_t(n[axis]), 0);
+  }
+  std::size_t row = 0;
+  for (int k = 0; k < n.z; ++k)
+  {
+    for (int j = 0; j < n.y; ++j, row += std::size_t(n.x))
     {
-      return targetOf(organ->name, labels, organ->preset);
+      for (int i = (j + k) % 2; i < n.x; i += 2)
+      {
+        const int is = wanted[scene.volume().voxels[row + std::size_t(i)]];
+        sections[0][std::size_t(i)] += is;
+        sections[1][std::size_t(j)] += is;
+        sections[2][std::size_t(k)] += is;
+      }
     }
   }
-  const auto ofTissue = [&](const char* tissue) {
-    return labelsThat(scene, [&](const LabelInfo& label) { return label.tissue == tissue; });
-  };
-  if (const auto labels = ofTissue("myocardium"); !labels.empty())
+  return std::any_of(sections.begin(), sections.end(), [](const std::vector<int>& section) {
+    return 2 * std::max(section.front(), section.back()) > *std::max_element(section.begin(), section.end());
+  });
+}
+
+/// The labels of an organ by their names, or else by their tissue.
+std::vector<int> labelsOrTissueOf(const Scene& scene, const Organ& organ, const char* tissue)
+{
+  const std::vector<int> named = labelsOf(scene, organ, {});
+  return named.empty() ? labelsThat(scene, [&](const LabelInfo& label) { return label.tissue == tissue; }) : named;
+}
+
+/// The heart, or the liver where there is no heart or only the liver is whole, or else the body.
+WindowTarget defaultTarget(const Scene& scene)
+{
+  const std::vector<int> heart = labelsOrTissueOf(scene, organs[0], "myocardium");
+  const std::vector<int> liver = labelsOrTissueOf(scene, organs[1], "liver");
+  if (!liver.empty() && (heart.empty() || (isCutThrough(scene, heart) && !isCutThrough(scene, liver))))
   {
-    return targetOf("heart", labels, phased);
+    return targetOf(organs[1].name, liver, organs[1].preset);
   }
-  if (const auto labels = ofTissue("liver"); !labels.empty())
+  if (!heart.empty())
   {
-    return targetOf("liver", labels, curved);
+    return targetOf(organs[0].name, heart, organs[0].preset);
   }
   const auto all = labelsThat(scene, [](const LabelInfo&) { return true; });
   if (all.empty())

@@ -25,6 +25,7 @@ const Tissue air = makeTissue("air", 0.0004, 343.0, 7.5);
 const Tissue soft = makeTissue("soft_tissue", 1.63, 1540.0, 0.54);
 const Tissue bone = makeTissue("cortical_bone", 7.8, 4080.0, 5.0);
 const Tissue skin = makeTissue("skin", 1.87, 1655.0, 1.0);
+const Tissue liver = makeTissue("liver", 1.65, 1595.0, 0.5);
 const Tissue heart = makeTissue("myocardium", 1.69, 1586.0, 0.52);
 
 /// A ball of soft tissue, radius 60 mm, around (80, 80, 80) with a heart in the middle and a shell of bone that has one
@@ -209,6 +210,25 @@ TEST(AcousticWindow, TargetsByName)
     expectContains(refusal, there);
   }
   EXPECT_EQ(refusal.find("background"), std::string::npos);
+}
+
+/// A heart that the box cuts through is not what a first picture should look for, where the liver is whole.
+TEST(AcousticWindow, TheTargetByItselfIsWhole)
+{
+  const auto target = [](bool isHeartCut, bool isLiverCut) {
+    const auto scene = makeScene(
+      Vec3i(40), Vec3d(4.0), { air, soft, liver, heart },
+      [=](const Vec3d& p) {
+        const bool isHeart = glm::distance(p, Vec3d(80.0, 80.0, isHeartCut ? 155.0 : 120.0)) < 30.0;
+        const bool isLiver = glm::distance(p, Vec3d(isLiverCut ? 5.0 : 60.0, 80.0, 50.0)) < 30.0;
+        return isHeart ? 3 : isLiver ? 2 : 1;
+      },
+      "air");
+    return windowTarget(*scene, "").name;
+  };
+  EXPECT_EQ(target(false, false), "heart");
+  EXPECT_EQ(target(true, false), "liver");
+  EXPECT_EQ(target(true, true), "heart");
 }
 
 std::unique_ptr<Scene> thoraxScene()

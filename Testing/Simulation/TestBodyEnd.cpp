@@ -63,6 +63,11 @@ TEST(BodyEnd, OrgansAndBonesThatLieBare)
   LabelVolume large = volumeOf({ { "vessel", "blood" }, { "liver", "liver" } }, balls);
   large.placement.spacingMm = Vec3d(8.0); // 240 mm across
   EXPECT_EQ(bodyEnd(large, {}), BodyEnd::NoSkin);
+  // Some slices of a body: a bath would lie before what was cut.
+  const auto column = [](const Vec3d& p) { return balls(Vec3d(p.x, p.y, 0.0)); };
+  EXPECT_EQ(bodyEnd(volumeOf({ { "aorta", "blood" }, { "liver", "liver" } }, column), {}), BodyEnd::NoSkin);
+  const auto tips = [](const Vec3d& p) { return glm::length(p) < 50.5 ? 1 : 0; }; // touch either end
+  EXPECT_EQ(bodyEnd(volumeOf({ { "liver", "liver" } }, tips), {}), BodyEnd::BareOrgan);
 }
 
 TEST(BodyEnd, LabelsWithoutNames)

@@ -171,6 +171,11 @@ TEST_F(LabelFormats, TablesOfOtherPrograms)
   EXPECT_FLOAT_EQ(snap[1].color[2], 0.2f);
   EXPECT_EQ(snap[2].name, "bone");
 
+  const auto columns = named("x.csv", "label,name\n1,liver\n2,spleen\n");
+  EXPECT_EQ(columns[1].name, "liver");
+  EXPECT_EQ(columns[2].name, "spleen");
+  EXPECT_EQ(named("x.csv", "label,name\nliver,Smith\n")[1].name, "label_1"); // a table of something else
+
   const auto slicer = named("x.ctbl", "# Color table file x.ctbl\n# 3 values\n0 Background 0 0 0 0\n"
                                       "1 left_lung 255 0 51 255\n2 costal cartilage 7 0 255 0 255\n");
   EXPECT_EQ(slicer[0].name, "Background");
