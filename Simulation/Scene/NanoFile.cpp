@@ -167,7 +167,8 @@ std::string textOf(const std::string& path, const Handle& handle)
 
 } // namespace
 
-void writeNanoFile(const std::string& path, const std::vector<const NanoGrid*>& grids, const std::string& text)
+void writeNanoFile(const std::string& path, const std::vector<const NanoGrid*>& grids, const std::string& text,
+                   const std::vector<std::uint8_t>& bytes)
 {
   std::vector<std::string> prints(grids.size());
   parallelFor(int(grids.size()), {},
@@ -177,7 +178,13 @@ void writeNanoFile(const std::string& path, const std::vector<const NanoGrid*>& 
   {
     whole += print + " ";
   }
-  const Handle first = withText(grids.front()->storage->handle, whole + "\n" + text);
+  whole += "\n" + text;
+  if (!bytes.empty())
+  {
+    whole += '\n';
+    whole.append(bytes.begin(), bytes.end());
+  }
+  const Handle first = withText(grids.front()->storage->handle, whole);
 
   // Another process may be writing the same scene.
   const std::string partial = path + "." + std::to_string(std::random_device()()) + ".part";
@@ -263,7 +270,10 @@ NanoFile readNanoFile(const std::string& path)
   {
     refuse(path, damaged);
   }
-  file.text = whole.substr(std::min(lineEnd + 1, whole.size()));
+  const std::size_t textAt = std::min(lineEnd + 1, whole.size());
+  const std::size_t textEnd = std::min(whole.find('\n', textAt), whole.size());
+  file.text = whole.substr(textAt, textEnd - textAt);
+  file.bytes.assign(whole.begin() + std::ptrdiff_t(std::min(textEnd + 1, whole.size())), whole.end());
   return file;
 }
 

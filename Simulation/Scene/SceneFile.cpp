@@ -33,7 +33,7 @@ std::vector<NanoGrid> buildMasks(const Scene& scene)
   return masks;
 }
 
-void writeNanoScene(const std::string& path, const Scene& scene)
+void writeNanoScene(const std::string& path, const Scene& scene, const std::vector<std::uint8_t>& detail)
 {
   const std::vector<NanoGrid> masks = buildMasks(scene);
   std::vector<const NanoGrid*> grids{ &scene.labelGrid().grid };
@@ -42,7 +42,7 @@ void writeNanoScene(const std::string& path, const Scene& scene)
     grids.push_back(&masks[n]);
     grids.push_back(&scene.surface(scene.volume().labels[n].id).sdf);
   }
-  writeNanoFile(path, grids, sceneText(scene));
+  writeNanoFile(path, grids, sceneText(scene), detail);
 }
 
 openvdb::GridBase::Ptr describedGrid(const NanoGrid& grid, const LabelInfo* label)
@@ -134,7 +134,7 @@ void writeScene(const std::string& path, const Scene& scene, const Progress& pro
     throw Error("cannot write '" + path + "': the name of a scene file must end in .nvdb or .vdb.");
   }
   scene.buildAll(partOf(progress, 0.0, 0.7));
-  ending == ".nvdb" ? writeNanoScene(path, scene) : writeOpenScene(path, scene);
+  ending == ".nvdb" ? writeNanoScene(path, scene, scene.detail()) : writeOpenScene(path, scene);
   report(progress, 1.0);
 }
 
@@ -149,7 +149,11 @@ std::unique_ptr<Scene> readScene(const std::string& path, const Progress& progre
   volume.placement.validate(path);
   volume.labels = std::move(text.labels);
   volume.voxels = voxelsOf(grids.labels, volume.placement.size);
-  auto scene = std::make_unique<Scene>(std::move(volume), text.tissues, text.outsideTissue);
+  if (!file.bytes.empty() && file.bytes.size() != volume.voxels.size())
+  {
+    refuseGrids(path);
+  }
+  auto scene = std::make_unique<Scene>(std::move(volume), text.tissues, text.outsideTissue, std::move(file.bytes));
   scene->adopt(std::move(grids.labels), std::move(grids.surfaces));
   report(progress, 1.0);
   return scene;
@@ -204,7 +208,9 @@ std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& ta
       // A damaged file is as good as none: it is written anew below.
     }
   }
-  writeScene(path, *scene, progress);
+  scene->buildAll(partOf(progress, 0.0, 0.7));
+  writeNanoScene(path, *scene, {});
+  report(progress, 1.0);
   return scene;
 }
 

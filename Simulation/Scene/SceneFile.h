@@ -7,13 +7,17 @@
 
 namespace sono {
 
-/// Version of what a scene file holds; a reader refuses others.
-constexpr int sceneFileFormat = 2;
+/// Version of what a scene file holds; a reader refuses newer ones.
+constexpr int sceneFileFormat = 3;
+
+/// The oldest that is read: 2 has no scan's detail.
+constexpr int oldestSceneFileFormat = 2;
 
 /// Writes a scene, building first what it has not built yet. By the name's ending:
 /// `.nvdb` NanoVDB: the grid "labels" (Int32, the label ids) and, for each label, "voxels_<id>" (mask, its voxels) and
 /// "sdf_<id>" (Fp8, mm, negative inside). Beside them, as blind data of "labels" (NanoFile.h), a JSON text with the
-/// format version, the placement in double precision, labels with names, colours and tissues, and the tissue table.
+/// format version, the placement in double precision, labels with names, colours and tissues, and the tissue table;
+/// behind it the codes of a scan's detail, a byte a voxel, where there is one.
 /// `.vdb` OpenVDB, for other programs: the same grids (sdf as floats) with label names and tissues as metadata of the
 /// grids, and the JSON text as the file's metadata "sonovdb_scene". SonoVDB does not read it back.
 /// Throws Error naming the file for another ending or when it cannot be written.

@@ -153,7 +153,7 @@ SceneText parseSceneText(const std::string& path, const std::string& text)
   {
     const Json json = Json::parse(text);
     const int format = json.at("sonovdb_format");
-    if (format < sceneFileFormat)
+    if (format < oldestSceneFileFormat)
     {
       throw Error("cannot read '" + path + "': SonoVDB 0.1 wrote it (format " + std::to_string(format) +
                   "), without the tissues' roughness and backscatter; write it again from its label map.");

@@ -8,8 +8,8 @@ import numpy as np
 from chain import Chain, label_image, listen, make
 from sonovdb.vtkSonoFilters import (vtkSonoLabelMapReader, vtkSonoSceneBuilder, vtkSonoSceneReader,
                                     vtkSonoSceneWriter)
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
@@ -17,6 +17,11 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 def intensity(tracer):
     tracer.Update()
     return vtk_to_numpy(tracer.GetOutputDataObject(0).GetPointData().GetArray("Intensity")).copy()
+
+
+def picture(converter):
+    converter.Update()
+    return vtk_to_numpy(converter.GetOutputDataObject(0).GetPointData().GetScalars()).copy()
 
 
 def block_names(blocks):
@@ -76,6 +81,24 @@ class TestWrittenAndRead(InFolder):
         chain.tracer.SetInputConnection(0, reader.GetOutputPort())
         np.testing.assert_array_equal(intensity(chain.tracer), before)
         self.assertGreater(before.max(), 0.5)
+
+    def test_a_scans_detail_is_in_the_picture(self):
+        chain = Chain()
+        image = vtkImageData()
+        image.ShallowCopy(chain.thorax.GetOutput())
+        codes = np.random.default_rng(1).integers(88, 169, image.GetNumberOfPoints(), np.uint8)
+        detail = numpy_to_vtk(codes, deep=True)
+        detail.SetName("ScanDetail")
+        image.GetPointData().AddArray(detail)
+        plain = picture(chain.converter)
+        chain.scene.SetInputData(image)
+        path, errors = self.write(chain, "thorax.nvdb")
+        self.assertEqual(errors, [])
+        before = picture(chain.converter)
+        self.assertGreater(np.abs(before.astype(int) - plain).max(), 20)
+        reader = make(vtkSonoSceneReader, FileName=path)
+        chain.tracer.SetInputConnection(0, reader.GetOutputPort())
+        np.testing.assert_array_equal(picture(chain.converter), before)
 
     def test_targets_in_a_scene_from_a_file_take_any_bundled_tissue(self):
         chain = Chain()

@@ -145,6 +145,26 @@ TEST_F(SceneFiles, RoundTrip)
   EXPECT_EQ(fs::file_size(file("s.nvdb")), fs::file_size(file("t.nvdb")));
 }
 
+TEST_F(SceneFiles, ScansDetailComesBack)
+{
+  LabelVolume volume = smallVolume();
+  std::vector<std::uint8_t> detail(volume.voxels.size());
+  for (std::size_t n = 0; n < detail.size(); ++n)
+  {
+    detail[n] = std::uint8_t(n * n % 251); // line feeds and zeros are among them
+  }
+  const Scene scene(std::move(volume), smallTable(), "air", detail);
+  writeScene(file("s.nvdb"), scene);
+  EXPECT_EQ(readScene(file("s.nvdb"))->detail(), detail);
+  const std::string whole = bytesOf(file("s.nvdb"));
+  std::string bytes = whole;
+  bytes[whole.find(std::string(detail.begin(), detail.begin() + 20)) + 5] ^= 1;
+  expectContains(refusalOf(bytes), "damaged");
+  // A cache serves whatever scan comes with the labels.
+  EXPECT_EQ(makeCachedScene(smallVolume(), smallTable(), "air", file("cache"), {}, detail)->detail(), detail);
+  EXPECT_TRUE(makeCachedScene(smallVolume(), smallTable(), "air", file("cache"))->detail().empty());
+}
+
 TEST_F(SceneFiles, OtherProgramsListTheGrids)
 {
   const Scene scene(smallVolume(), smallTable(), "air");
@@ -206,7 +226,7 @@ TEST_F(SceneFiles, ForeignAndNewerFilesAreRefused)
   std::string foreign = bytesOf(file("s.nvdb"));
   foreign[foreign.find(std::string("sonovdb\0", 8))] = 'x';
   expectContains(refusalOf(foreign), "no scene of SonoVDB");
-  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 3}"); }), "newer SonoVDB wrote it");
+  expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 4}"); }), "newer SonoVDB wrote it");
   expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 2}"); }), "incomplete");
   expectContains(errorOf([] { parseSceneText("n.nvdb", "{\"sonovdb_format\": 1}"); }),
                  "without the tissues' roughness");
