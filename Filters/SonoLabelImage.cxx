@@ -1,6 +1,7 @@
 #include "SonoLabelImage.h"
 
 #include "Core/Progress.h"
+#include "SonoSharedArray.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -26,6 +27,7 @@
 #include <cmath>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 
 namespace sono {
 namespace {
@@ -49,14 +51,27 @@ std::string nameOf(vtkDataArray* array)
   return array->GetName() ? std::string("The array '") + array->GetName() + "'" : std::string("The image's array");
 }
 
+void addLabels(vtkUnsignedShortArray* voxels, const std::vector<LabelInfo>& labels, vtkImageData* image)
+{
+  if (!labels.empty()) // each occurs
+  {
+    const auto [least, most] = std::minmax_element(labels.begin(), labels.end(),
+                                                   [](const LabelInfo& a, const LabelInfo& b) { return a.id < b.id; });
+    tellRange(least->id, most->id, voxels);
+  }
+  image->GetPointData()->SetScalars(voxels);
+  writeLabelTable(labels, image->GetFieldData());
+}
+
 template<class Value>
-void copyWholeNumbers(const Value* values, vtkDataArray* array, std::vector<std::uint16_t>& voxels)
+void copyWholeNumbers(const Value* values, std::size_t count, vtkDataArray* array, std::vector<std::uint16_t>& voxels)
 {
   if constexpr (std::is_same_v<Value, unsigned char> || std::is_same_v<Value, unsigned short>)
   {
-    std::copy(values, values + voxels.size(), voxels.begin());
+    voxels.assign(values, values + count);
     return;
   }
+  voxels.resize(count);
   for (std::size_t i = 0; i < voxels.size(); ++i)
   {
     const auto value = static_cast<double>(values[i]);
@@ -170,14 +185,14 @@ void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image)
   labels->SetName("Labels");
   labels->SetNumberOfValues(static_cast<vtkIdType>(volume.voxels.size()));
   std::copy(volume.voxels.begin(), volume.voxels.end(), labels->GetPointer(0));
-  if (!volume.labels.empty()) // each occurs
-  {
-    const auto [least, most] = std::minmax_element(volume.labels.begin(), volume.labels.end(),
-                                                   [](const LabelInfo& a, const LabelInfo& b) { return a.id < b.id; });
-    tellRange(least->id, most->id, labels);
-  }
-  image->GetPointData()->SetScalars(labels);
-  writeLabelTable(volume.labels, image->GetFieldData());
+  addLabels(labels, volume.labels, image);
+}
+
+void imageFromLabelVolume(LabelVolume&& volume, vtkImageData* image)
+{
+  placeImage(volume.placement, image);
+  const SharedSpan<std::uint16_t> voxels(std::move(volume.voxels));
+  addLabels(sharedArray<vtkUnsignedShortArray>("Labels", voxels), volume.labels, image);
 }
 
 vtkDataArray* labelArrayOf(vtkAlgorithm* algorithm, vtkInformationVector** input)
@@ -206,10 +221,10 @@ LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels)
   LabelVolume volume;
   volume.placement = placementOfImage(image);
   volume.placement.validate("the label image");
-  volume.voxels.resize(volume.placement.voxelCount());
   switch (labels->GetDataType())
   {
-    vtkTemplateMacro(copyWholeNumbers(static_cast<const VTK_TT*>(labels->GetVoidPointer(0)), labels, volume.voxels));
+    vtkTemplateMacro(copyWholeNumbers(static_cast<const VTK_TT*>(labels->GetVoidPointer(0)),
+                                      volume.placement.voxelCount(), labels, volume.voxels));
     default:
       throw Error(nameOf(labels) + " is not numeric and holds no labels; choose another array.");
   }

@@ -37,6 +37,8 @@ void tellRange(double low, double high, vtkDataArray* array);
 
 /// Fills `image` with the scalars "Labels" and the label table in its field data.
 void imageFromLabelVolume(const LabelVolume& volume, vtkImageData* image);
+/// The same without a copy of the voxels.
+void imageFromLabelVolume(LabelVolume&& volume, vtkImageData* image);
 
 /// The labels of an algorithm's first input, an image: its only point array; else the one that the algorithm is set to
 /// process, or the scalars where that is not there.

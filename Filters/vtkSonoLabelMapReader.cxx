@@ -21,6 +21,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <utility>
 
 vtkStandardNewMacro(vtkSonoLabelMapReader);
 
@@ -208,11 +209,11 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
     const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time + 1e-9);
     const int phase = std::max(0, static_cast<int>(after - this->Times.begin()) - 1);
 
-    const sono::LabelVolume volume = this->ReadPhase(phase);
+    sono::LabelVolume volume = this->ReadPhase(phase);
     vtkImageData* image = vtkImageData::GetData(output);
     int announced[6];
     outInfo->Get(Pipeline::WHOLE_EXTENT(), announced);
-    sono::imageFromLabelVolume(volume, image);
+    sono::imageFromLabelVolume(std::move(volume), image);
     if (!std::equal(announced, announced + 6, image->GetExtent()))
     {
       const std::string name = this->FileNames[this->FileNames.size() == 1 ? 0 : std::size_t(phase)];

@@ -4,22 +4,25 @@
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoSettings.h"
+#include "SonoSharedArray.h"
 #include "SonoStage.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 vtkStandardNewMacro(vtkSonoScanDetail);
 
@@ -31,7 +34,8 @@ void copyFloats(const Value* values, std::vector<float>& to)
   std::transform(values, values + to.size(), to.begin(), [](Value v) { return static_cast<float>(v); });
 }
 
-sono::IntensityVolume scanFromImage(vtkImageData* image)
+/// The scan of an image; `converted` holds its values where they are no floats.
+sono::IntensityView scanFromImage(vtkImageData* image, std::vector<float>& converted)
 {
   vtkDataArray* values = image ? image->GetPointData()->GetScalars() : nullptr;
   if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != image->GetNumberOfPoints() ||
@@ -39,16 +43,25 @@ sono::IntensityVolume scanFromImage(vtkImageData* image)
   {
     throw sono::Error("The scan has no point scalars with one component; connect a CT or MR, not a colour image.");
   }
-  sono::IntensityVolume scan;
+  sono::IntensityView scan;
   scan.placement = sono::placementOfImage(image);
-  scan.values.resize(std::size_t(values->GetNumberOfTuples()));
-  switch (values->GetDataType())
+  scan.count = std::size_t(values->GetNumberOfTuples());
+  if (auto* floats = vtkFloatArray::SafeDownCast(values))
   {
-    vtkTemplateMacro(copyFloats(static_cast<const VTK_TT*>(values->GetVoidPointer(0)), scan.values));
-    default:
-      throw sono::Error("The scan's scalars are not numeric; connect a CT or MR.");
+    scan.values = floats->GetPointer(0);
   }
-  if (!std::all_of(scan.values.begin(), scan.values.end(), [](float v) { return std::isfinite(v); }))
+  else
+  {
+    converted.resize(scan.count);
+    switch (values->GetDataType())
+    {
+      vtkTemplateMacro(copyFloats(static_cast<const VTK_TT*>(values->GetVoidPointer(0)), converted));
+      default:
+        throw sono::Error("The scan's scalars are not numeric; connect a CT or MR.");
+    }
+    scan.values = converted.data();
+  }
+  if (!sono::rangeOf(scan.values, scan.count).finite)
   {
     throw sono::Error("The scan holds values that are not finite; correct them or choose another one.");
   }
@@ -105,21 +118,26 @@ int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input
       sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), sono::labelArrayOf(this, input));
     const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
     const auto table = sono::TissueTable::read(sono::dataFile("tissues.csv"));
-    const sono::AddedScan added =
-      sono::addScan(volume, scanFromImage(vtkImageData::GetData(input[1])), map, table,
+    std::vector<float> converted;
+    sono::AddedScan added =
+      sono::addScan(volume, scanFromImage(vtkImageData::GetData(input[1]), converted), map, table,
                     sono::settingsIn<sono::ScanDetailSettings>(*this->Parameters), sono::partOf(progress, 0.1, 0.95));
     if (!added.notice.empty())
     {
       sono::warn(this, added.notice);
     }
     vtkImageData* image = vtkImageData::GetData(output);
-    sono::imageFromLabelVolume(volume, image);
-    vtkNew<vtkUnsignedCharArray> detail;
-    detail->SetName(sono::scanDetailArray);
-    detail->SetNumberOfValues(static_cast<vtkIdType>(added.detail.size()));
-    std::copy(added.detail.begin(), added.detail.end(), detail->GetPointer(0));
-    const auto [least, most] = std::minmax_element(added.detail.begin(), added.detail.end());
-    sono::tellRange(*least, *most, detail);
+    sono::imageFromLabelVolume(std::move(volume), image);
+    std::uint8_t least = 255;
+    std::uint8_t most = 0;
+    for (const std::uint8_t code : added.detail)
+    {
+      least = std::min(least, code);
+      most = std::max(most, code);
+    }
+    const sono::SharedSpan<std::uint8_t> codes(std::move(added.detail));
+    const auto detail = sono::sharedArray<vtkUnsignedCharArray>(sono::scanDetailArray, codes);
+    sono::tellRange(least, most, detail);
     image->GetPointData()->AddArray(detail);
   });
 }

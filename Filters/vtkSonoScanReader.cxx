@@ -16,8 +16,6 @@
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 
-#include <algorithm>
-
 vtkStandardNewMacro(vtkSonoScanReader);
 
 vtkSonoScanReader::vtkSonoScanReader()
@@ -61,8 +59,8 @@ int vtkSonoScanReader::RequestData(vtkInformation*, vtkInformationVector**, vtkI
     const sono::SharedSpan<float> kept{ std::shared_ptr<const float>(this->Volume, this->Volume->values.data()),
                                         this->Volume->values.size() };
     const auto values = sono::sharedArray<vtkFloatArray>("Intensities", kept);
-    const auto [least, most] = std::minmax_element(this->Volume->values.begin(), this->Volume->values.end());
-    sono::tellRange(*least, *most, values);
+    const sono::IntensityRange range = sono::rangeOf(kept.begin(), kept.size);
+    sono::tellRange(range.low, range.high, values);
     image->GetPointData()->SetScalars(values);
     if (!this->Volume->modality.empty())
     {

@@ -1,6 +1,7 @@
 #include "Labels/CtFill.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Labels/BodyDepth.h"
 #include "Labels/FreeLabels.h"
 
@@ -57,29 +58,65 @@ struct Block
   std::int64_t gasHu = 0;
 };
 
+/// What the columns of voxels of a row of blocks hold; the sums of blocks follow from theirs.
+struct Columns
+{
+  std::vector<int> labelledOrDense;
+  std::vector<int> gas;
+  std::vector<std::int64_t> gasHu;
+
+  explicit Columns(std::size_t count)
+    : labelledOrDense(count)
+    , gas(count)
+    , gasHu(count)
+  {
+  }
+};
+
+SONO_SIMD_CLONES void addRow(const std::uint16_t* labels, const std::int16_t* values, std::size_t count,
+                             int* labelledOrDense, int* gas, std::int64_t* gasHu)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const int hu = values[i];
+    const int isLabelled = labels[i] != 0 ? 1 : 0;
+    const int isThin = hu <= airBelowHu ? 1 : 0;
+    const int isGas = isThin & (1 - isLabelled) & (hu != MatchedScan::nothing ? 1 : 0);
+    labelledOrDense[i] += isLabelled | (1 - isThin);
+    gas[i] += isGas;
+    gasHu[i] += isGas * hu;
+  }
+}
+
 std::vector<Block> blocksOf(const LabelVolume& volume, const MatchedScan& ct, const CoarseGrid& grid)
 {
   std::vector<Block> blocks(grid.count());
   const Vec3i n = volume.placement.size;
   parallelFor(grid.size.z, {}, [&](int ck) {
-    for (int k = ck * grid.factor.z; k < std::min(n.z, (ck + 1) * grid.factor.z); ++k)
+    for (int cj = 0; cj < grid.size.y; ++cj)
     {
-      for (int j = 0; j < n.y; ++j)
+      Columns columns(std::size_t(n.x));
+      const Vec3i low = Vec3i(0, cj, ck) * grid.factor;
+      const Vec3i high = glm::min(low + grid.factor, n);
+      for (int k = low.z; k < high.z; ++k)
       {
-        Block* row = blocks.data() + grid.index({ 0, j / grid.factor.y, ck });
-        const std::size_t first = std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-        for (int i = 0; i < n.x; ++i)
+        for (int j = low.y; j < high.y; ++j)
         {
-          Block& block = row[i / grid.factor.x];
-          const bool isLabelled = volume.voxels[first + std::size_t(i)] != 0;
-          const std::int16_t hu = ct.values[first + std::size_t(i)];
-          ++(isLabelled || hu > airBelowHu ? block.labelledOrDense : block.others);
-          if (!isLabelled && hu != MatchedScan::nothing && hu <= airBelowHu)
-          {
-            ++block.gas;
-            block.gasHu += hu;
-          }
+          const std::size_t first = std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+          addRow(volume.voxels.data() + first, ct.values.data() + first, std::size_t(n.x),
+                 columns.labelledOrDense.data(), columns.gas.data(), columns.gasHu.data());
         }
+      }
+      const int voxelsOfColumn = (high.y - low.y) * (high.z - low.z);
+      Block* row = blocks.data() + grid.index({ 0, cj, ck });
+      for (int i = 0; i < n.x; ++i)
+      {
+        Block& block = row[i / grid.factor.x];
+        const int dense = columns.labelledOrDense[std::size_t(i)];
+        block.labelledOrDense += dense;
+        block.others += voxelsOfColumn - dense;
+        block.gas += columns.gas[std::size_t(i)];
+        block.gasHu += columns.gasHu[std::size_t(i)];
       }
     }
   });

@@ -1,6 +1,7 @@
 #include "Labels/LabelVolume.h"
 
 #include "Core/ParallelFor.h"
+#include "Labels/LabelRuns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,10 +107,8 @@ void LabelVolume::collectLabels()
   parallelFor(int((voxels.size() + together - 1) / together), {}, [&](int part) {
     std::vector<char> here(occurs.size(), 0);
     const std::size_t first = std::size_t(part) * together;
-    for (std::size_t at = first; at < std::min(voxels.size(), first + together); ++at)
-    {
-      here[voxels[at]] = 1;
-    }
+    forRuns(voxels.data() + first, std::min(together, voxels.size() - first),
+            [&](std::size_t, std::size_t, std::uint16_t id) { here[id] = 1; });
     const std::lock_guard<std::mutex> lock(mutex);
     std::transform(here.begin(), here.end(), occurs.begin(), occurs.begin(), [](char a, char b) { return a | b; });
   });

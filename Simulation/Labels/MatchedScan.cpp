@@ -1,6 +1,8 @@
 #include "Labels/MatchedScan.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
+#include "Labels/LabelRuns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,31 +36,74 @@ struct ValueScale
   bool isCt;
   float factor;
 
-  explicit ValueScale(const IntensityVolume& scan)
+  explicit ValueScale(const IntensityView& scan)
   {
-    const auto [low, high] = std::minmax_element(scan.values.begin(), scan.values.end());
-    isCt = scan.modality.empty() ? *low < airAtMost && *high <= largestValue : scan.modality == "CT";
-    const float most = std::max(std::fabs(*low), std::fabs(*high));
-    const bool hasAir = scan.modality.empty() && *low < airAtMost && *low < -leastOfAir * *high;
+    const IntensityRange range = rangeOf(scan.values, scan.count);
+    isCt = scan.modality.empty() ? range.low < airAtMost && range.high <= largestValue : scan.modality == "CT";
+    const float most = std::max(std::fabs(range.low), std::fabs(range.high));
+    const bool hasAir = scan.modality.empty() && range.low < airAtMost && range.low < -leastOfAir * range.high;
     if ((isCt || hasAir) && most > beyondHu)
     {
       std::ostringstream text;
-      text << "The scan's values go from " << *low << " to " << *high
+      text << "The scan's values go from " << range.low << " to " << range.high
            << ", where a CT has Hounsfield units (air -1000, water 0, bone 1000) and an MR hardly anything below 0; "
               "divide them by what they were multiplied with, or choose the scan as the scanner has it.";
       throw Error(text.str());
     }
     factor = isCt || !(most > 0.0f) ? 1.0f : largestValue / most;
   }
-  std::int16_t operator()(float value) const
+  std::int16_t operator()(float value) const { return rounded(value, factor); }
+
+  /// Halves away from zero, as lround, which is no vector's instruction.
+  static std::int16_t rounded(float value, float factor)
   {
-    return std::int16_t(std::lround(std::clamp(value * factor, -largestValue, largestValue)));
+    const float wanted = std::clamp(value * factor, -largestValue, largestValue);
+    const int whole = int(wanted);
+    const float rest = wanted - float(whole);
+    return std::int16_t(whole + int(rest >= 0.5f) - int(rest <= -0.5f));
   }
 };
 
+SONO_SIMD_CLONES void roundAll(const float* values, std::size_t count, float factor, std::int16_t* to)
+{
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    to[n] = ValueScale::rounded(values[n], factor);
+  }
+}
+
+/// Of values, those left out that are nothing.
+struct ScanSums
+{
+  std::int64_t voxels = 0;
+  std::int64_t sum = 0;
+  std::int64_t squares = 0;
+
+  void add(const ScanSums& other)
+  {
+    voxels += other.voxels;
+    sum += other.sum;
+    squares += other.squares;
+  }
+};
+
+SONO_SIMD_CLONES ScanSums sumsOf(const std::int16_t* values, std::size_t count)
+{
+  ScanSums sums;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const bool isThere = values[n] != MatchedScan::nothing;
+    const std::int32_t value = isThere ? values[n] : 0;
+    sums.voxels += isThere ? 1 : 0;
+    sums.sum += value;
+    sums.squares += value * value; // below 2^30
+  }
+  return sums;
+}
+
 /// The scan's value at an index of its own, linear between voxels' centres; beyond the outermost ones theirs, for half
 /// a voxel.
-float valueAt(const IntensityVolume& scan, const Vec3d& index)
+float valueAt(const IntensityView& scan, const Vec3d& index)
 {
   const Vec3i& n = scan.placement.size;
   const Vec3d at = glm::clamp(index, Vec3d(0.0), Vec3d(n - 1));
@@ -66,7 +111,7 @@ float valueAt(const IntensityVolume& scan, const Vec3d& index)
   const Vec3i high = glm::min(low + 1, n - 1);
   const Vec3f share(at - Vec3d(low));
   const auto row = [&](int j, int k) {
-    const float* values = scan.values.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+    const float* values = scan.values + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
     return values[low.x] + share.x * (values[high.x] - values[low.x]);
   };
   const float below = row(low.y, low.z) + share.y * (row(high.y, low.z) - row(low.y, low.z));
@@ -127,12 +172,12 @@ bool expects(const std::string& tissue, Expected& range)
 
 } // namespace
 
-MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, const Progress& progress)
+MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, const Progress& progress)
 {
   scan.placement.validate("the scan");
-  if (scan.values.size() != scan.placement.voxelCount())
+  if (scan.count != scan.placement.voxelCount())
   {
-    throw Error("the scan has " + std::to_string(scan.values.size()) + " values where its size says " +
+    throw Error("the scan has " + std::to_string(scan.count) + " values where its size says " +
                 std::to_string(scan.placement.voxelCount()) + ": load it again.");
   }
   requireSameWorld(labels.placement, scan.placement);
@@ -146,8 +191,7 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, co
   if (sameGrid(grid, scan.placement))
   {
     parallelFor(n.z, progress, [&](int k) {
-      const float* from = scan.values.data() + slice * k;
-      std::transform(from, from + slice, matched.values.data() + slice * k, scale);
+      roundAll(scan.values + slice * k, slice, scale.factor, matched.values.data() + slice * k);
     });
     return matched;
   }
@@ -194,40 +238,25 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, co
 
 std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedScan& scan, const Progress& progress)
 {
-  struct Sums
-  {
-    std::int64_t voxels = 0;
-    std::int64_t sum = 0;
-    std::int64_t squares = 0;
-  };
   const std::vector<int> indexOf = labels.indexOfId();
   std::mutex mutex;
-  std::vector<Sums> all(labels.labels.size());
+  std::vector<ScanSums> all(labels.labels.size());
   const Vec3i n = labels.placement.size;
   const std::size_t slice = std::size_t(n.x) * n.y;
   parallelFor(n.z, progress, [&](int k) {
-    std::vector<Sums> own(all.size());
-    for (std::size_t at = slice * k; at < slice * (k + 1); ++at)
-    {
-      const std::int64_t value = scan.values[at];
-      if (value != MatchedScan::nothing)
-      {
-        Sums& s = own[std::size_t(indexOf[labels.voxels[at]])];
-        ++s.voxels;
-        s.sum += value;
-        s.squares += value * value;
-      }
-    }
+    std::vector<ScanSums> own(all.size());
+    const std::int16_t* values = scan.values.data() + slice * k;
+    forRuns(labels.voxels.data() + slice * k, slice, [&](std::size_t begin, std::size_t end, std::uint16_t id) {
+      own[std::size_t(indexOf[id])].add(sumsOf(values + begin, end - begin));
+    });
     const std::lock_guard<std::mutex> lock(mutex); // whole numbers: in whatever order
     for (std::size_t l = 0; l < all.size(); ++l)
     {
-      all[l].voxels += own[l].voxels;
-      all[l].sum += own[l].sum;
-      all[l].squares += own[l].squares;
+      all[l].add(own[l]);
     }
   });
   std::vector<ScanOfLabel> result;
-  for (const Sums& s : all)
+  for (const ScanSums& s : all)
   {
     ScanOfLabel label{ s.voxels, 0.0, 0.0 };
     if (s.voxels > 0)

@@ -25,7 +25,7 @@ struct MatchedScan
 /// Throws Error where both name a frame of reference and not the same one; for values that are neither Hounsfield units
 /// nor an MR's; where less than half of the labelled voxels lie within the scan, with how much does and where the two
 /// lie; and Aborted.
-MatchedScan matchScan(const LabelVolume& labels, const IntensityVolume& scan, const Progress& progress = {});
+MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, const Progress& progress = {});
 
 /// What a scan has in the voxels of a label.
 struct ScanOfLabel

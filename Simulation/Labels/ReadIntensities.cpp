@@ -1,12 +1,18 @@
 #include "Labels/ReadIntensities.h"
 
+#include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Labels/ReadDicomSeries.h"
 #include "Labels/ReadNifti.h"
 #include "Labels/VoxelFile.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <new>
+#include <vector>
 
 namespace sono {
 
@@ -41,7 +47,56 @@ IntensityVolume readVoxelFile(const std::string& path, const Progress& progress)
   return volume;
 }
 
+/// Several lanes, because the order of comparisons must not matter for them to be vectors.
+SONO_SIMD_CLONES IntensityRange rangeOfPart(const float* values, std::size_t count)
+{
+  constexpr std::size_t lanes = 32;
+  float low[lanes];
+  float high[lanes];
+  std::uint32_t notFinite[lanes] = {};
+  std::fill(low, low + lanes, values[0]);
+  std::fill(high, high + lanes, values[0]);
+  const auto add = [&](std::size_t lane, float value) {
+    constexpr std::uint32_t exponent = 0x7f800000u;
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    notFinite[lane] |= std::uint32_t((bits & exponent) == exponent);
+    low[lane] = value < low[lane] ? value : low[lane];
+    high[lane] = value > high[lane] ? value : high[lane];
+  };
+  std::size_t at = 0;
+  for (; at + lanes <= count; at += lanes)
+  {
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+    {
+      add(lane, values[at + lane]);
+    }
+  }
+  for (; at < count; ++at)
+  {
+    add(0, values[at]);
+  }
+  return { *std::min_element(low, low + lanes), *std::max_element(high, high + lanes),
+           std::count(notFinite, notFinite + lanes, 0u) == std::ptrdiff_t(lanes) };
+}
+
 } // namespace
+
+IntensityRange rangeOf(const float* values, std::size_t count)
+{
+  constexpr std::size_t together = std::size_t(1) << 20;
+  std::vector<IntensityRange> parts((count + together - 1) / together);
+  parallelFor(int(parts.size()), {}, [&](int part) {
+    const std::size_t first = std::size_t(part) * together;
+    parts[std::size_t(part)] = rangeOfPart(values + first, std::min(together, count - first));
+  });
+  IntensityRange all = parts.empty() ? IntensityRange() : parts.front();
+  for (const IntensityRange& part : parts)
+  {
+    all = { std::min(all.low, part.low), std::max(all.high, part.high), all.finite && part.finite };
+  }
+  return all;
+}
 
 IntensityVolume readIntensities(const std::string& path, const Progress& progress)
 {

@@ -3,6 +3,7 @@
 #include "Core/Progress.h"
 #include "Labels/LabelVolume.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,35 @@ struct IntensityVolume
   std::vector<float> values; ///< CT: Hounsfield units; MR: as the scanner has it
   std::string modality;      ///< "CT" or "MR" as DICOM says; empty where the file does not
 };
+
+/// The same, of values that somebody else holds.
+struct IntensityView
+{
+  GridPlacement placement;
+  const float* values = nullptr;
+  std::size_t count = 0;
+  std::string modality;
+
+  IntensityView() = default;
+  IntensityView(const IntensityVolume& volume) // whoever takes a view takes a volume
+    : placement(volume.placement)
+    , values(volume.values.data())
+    , count(volume.values.size())
+    , modality(volume.modality)
+  {
+  }
+};
+
+/// The least and the largest of some values, and whether all are finite (if not, the others mean nothing).
+struct IntensityRange
+{
+  float low = 0.0f;
+  float high = 0.0f;
+  bool finite = true;
+};
+
+/// By all cores; of no values 0 to 0.
+IntensityRange rangeOf(const float* values, std::size_t count);
 
 /// Reads a CT or MR volume and places it in the world (LPS mm): NIfTI, NRRD and MetaImage as readLabelMap places them
 /// (NIfTI's scl_slope and scl_inter applied), or a DICOM series: its folder, or one of its files, with RescaleSlope and

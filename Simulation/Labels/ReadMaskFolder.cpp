@@ -1,6 +1,7 @@
 #include "Labels/ReadMaskFolder.h"
 
 #include "Core/ParallelFor.h"
+#include "Labels/LabelRuns.h"
 #include "Labels/VoxelFile.h"
 #include "Labels/VoxelRuns.h"
 
@@ -62,30 +63,6 @@ std::string structureName(const std::string& path)
 {
   const std::string name = fs::path(path).filename().string();
   return name.substr(0, name.size() - voxelFileEnding(name).size());
-}
-
-/// Index of the first number from `n` on that differs from `value`; `count` if none does.
-template<class T>
-std::size_t firstOther(const T* numbers, std::size_t n, std::size_t count, T value)
-{
-  constexpr std::size_t block = 64; // compared at once, with vectors
-  for (; n + block <= count; n += block)
-  {
-    bool other = false;
-    for (std::size_t k = 0; k < block; ++k)
-    {
-      other |= numbers[n + k] != value;
-    }
-    if (other)
-    {
-      break;
-    }
-  }
-  while (n < count && numbers[n] == value)
-  {
-    ++n;
-  }
-  return n;
 }
 
 [[noreturn]] void refuseNumbers(const std::string& path, double first, double second)

@@ -14,16 +14,17 @@ constexpr double reachesAll = 0.98; // of the labelled voxels: masks may stand o
 
 } // namespace
 
-AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelTissueMap& map, const TissueTable& table,
+AddedScan addScan(LabelVolume& volume, const IntensityView& scan, const LabelTissueMap& map, const TissueTable& table,
                   const ScanDetailSettings& settings, const Progress& progress)
 {
   requireInRange(settings);
   volume.collectLabels();
-  LabelVolume named = volume; // with tissues
-  assignTissues(named, map, table, unknownTissue);
-  const MatchedScan matched = matchScan(named, scan, partOf(progress, 0.0, 0.2));
-  std::vector<ScanOfLabel> means = scanOfLabels(named, matched, partOf(progress, 0.2, 0.25));
-  requireSamePatient(named, matched, means);
+  LabelVolume before; // their tissues
+  before.labels = volume.labels;
+  assignTissues(volume, map, table, unknownTissue);
+  const MatchedScan matched = matchScan(volume, scan, partOf(progress, 0.0, 0.2));
+  std::vector<ScanOfLabel> means = scanOfLabels(volume, matched, partOf(progress, 0.2, 0.25));
+  requireSamePatient(volume, matched, means);
   AddedScan added;
   added.isCt = matched.isCt;
   if (matched.reachedShare < reachesAll)
@@ -35,17 +36,16 @@ AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelT
   if (matched.isCt && settings.fillFromCt)
   {
     added.names =
-      fillFromCt(named, matched, settings.skinMm, meanOfTissue(named, means, "blood"), partOf(progress, 0.25, 0.6));
-    assignTissues(named, map, table, unknownTissue);
-    means = scanOfLabels(named, matched, partOf(progress, 0.6, 0.65));
+      fillFromCt(volume, matched, settings.skinMm, meanOfTissue(volume, means, "blood"), partOf(progress, 0.25, 0.6));
+    assignTissues(volume, map, table, unknownTissue);
+    means = scanOfLabels(volume, matched, partOf(progress, 0.6, 0.65));
   }
-  added.detail = scanDetail(named, matched, means, outsideTissue, settings, partOf(progress, 0.65, 1.0));
-  for (LabelInfo& label : named.labels)
+  added.detail = scanDetail(volume, matched, means, outsideTissue, settings, partOf(progress, 0.65, 1.0));
+  for (LabelInfo& label : volume.labels)
   {
-    const LabelInfo* before = volume.find(label.id);
-    label.tissue = before ? before->tissue : std::string();
+    const LabelInfo* known = before.find(label.id);
+    label.tissue = known ? known->tissue : std::string();
   }
-  volume = std::move(named);
   return added;
 }
 

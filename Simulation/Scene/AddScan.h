@@ -22,7 +22,7 @@ struct AddedScan
 /// shows where the map has 0 (fillFromCt, unless the settings say otherwise) and makes the detail (scanDetail). The
 /// tissues that the labels' names stand for tell what to expect; labels that have one keep it, the others have none
 /// afterwards. Throws Error and Aborted as these do.
-AddedScan addScan(LabelVolume& volume, const IntensityVolume& scan, const LabelTissueMap& map, const TissueTable& table,
+AddedScan addScan(LabelVolume& volume, const IntensityView& scan, const LabelTissueMap& map, const TissueTable& table,
                   const ScanDetailSettings& settings, const Progress& progress = {});
 
 } // namespace sono

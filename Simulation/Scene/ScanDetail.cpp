@@ -3,6 +3,7 @@
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
 #include "Kernel/DetailCode.h"
+#include "Labels/LabelRuns.h"
 
 #include <algorithm>
 #include <array>
@@ -87,8 +88,9 @@ public:
       }
     }
   }
-  /// Of the row, at a voxel that the scan reaches.
-  float at(int i) const { return float(sums_[std::size_t(i)]) / float(weights_[std::size_t(i)]); }
+  /// Of the row: sums of values and their weights, above 0 at a voxel that the scan reaches.
+  const int* sums() const { return sums_.data(); }
+  const int* weights() const { return weights_.data(); }
 
 private:
   std::size_t rowAt(int j, int k) const { return std::size_t(size_.x) * (std::size_t(j) + std::size_t(size_.y) * k); }
@@ -99,6 +101,31 @@ private:
   std::vector<int> sums_;
   std::vector<int> weights_;
 };
+
+/// The codes of a row's part in one label, where the scan reaches.
+SONO_SIMD_CLONES void codeRun(const int* sums, const int* weights, const std::int16_t* values, int count, float slope,
+                              float mean, std::uint8_t* codes)
+{
+  constexpr float most = mostDb / detailStepDb;
+  for (int i = 0; i < count; ++i)
+  {
+    const float smoothed = float(sums[i]) / float(std::max(weights[i], 1));
+    const float steps = std::clamp(slope * (smoothed - mean) / detailStepDb, -most, most);
+    const int whole = int(steps);
+    const float rest = steps - float(whole); // halves away from zero, as lround, which is no vector's instruction
+    const int code = detailNone + whole + int(rest >= 0.5f) - int(rest <= -0.5f);
+    codes[i] = std::uint8_t(values[i] == MatchedScan::nothing ? detailNone : code);
+  }
+}
+
+SONO_SIMD_CLONES void shiftRun(int offset, const std::int16_t* values, std::size_t count, std::uint8_t* codes)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const int shifted = std::clamp(int(codes[i]) + offset, 0, 255);
+    codes[i] = std::uint8_t(values[i] == MatchedScan::nothing ? int(codes[i]) : shifted);
+  }
+}
 
 } // namespace
 
@@ -115,7 +142,6 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
   {
     powerOf[std::size_t(code)] = std::llround(powerUnit * std::pow(10.0, 0.1 * detailStepDb * (code - detailNone)));
   }
-  constexpr int mostSteps = int(mostDb / detailStepDb);
   const Vec3i n = labels.placement.size;
   const std::size_t slice = std::size_t(n.x) * n.y;
   std::vector<std::uint8_t> codes(labels.voxels.size(), std::uint8_t(detailNone));
@@ -124,27 +150,30 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
   parallelFor(n.z, partOf(progress, 0.0, 0.85), [&](int k) {
     std::vector<std::int64_t> own(count, 0);
     LabelSmoother smoother(labels, scan);
-    std::size_t at = slice * k;
     for (int j = 0; j < n.y; ++j)
     {
-      const auto row = labels.voxels.begin() + std::ptrdiff_t(at);
-      if (std::none_of(row, row + n.x, [&](std::uint16_t id) { return slope[std::size_t(indexOf[id])] != 0.0f; }))
-      {
-        at += std::size_t(n.x);
-        continue;
-      }
-      smoother.smoothRow(j, k);
-      for (int i = 0; i < n.x; ++i, ++at)
-      {
-        const std::size_t l = std::size_t(indexOf[labels.voxels[at]]);
-        if (slope[l] == 0.0f || scan.values[at] == MatchedScan::nothing)
+      const std::size_t row = slice * k + std::size_t(n.x) * j;
+      bool smoothed = false;
+      forRuns(labels.voxels.data() + row, std::size_t(n.x), [&](std::size_t begin, std::size_t end, std::uint16_t id) {
+        const std::size_t l = std::size_t(indexOf[id]);
+        if (slope[l] == 0.0f)
         {
-          continue;
+          return;
         }
-        const float steps = slope[l] * (smoother.at(i) - float(means[l].mean)) / detailStepDb;
-        codes[at] = std::uint8_t(detailNone + std::lround(std::clamp(steps, -float(mostSteps), float(mostSteps))));
-        own[l] += powerOf[codes[at]];
-      }
+        if (!smoothed)
+        {
+          smoother.smoothRow(j, k);
+          smoothed = true;
+        }
+        std::uint8_t* const run = codes.data() + row + begin;
+        const std::int16_t* const values = scan.values.data() + row + begin;
+        codeRun(smoother.sums() + begin, smoother.weights() + begin, values, int(end - begin), slope[l],
+                float(means[l].mean), run);
+        for (std::size_t i = 0; i < end - begin; ++i)
+        {
+          own[l] += values[i] == MatchedScan::nothing ? 0 : powerOf[run[i]];
+        }
+      });
     }
     const std::lock_guard<std::mutex> lock(mutex);
     std::transform(own.begin(), own.end(), power.begin(), power.begin(), std::plus<>());
@@ -159,14 +188,14 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
     }
   }
   parallelFor(n.z, partOf(progress, 0.85, 1.0), [&](int k) {
-    for (std::size_t at = slice * k; at < slice * (k + 1); ++at)
-    {
-      const std::size_t l = std::size_t(indexOf[labels.voxels[at]]);
-      if (offset[l] != 0 && scan.values[at] != MatchedScan::nothing)
+    forRuns(labels.voxels.data() + slice * k, slice, [&](std::size_t begin, std::size_t end, std::uint16_t id) {
+      const int by = offset[std::size_t(indexOf[id])];
+      if (by != 0)
       {
-        codes[at] = std::uint8_t(std::clamp(int(codes[at]) + offset[l], 0, 255));
+        const std::size_t at = slice * k + begin;
+        shiftRun(by, scan.values.data() + at, end - begin, codes.data() + at);
       }
-    }
+    });
   });
   return codes;
 }
