@@ -105,7 +105,8 @@ vtkMultiBlockDataSet* Anatomy::builtBlocks(vtkDataObject* input) const
 void Anatomy::update()
 {
   const bool isMade = builder_->GetExecutive()->Update() != 0;
-  for (const std::string& sentence : takeWarnings(builder_))
+  warnings_ = takeWarnings(builder_);
+  for (const std::string& sentence : warnings_)
   {
     warn(owner_, sentence);
   }

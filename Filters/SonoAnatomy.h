@@ -3,6 +3,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <string>
 #include <vector>
 
 class vtkAlgorithm;
@@ -29,6 +30,8 @@ public:
   vtkMultiBlockDataSet* blocks(vtkDataObject* input);
   /// The same where nothing need be built; null otherwise.
   vtkMultiBlockDataSet* builtBlocks(vtkDataObject* input) const;
+  /// What there was to say when they were built.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
 private:
   void reportProgress(double fraction);
@@ -39,7 +42,8 @@ private:
   double progressEnd_;
   unsigned long ear_;             ///< of the builder's progress
   std::vector<double> connected_; ///< content of the builder's input
-  vtkMTimeType builtAt_ = 0;      ///< the builder's time then; 0: what it has is not whole
+  std::vector<std::string> warnings_;
+  vtkMTimeType builtAt_ = 0; ///< the builder's time then; 0: what it has is not whole
 };
 
 } // namespace sono

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/KeyText.h"
 #include "Core/Parameters.h"
 #include "SonoParameters.h"
 
@@ -60,6 +61,13 @@ private:
     }
   }
 };
+
+/// All parameters of some settings, to the last bit.
+template<class Settings>
+void addParameters(const Settings& settings, KeyText& key)
+{
+  Settings::visit(settings, [&](const auto& value, const Parameter&) { key.add(numberOf(value)); });
+}
 
 /// The settings that a stage made itself as SettingsOf<Settings>.
 template<class Settings>

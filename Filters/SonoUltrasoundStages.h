@@ -10,6 +10,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,11 @@ public:
 
   /// What the outputs will be; a GPU begins with them. Throws Error for what is out of range.
   void announce(vtkInformationVector** input, vtkInformationVector* output);
+  /// Looks for what an earlier run of the program made of the same files by the same settings. Where there is a
+  /// picture, make() takes it and needs no input; outputs that nobody uses are then left empty.
+  bool findKept(int port);
+  /// Whether somebody uses by now what was left empty.
+  bool isLeftWanted() const;
   /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
   /// stop.
   void make(int port, vtkInformationVector** input, vtkInformationVector* output);
@@ -93,6 +99,9 @@ private:
                  vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines);
   void makePaths(int port, const ImageInput& image, vtkPolyData* output);
   void makeImage(const ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat);
+  std::string keptKey();
+  bool takeKept(vtkInformationVector* output);
+  void keep(vtkFieldData* anatomy);
   void makeErrorMap(const ImageInput& image, const TracedResult& traced);
 
   vtkSonoUltrasound* owner_;
@@ -116,6 +125,10 @@ private:
   bool isImageAsked_ = false; ///< for an image, the same
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;
+  std::string contactWarning_;    ///< of what was traced
+  std::string key_;               ///< of the picture that is wanted; empty: it is not to be kept
+  std::vector<std::string> kept_; ///< of that key; empty: nothing
+  std::set<int> left_;            ///< ports that were left empty
   ImageResult errorMap_;
   vtkSmartPointer<vtkPointData> errorArrays_;
   vtkSmartPointer<vtkImageData> tracedLines_;

@@ -1,8 +1,12 @@
 #include "vtkSonoAcousticWindow.h"
 
+#include "Core/KeptResults.h"
+#include "Core/KeyText.h"
 #include "Probe/AcousticWindow.h"
 #include "SonoAnatomy.h"
+#include "SonoContentKey.h"
 #include "SonoDataFile.h"
+#include "SonoKeptArrays.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneBuilder.h"
@@ -23,6 +27,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -33,9 +38,13 @@ vtkStandardNewMacro(vtkSonoAcousticWindow);
 
 namespace {
 
+constexpr const char* keptKind = "window";
+
 /// The scene of the input, or of the label image that it is.
-std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, vtkAlgorithm* owner)
+std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, vtkAlgorithm* owner,
+                                           std::vector<std::string>& warnings)
 {
+  warnings.clear();
   if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(input))
   {
     return vtkSonoSceneHandle::Get(blocks);
@@ -44,7 +53,10 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, v
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
   builder->SetProgressText(owner->GetProgressText()); // it is a part of that
-  return vtkSonoSceneHandle::Get(sono::Anatomy(owner, builder, 0.5).blocks(input));
+  sono::Anatomy anatomy(owner, builder, 0.5);
+  vtkMultiBlockDataSet* blocks = anatomy.blocks(input);
+  warnings = anatomy.warnings();
+  return vtkSonoSceneHandle::Get(blocks);
 }
 
 /// The pose that the data bring along.
@@ -140,6 +152,17 @@ void writeAll(const char* name, const std::vector<sono::AcousticWindow>& windows
   field->AddArray(array);
 }
 
+void drawWay(const sono::Vec3d& begin, const sono::Vec3d& end, vtkPolyData* way)
+{
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  points->InsertNextPoint(&begin.x);
+  points->InsertNextPoint(&end.x);
+  lines->InsertNextCell({ 0, 1 });
+  way->SetPoints(points);
+  way->SetLines(lines);
+}
+
 vtkSmartPointer<vtkStringArray> strings(const char* name, const std::vector<std::string>& values)
 {
   auto array = vtkSmartPointer<vtkStringArray>::New();
@@ -171,6 +194,7 @@ void vtkSonoAcousticWindow::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ChooseTarget: " << this->ChooseTarget << endl;
   os << indent << "TargetMm: " << this->TargetMm[0] << " " << this->TargetMm[1] << " " << this->TargetMm[2] << endl;
   os << indent << "CentreFrequencyMHz: " << this->CentreFrequencyMHz << endl;
+  os << indent << "CacheFolder: " << this->CacheFolder << endl;
   os << indent << "Rows: " << this->Rows->GetNumberOfValues() << endl;
   os << indent << "Targets: " << this->Targets->GetNumberOfValues() << endl;
   os << indent << "Refusal: " << this->Refusal << endl;
@@ -202,12 +226,105 @@ int vtkSonoAcousticWindow::FillInputPortInformation(int, vtkInformation* info)
 
 int vtkSonoAcousticWindow::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  return vtkImageData::GetData(input[0]) ? sono::requestWholeImage(input) : 1;
+  this->Kept.clear();
+  this->Key.clear();
+  if (!vtkImageData::GetData(input[0]))
+  {
+    return 1;
+  }
+  const std::string folder = sono::keptFolder(this->CacheFolder);
+  this->Key = folder.empty() ? std::string() : this->KeptKey();
+  if (!this->Key.empty())
+  {
+    this->Kept = sono::findKept(folder, keptKind, this->Key).value_or(std::vector<std::string>());
+  }
+  if (!this->Kept.empty())
+  {
+    sono::askNothing(input[0]->GetInformationObject(0));
+    return 1;
+  }
+  return sono::requestWholeImage(input);
+}
+
+/// All that the windows depend on; empty where that is not known.
+std::string vtkSonoAcousticWindow::KeptKey()
+try
+{
+  const std::string content = sono::contentKeyOf(this, 0);
+  vtkNew<vtkSonoSceneBuilder> builder;
+  builder->SetFillBody(this->FillBody);
+  const std::string anatomy = content.empty() ? content : builder->SettingsKey();
+  if (anatomy.empty())
+  {
+    return {};
+  }
+  const char* array = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+  sono::KeyText key;
+  key.add(sono::programKey()).add(content).add(anatomy).add(array ? array : "");
+  key.add(this->Target).add(double(this->Candidate)).add(this->CentreFrequencyMHz).add(double(this->ChooseTarget));
+  key.add(this->TargetMm[0]).add(this->TargetMm[1]).add(this->TargetMm[2]);
+  for (const std::string& preset : sono::dataFiles("probes", ".json"))
+  {
+    key.add(preset).add(sono::fileKey(sono::dataFile("probes/" + preset + ".json")));
+  }
+  return key.text();
+}
+catch (const sono::Error&)
+{
+  return {}; // said when the file is read
+}
+
+/// False where nothing was found earlier.
+bool vtkSonoAcousticWindow::TakeKept(vtkPolyData* way)
+{
+  vtkNew<vtkFieldData> own;
+  if (this->Kept.size() != 3 || !sono::addPackedArrays(this->Kept[1], own) ||
+      !sono::addPackedArrays(this->Kept[0], way->GetFieldData()))
+  {
+    return false;
+  }
+  this->Rows = vtkStringArray::SafeDownCast(own->GetAbstractArray("Rows"));
+  this->Targets = vtkStringArray::SafeDownCast(own->GetAbstractArray("Targets"));
+  vtkDataArray* ends = own->GetArray("Ends");
+  sono::Vec3d begin;
+  sono::Vec3d end;
+  ends->GetTuple(0, &begin.x);
+  ends->GetTuple(1, &end.x);
+  drawWay(begin, end, way);
+  for (const std::string& sentence : sono::unpackedSentences(this->Kept[2]))
+  {
+    sono::warn(this, sentence);
+  }
+  return true;
+}
+
+void vtkSonoAcousticWindow::Keep(vtkPolyData* way)
+{
+  if (this->Key.empty() || this->Key != this->KeptKey()) // a file may have changed meanwhile
+  {
+    return;
+  }
+  vtkNew<vtkFieldData> own;
+  vtkNew<vtkDoubleArray> ends;
+  ends->SetName("Ends");
+  ends->SetNumberOfComponents(3);
+  for (const vtkIdType point : { 0, 1 })
+  {
+    ends->InsertNextTuple(way->GetPoint(point));
+  }
+  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ this->Rows, this->Targets, ends })
+  {
+    own->AddArray(array);
+  }
+  sono::keep(
+    sono::keptFolder(this->CacheFolder), keptKind, this->Key,
+    { sono::packedArrays(way->GetFieldData()), sono::packedArrays(own), sono::packedSentences(this->Warnings) });
 }
 
 void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
 {
-  const auto scene = sceneOf(input, this->FillBody, this);
+  this->Scene = sceneOf(input, this->FillBody, this, this->Warnings);
+  const std::shared_ptr<const sono::Scene> scene = this->Scene;
   this->Targets = strings("Targets", sono::windowTargetNames(*scene));
   const bool isFree = !this->ChooseTarget && this->Target.empty();
   const auto carried = isFree ? carriedPose(input->GetFieldData()) : std::nullopt;
@@ -243,13 +360,7 @@ void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
   const sono::AcousticWindow& chosen = windows[std::size_t(this->Candidate)];
   constexpr double shownMm = 100.0; // of a pose that names no depth
   const sono::Vec3d end = chosen.pose.positionMm + (carried ? shownMm : chosen.depthMm) * chosen.pose.axial;
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> lines;
-  points->InsertNextPoint(&chosen.pose.positionMm.x);
-  points->InsertNextPoint(&end.x);
-  lines->InsertNextCell({ 0, 1 });
-  way->SetPoints(points);
-  way->SetLines(lines);
+  drawWay(chosen.pose.positionMm, end, way);
   vtkFieldData* field = way->GetFieldData();
   sono::writeVector("ProbePositionMm", chosen.pose.positionMm, field);
   sono::writeVector("ProbeAxial", chosen.pose.axial, field);
@@ -293,7 +404,12 @@ int vtkSonoAcousticWindow::RequestData(vtkInformation*, vtkInformationVector** i
       {
         throw sono::Error("No label map is connected; select one before you make the filter, or set its Input.");
       }
-      this->Find(data, vtkPolyData::GetData(output));
+      vtkPolyData* way = vtkPolyData::GetData(output);
+      if (!this->TakeKept(way))
+      {
+        this->Find(data, way);
+        this->Keep(way);
+      }
     }
     catch (const sono::Error& error)
     {

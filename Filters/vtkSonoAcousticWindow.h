@@ -5,9 +5,14 @@
 #include "vtkSmartPointer.h"      // for the rows
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
 #include <string>
+#include <vector>
 
 class vtkStringArray;
+namespace sono {
+class Scene;
+}
 
 /**
  * @class vtkSonoAcousticWindow
@@ -82,6 +87,15 @@ public:
 
   ///@{
   /**
+   * Folder that keeps what was found, by the content of the label map's files and all settings, as of
+   * vtkSonoSceneBuilder: "auto" the user's own; empty keeps nothing. Default auto.
+   */
+  vtkSetStdStringFromCharMacro(CacheFolder);
+  vtkGetCharFromStdStringMacro(CacheFolder);
+  ///@}
+
+  ///@{
+  /**
    * After an update, as text: the places, fields separated by tabs (sentence, preset, DepthMm, and three numbers each
    * of position, axial and lateral; a pose that the data bring along has the depth 0), and the names of possible
    * targets.
@@ -108,6 +122,9 @@ private:
   void operator=(const vtkSonoAcousticWindow&) = delete;
 
   void Find(vtkDataObject* input, vtkPolyData* way);
+  std::string KeptKey();
+  bool TakeKept(vtkPolyData* way);
+  void Keep(vtkPolyData* way);
 
   int FillBody = 2;
   std::string Target;
@@ -115,9 +132,14 @@ private:
   bool ChooseTarget = false;
   double TargetMm[3] = { 0.0, 0.0, 0.0 };
   double CentreFrequencyMHz = 2.5;
+  std::string CacheFolder = "auto";
   std::string Refusal;
   vtkSmartPointer<vtkStringArray> Rows;
   vtkSmartPointer<vtkStringArray> Targets;
+  std::shared_ptr<const sono::Scene> Scene; // for the picture that is made of it next
+  std::vector<std::string> Warnings;        // of the scene
+  std::string Key;                          // of what is wanted; empty: it is not to be kept
+  std::vector<std::string> Kept;            // what was found earlier; empty: nothing
 };
 
 #endif

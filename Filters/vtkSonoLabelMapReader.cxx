@@ -1,9 +1,12 @@
 #include "vtkSonoLabelMapReader.h"
 
+#include "Core/KeyText.h"
 #include "Labels/KnownNumbers.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadDicomSeg.h"
 #include "Labels/ReadLabelMap.h"
+#include "Labels/VoxelFile.h"
+#include "SonoContentKey.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoStage.h"
@@ -21,6 +24,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 vtkStandardNewMacro(vtkSonoLabelMapReader);
@@ -106,6 +110,7 @@ std::vector<double> timesOf(const std::vector<std::string>& fileNames)
 } // namespace
 
 vtkSonoLabelMapReader::vtkSonoLabelMapReader()
+  : Files(std::make_unique<sono::ReadFiles>())
 {
   this->SetNumberOfInputPorts(0);
   this->SetProgressText("Reading the label map");
@@ -149,6 +154,70 @@ void vtkSonoLabelMapReader::RemoveAllFileNames()
   {
     this->FileNames.clear();
     this->Modified();
+  }
+}
+
+/// All that the output depends on; empty where that is not known.
+std::vector<std::string> vtkSonoLabelMapReader::FilesToRead() const
+{
+  namespace fs = std::filesystem;
+  if (this->FileNames.size() != 1 || this->Times.size() != 1)
+  {
+    return {};
+  }
+  const std::string& path = this->FileNames[0];
+  std::vector<std::string> files{ path };
+  std::error_code error;
+  if (fs::is_directory(path, error))
+  {
+    files.clear();
+    for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    {
+      if (!sono::voxelFileEnding(entry.path().string()).empty())
+      {
+        files.push_back(entry.path().string());
+      }
+    }
+    std::sort(files.begin(), files.end());
+  }
+  else
+  {
+    const std::string ending = sono::voxelFileEnding(path);
+    const std::string table = sono::labelTableBeside(ending.empty() ? fs::path(path).replace_extension().string()
+                                                                    : path.substr(0, path.size() - ending.size()));
+    if (!table.empty())
+    {
+      files.push_back(table);
+    }
+  }
+  if (this->LabelNames != "From File")
+  {
+    files.push_back(listOfNames(this->LabelNames));
+  }
+  return std::all_of(files.begin(), files.end(), sono::holdsItsVoxels) ? files : std::vector<std::string>();
+}
+
+std::string vtkSonoLabelMapReader::ContentKey()
+{
+  try
+  {
+    const std::vector<std::string> files = this->FilesToRead();
+    const std::string content = files.empty() || !this->Noticed.empty() ? std::string() : this->Files->key(files);
+    if (content.empty())
+    {
+      return {};
+    }
+    sono::KeyText key;
+    key.add("label map").add(content).add(this->LabelNames);
+    for (const std::string& file : files)
+    {
+      key.add(std::filesystem::path(file).filename().string()); // masks are named by it
+    }
+    return key.text();
+  }
+  catch (const sono::Error&)
+  {
+    return {}; // said when it is read
   }
 }
 
@@ -203,6 +272,11 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
 {
   return sono::runStage(this, output, [&] {
     vtkInformation* outInfo = output->GetInformationObject(0);
+    if (sono::isAskedNothing(outInfo))
+    {
+      return sono::giveNothing(outInfo);
+    }
+    this->Files->willRead(this->FilesToRead());
     const double time =
       outInfo->Has(Pipeline::UPDATE_TIME_STEP()) ? outInfo->Get(Pipeline::UPDATE_TIME_STEP()) : this->Times.front();
     // The last phase that has begun.

@@ -4,12 +4,14 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 namespace sono {
 struct LabelVolume;
+class ReadFiles;
 }
 
 /**
@@ -65,6 +67,13 @@ public:
    */
   static int CanReadFile(const char* fileName);
 
+  /**
+   * What tells the output, without reading it: the content of the files and the settings. Empty for phases, for data in
+   * a file beside their header, where a file has changed since it was read, and where there is something to say of how
+   * it was read, so that it is said again.
+   */
+  std::string ContentKey();
+
 protected:
   vtkSonoLabelMapReader();
   ~vtkSonoLabelMapReader() override;
@@ -79,9 +88,11 @@ private:
   void operator=(const vtkSonoLabelMapReader&) = delete;
 
   sono::LabelVolume ReadPhase(int phase);
+  std::vector<std::string> FilesToRead() const;
 
   std::string LabelNames = "From File";
-  std::vector<double> Times;     // of the phases
+  std::vector<double> Times; // of the phases
+  std::unique_ptr<sono::ReadFiles> Files;
   std::set<std::string> Noticed; // what was said of the files: once is enough
 };
 

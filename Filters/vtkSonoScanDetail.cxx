@@ -1,6 +1,8 @@
 #include "vtkSonoScanDetail.h"
 
+#include "Core/KeyText.h"
 #include "Scene/AddScan.h"
+#include "SonoContentKey.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoSettings.h"
@@ -105,14 +107,49 @@ int vtkSonoScanDetail::RequestInformation(vtkInformation*, vtkInformationVector*
   return 1;
 }
 
-int vtkSonoScanDetail::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+std::string vtkSonoScanDetail::ContentKey()
 {
+  const std::string labels = sono::contentKeyOf(this, 0);
+  const std::string scan = labels.empty() ? labels : sono::contentKeyOf(this, 1);
+  if (scan.empty())
+  {
+    return {};
+  }
+  try
+  {
+    const char* array = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+    sono::KeyText key;
+    key.add("scan added").add(labels).add(scan).add(array ? array : "");
+    sono::addParameters(sono::settingsIn<sono::ScanDetailSettings>(*this->Parameters), key);
+    key.add(sono::fileKey(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv")));
+    return key.add(sono::fileKey(sono::dataFile("tissues.csv"))).text();
+  }
+  catch (const sono::Error&)
+  {
+    return {}; // said when the table is read
+  }
+}
+
+int vtkSonoScanDetail::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  if (sono::isAskedNothing(output->GetInformationObject(0)))
+  {
+    for (int port : { 0, 1 })
+    {
+      sono::askNothing(input[port]->GetInformationObject(0));
+    }
+    return 1;
+  }
   return sono::requestWholeImage(input, 0) && sono::requestWholeImage(input, 1);
 }
 
 int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
+    if (sono::isAskedNothing(output->GetInformationObject(0)))
+    {
+      return sono::giveNothing(output->GetInformationObject(0));
+    }
     const sono::Progress progress = sono::progressOf(this);
     sono::LabelVolume volume =
       sono::labelVolumeFromImage(vtkImageData::GetData(input[0]), sono::labelArrayOf(this, input));

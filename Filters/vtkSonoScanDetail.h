@@ -48,6 +48,12 @@ public:
   vtkGetCharFromStdStringMacro(LabelTissueFile);
   ///@}
 
+  /**
+   * What tells the output, without making it: the inputs' content, the settings and the tables. Empty where that is not
+   * known.
+   */
+  std::string ContentKey();
+
 protected:
   vtkSonoScanDetail();
   ~vtkSonoScanDetail() override;

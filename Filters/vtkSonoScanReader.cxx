@@ -1,6 +1,9 @@
 #include "vtkSonoScanReader.h"
 
+#include "Core/KeyText.h"
 #include "Labels/ReadIntensities.h"
+#include "Labels/VoxelFile.h"
+#include "SonoContentKey.h"
 #include "SonoLabelImage.h"
 #include "SonoSharedArray.h"
 #include "SonoStage.h"
@@ -16,9 +19,23 @@
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
+#include <filesystem>
+
 vtkStandardNewMacro(vtkSonoScanReader);
 
+namespace {
+
+bool isSeries(const std::string& path)
+{
+  std::error_code error;
+  return std::filesystem::is_directory(path, error) || sono::isDicomFile(path);
+}
+
+} // namespace
+
 vtkSonoScanReader::vtkSonoScanReader()
+  : Files(std::make_unique<sono::ReadFiles>())
 {
   this->SetNumberOfInputPorts(0);
   this->SetProgressText("Reading the scan");
@@ -32,6 +49,48 @@ void vtkSonoScanReader::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FileName: " << this->FileName << endl;
 }
 
+/// The file, or all of the series' folder; empty where the voxels lie elsewhere.
+std::vector<std::string> vtkSonoScanReader::FilesToRead() const
+{
+  namespace fs = std::filesystem;
+  if (!isSeries(this->FileName))
+  {
+    return sono::holdsItsVoxels(this->FileName) ? std::vector<std::string>{ this->FileName }
+                                                : std::vector<std::string>();
+  }
+  std::error_code error;
+  const fs::path path(this->FileName);
+  std::vector<std::string> files{};
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(fs::is_directory(path, error) ? path : path.parent_path(), error))
+  {
+    if (entry.is_regular_file(error))
+    {
+      files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string vtkSonoScanReader::ContentKey()
+{
+  const std::vector<std::string> files = this->FilesToRead();
+  const std::string content = files.empty() ? std::string() : this->Files->key(files);
+  if (content.empty())
+  {
+    return {};
+  }
+  const std::string name = std::filesystem::path(this->FileName).filename().string(); // of a series, which one
+  return sono::KeyText().add("scan").add(content).add(isSeries(this->FileName) ? name : "").text();
+}
+
+std::shared_ptr<const sono::IntensityVolume> vtkSonoScanReader::Read()
+{
+  this->Files->willRead(this->FilesToRead());
+  return std::make_shared<const sono::IntensityVolume>(sono::readIntensities(this->FileName, sono::progressOf(this)));
+}
+
 int vtkSonoScanReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
@@ -39,10 +98,10 @@ int vtkSonoScanReader::RequestInformation(vtkInformation*, vtkInformationVector*
     {
       throw sono::Error("No scan is named; set FileName to a NIfTI, NRRD or MetaImage file or a DICOM series.");
     }
-    this->Volume =
-      std::make_shared<const sono::IntensityVolume>(sono::readIntensities(this->FileName, sono::progressOf(this)));
+    this->Series = isSeries(this->FileName) ? this->Read() : nullptr;
     vtkInformation* outInfo = output->GetInformationObject(0);
-    sono::announceLabelImage(this->Volume->placement, outInfo);
+    sono::announceLabelImage(this->Series ? this->Series->placement : sono::openVoxels(this->FileName).placement,
+                             outInfo);
     vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_FLOAT, 1);
   });
 }
@@ -50,23 +109,24 @@ int vtkSonoScanReader::RequestInformation(vtkInformation*, vtkInformationVector*
 int vtkSonoScanReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    if (!this->Volume)
+    if (sono::isAskedNothing(output->GetInformationObject(0)))
     {
-      throw sono::Error("The scan '" + this->FileName + "' was not read; see the error before.");
+      return sono::giveNothing(output->GetInformationObject(0));
     }
+    const std::shared_ptr<const sono::IntensityVolume> volume = this->Series ? this->Series : this->Read();
     vtkImageData* image = vtkImageData::GetData(output);
-    sono::placeImage(this->Volume->placement, image);
-    const sono::SharedSpan<float> kept{ std::shared_ptr<const float>(this->Volume, this->Volume->values.data()),
-                                        this->Volume->values.size() };
+    sono::placeImage(volume->placement, image);
+    const sono::SharedSpan<float> kept{ std::shared_ptr<const float>(volume, volume->values.data()),
+                                        volume->values.size() };
     const auto values = sono::sharedArray<vtkFloatArray>("Intensities", kept);
     const sono::IntensityRange range = sono::rangeOf(kept.begin(), kept.size);
     sono::tellRange(range.low, range.high, values);
     image->GetPointData()->SetScalars(values);
-    if (!this->Volume->modality.empty())
+    if (!volume->modality.empty())
     {
       vtkNew<vtkStringArray> modality;
       modality->SetName("Modality");
-      modality->InsertNextValue(this->Volume->modality);
+      modality->InsertNextValue(volume->modality);
       image->GetFieldData()->AddArray(modality);
     }
   });

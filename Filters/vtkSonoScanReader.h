@@ -6,9 +6,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace sono {
 struct IntensityVolume;
+class ReadFiles;
 }
 
 /**
@@ -34,6 +36,12 @@ public:
   vtkGetCharFromStdStringMacro(FileName);
   ///@}
 
+  /**
+   * What tells the output, without reading it: the content of its files. Empty where it has changed since it was read,
+   * or lies in a file beside its header.
+   */
+  std::string ContentKey();
+
 protected:
   vtkSonoScanReader();
   ~vtkSonoScanReader() override;
@@ -45,8 +53,12 @@ private:
   vtkSonoScanReader(const vtkSonoScanReader&) = delete;
   void operator=(const vtkSonoScanReader&) = delete;
 
+  std::vector<std::string> FilesToRead() const;
+  std::shared_ptr<const sono::IntensityVolume> Read();
+
   std::string FileName;
-  std::shared_ptr<const sono::IntensityVolume> Volume; // from the information pass, which needs its size
+  std::unique_ptr<sono::ReadFiles> Files;
+  std::shared_ptr<const sono::IntensityVolume> Series; // from the information pass, which needs its size
 };
 
 #endif

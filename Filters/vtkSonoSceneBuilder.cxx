@@ -1,5 +1,7 @@
 #include "vtkSonoSceneBuilder.h"
 
+#include "Core/KeptResults.h"
+#include "Core/KeyText.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/BodyEnd.h"
 #include "Labels/BodyFill.h"
@@ -8,10 +10,12 @@
 #include "Labels/TissueTable.h"
 #include "Scene/ScanDetail.h"
 #include "Scene/SceneFile.h"
+#include "SonoContentKey.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
 #include "SonoSceneBlocks.h"
 #include "SonoSettings.h"
+#include "SonoSharedAnatomy.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -23,6 +27,10 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
 
 vtkStandardNewMacro(vtkSonoSceneBuilder);
 
@@ -78,6 +86,40 @@ void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BuildSurfaces: " << this->BuildSurfaces << endl;
 }
 
+void vtkSonoSceneBuilder::Warn(const std::string& sentence)
+{
+  this->Warnings.push_back(sentence);
+  sono::warn(this, sentence);
+}
+
+void vtkSonoSceneBuilder::ClearCache()
+{
+  const std::string folder = sono::keptFolder(this->CacheFolder);
+  if (!folder.empty())
+  {
+    sono::trimCacheFolder(folder, 0);
+  }
+}
+
+std::string vtkSonoSceneBuilder::SettingsKey()
+{
+  try
+  {
+    sono::KeyText key;
+    key.add("anatomy");
+    key.add(sono::fileKey(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
+    key.add(sono::fileKey(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv")));
+    key.add(this->LabelTableFile.empty() ? std::string() : sono::fileKey(this->LabelTableFile));
+    key.add(this->FallbackTissue).add(this->OutsideTissue).add(double(this->FillBody));
+    sono::addParameters(sono::settingsIn<sono::BodyFillSettings>(*this->Parameters), key);
+    return key.text();
+  }
+  catch (const sono::Error&)
+  {
+    return {}; // said when the table is read
+  }
+}
+
 int vtkSonoSceneBuilder::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
@@ -114,22 +156,22 @@ void vtkSonoSceneBuilder::AssignTissues(const sono::TissueTable& table, sono::La
   const std::string guesses = warningOfGuesses(volume.labels);
   if (!guesses.empty())
   {
-    sono::warn(this, guesses);
+    this->Warn(guesses);
   }
   const sono::BodyEnd end = this->FillBody == FILL_AUTO ? sono::bodyEnd(volume, unmapped) : sono::BodyEnd::Skin;
   const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);
   if (end == sono::BodyEnd::NoSkin)
   {
     sono::fillBody(volume, settings);
-    sono::warn(this, "The label map has no skin: its body was filled with soft tissue and skin, whose place is an "
-                     "estimate (Fill Body is Auto; Off leaves it as it is).");
+    this->Warn("The label map has no skin: its body was filled with soft tissue and skin, whose place is an "
+               "estimate (Fill Body is Auto; Off leaves it as it is).");
   }
   else if (end == sono::BodyEnd::BareOrgan)
   {
     sono::batheOrgan(volume, settings);
-    sono::warn(this, "The label map holds a bare organ without a body around it: a bath of soft tissue, " +
-                       std::to_string(int(sono::bathMm)) +
-                       " mm thick, was put around it (Fill Body is Auto; Off leaves it as it is).");
+    this->Warn("The label map holds a bare organ without a body around it: a bath of soft tissue, " +
+               std::to_string(int(sono::bathMm)) +
+               " mm thick, was put around it (Fill Body is Auto; Off leaves it as it is).");
   }
   if (end != sono::BodyEnd::Skin)
   {
@@ -137,30 +179,52 @@ void vtkSonoSceneBuilder::AssignTissues(const sono::TissueTable& table, sono::La
   }
   if (sono::hasHeartWithoutChambers(volume))
   {
-    sono::warn(this, "The heart is one label without blood in it: its chambers are missing and will look like muscle; "
-                     "take a segmentation that has chambers.");
+    this->Warn("The heart is one label without blood in it: its chambers are missing and will look like muscle; "
+               "take a segmentation that has chambers.");
   }
+}
+
+sono::SharedAnatomy vtkSonoSceneBuilder::Build(vtkInformationVector** input, bool cached)
+{
+  const sono::Progress progress = sono::progressOf(this);
+  this->Warnings.clear();
+  sono::LabelVolume volume = this->ReadLabels(input);
+  const auto table = std::make_shared<const sono::TissueTable>(
+    sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
+  const sono::GridPlacement placement = volume.placement;
+  this->AssignTissues(*table, volume);
+  std::vector<std::uint8_t> detail = sono::scanDetailOf(vtkImageData::GetData(input[0]));
+  if (!detail.empty() && volume.placement.size != placement.size)
+  {
+    detail = sono::detailOnLargerGrid(detail, placement, volume.placement);
+  }
+  const std::shared_ptr<const sono::Scene> scene =
+    cached ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,
+                                   sono::partOf(progress, 0.1, 0.6), std::move(detail))
+           : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue, std::move(detail));
+  return { scene, table, this->Warnings };
 }
 
 int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
     const sono::Progress progress = sono::progressOf(this);
-    sono::LabelVolume volume = this->ReadLabels(input);
-    const auto table = std::make_shared<const sono::TissueTable>(
-      sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
-    const sono::GridPlacement placement = volume.placement;
-    this->AssignTissues(*table, volume);
-    std::vector<std::uint8_t> detail = sono::scanDetailOf(vtkImageData::GetData(input[0]));
-    if (!detail.empty() && volume.placement.size != placement.size)
+    const bool cached = this->BuildSurfaces && !this->CacheFolder.empty() && this->CacheFolder != "auto";
+    vtkDataArray* labels = sono::labelArrayOf(this, input);
+    const std::string key = this->SettingsKey();
+    std::optional<sono::SharedAnatomy> anatomy =
+      key.empty() ? std::nullopt : sono::findAnatomy(vtkImageData::GetData(input[0]), labels, key);
+    if (anatomy)
     {
-      detail = sono::detailOnLargerGrid(detail, placement, volume.placement);
+      std::for_each(anatomy->warnings.begin(), anatomy->warnings.end(),
+                    [this](const std::string& sentence) { sono::warn(this, sentence); });
     }
-    const bool cached = this->BuildSurfaces && !this->CacheFolder.empty();
-    const std::shared_ptr<const sono::Scene> scene =
-      cached ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,
-                                     sono::partOf(progress, 0.1, 0.6), std::move(detail))
-             : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue, std::move(detail));
+    else
+    {
+      anatomy = this->Build(input, cached);
+      sono::shareAnatomy(vtkImageData::GetData(input[0]), labels, key, *anatomy);
+    }
+    const std::shared_ptr<const sono::Scene>& scene = anatomy->scene;
     vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
     if (this->BuildSurfaces)
     {
@@ -173,6 +237,6 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
       sono::addOutline(*scene, blocks);
     }
     sono::writeLabelTable(scene->volume().labels, blocks->GetFieldData());
-    vtkSonoSceneHandle::Attach(scene, table, blocks);
+    vtkSonoSceneHandle::Attach(scene, anatomy->tissues, blocks);
   });
 }

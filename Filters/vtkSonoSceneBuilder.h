@@ -7,9 +7,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace sono {
 struct LabelVolume;
+struct SharedAnatomy;
 class TissueTable;
 }
 class vtkDataArray;
@@ -103,12 +105,25 @@ public:
 
   ///@{
   /**
-   * Folder that keeps built surfaces by the label map's voxels and placement, so that the same label map is quick the
-   * next time; empty keeps nothing. Its files may be deleted at any time. Used with BuildSurfaces. Default empty.
+   * Folder that keeps what was computed, so that it is there at once the next time: built surfaces by the label map's
+   * voxels and placement (hundreds of megabytes, used with BuildSurfaces), and of vtkSonoUltrasound the pictures by the
+   * content of the files and all settings (a megabyte each). "auto" keeps pictures, and no surfaces, in the user's
+   * cache folder (sono::userCacheFolder); empty keeps nothing. What was not used for longest goes when there are more
+   * than four gigabytes. Its files may be deleted at any time. Default auto.
    */
   vtkSetStdStringFromCharMacro(CacheFolder);
   vtkGetCharFromStdStringMacro(CacheFolder);
   ///@}
+
+  /**
+   * Removes all that was kept in the folder, of this anatomy and of others.
+   */
+  void ClearCache();
+
+  /**
+   * Of all settings that the anatomy depends on, and of the tables that they name. Empty where one cannot be read.
+   */
+  std::string SettingsKey();
 
   ///@{
   /**
@@ -134,6 +149,8 @@ private:
 
   sono::LabelVolume ReadLabels(vtkInformationVector** input);
   void AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume);
+  sono::SharedAnatomy Build(vtkInformationVector** input, bool cached);
+  void Warn(const std::string& sentence);
 
   std::string TissueTableFile;
   std::string LabelTissueFile;
@@ -142,8 +159,9 @@ private:
   std::string OutsideTissue = "air";
   std::unique_ptr<sono::ParameterSet> Parameters;
   int FillBody = FILL_AUTO;
-  std::string CacheFolder;
+  std::string CacheFolder = "auto";
   bool BuildSurfaces = true;
+  std::vector<std::string> Warnings; // of the anatomy that is being built
 };
 
 #endif

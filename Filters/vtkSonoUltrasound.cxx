@@ -1,5 +1,6 @@
 #include "vtkSonoUltrasound.h"
 
+#include "SonoContentKey.h"
 #include "SonoStage.h"
 #include "SonoUltrasoundStages.h"
 #include "vtkSonoBMode.h"
@@ -95,6 +96,10 @@ sonoStage(vtkSonoScanConverter, ScanConverter, converter);
 
 vtkMTimeType vtkSonoUltrasound::GetMTime()
 {
+  if (this->Inside->isLeftWanted())
+  {
+    this->MTime.Modified(); // without telling: nothing has changed but who looks
+  }
   vtkMTimeType time = this->Superclass::GetMTime();
   for (vtkAlgorithm* stage : this->Inside->withSettings())
   {
@@ -144,8 +149,13 @@ int vtkSonoUltrasound::RequestInformation(vtkInformation*, vtkInformationVector*
   });
 }
 
-int vtkSonoUltrasound::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+int vtkSonoUltrasound::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** input, vtkInformationVector*)
 {
+  if (this->Inside->findKept(portAsked(request)))
+  {
+    sono::askNothing(input[LABELS_OR_SCENE]->GetInformationObject(0));
+    return 1;
+  }
   for (int port : { LABELS_OR_SCENE, PULSE_ECHO_FIELD })
   {
     if (vtkImageData::GetData(input[port]))

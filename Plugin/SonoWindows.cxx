@@ -54,6 +54,7 @@ SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, co
   }
   vtkSMPropertyHelper(search, "FillBody").Set(vtkSMPropertyHelper(ultrasound, "FillBody").GetAsInt());
   vtkSMPropertyHelper(search, "Target").Set(target.c_str());
+  vtkSMPropertyHelper(search, "CacheFolder").Set(vtkSMPropertyHelper(ultrasound, "CacheFolder").GetAsString());
   search->UpdateVTKObjects();
   search->UpdatePipeline();
   search->UpdatePropertyInformation();

@@ -1,7 +1,10 @@
 #include "SameSettings.h"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace sono {
@@ -53,7 +56,77 @@ bool sameTissue(const Tissue& a, const Tissue& b)
          });
 }
 
+/// Writes down what `rest` has; false where something is shared.
+class Describer
+{
+public:
+  explicit Describer(KeyText& key)
+    : key_(key)
+  {
+  }
+  template<class Settings>
+  void all(const Settings& settings)
+  {
+    for (const double number : parametersOf(settings))
+    {
+      key_.add(number);
+    }
+    std::apply([&](const auto&... values) { (one(values), ...); }, rest(settings));
+  }
+  bool whole() const { return whole_; }
+
+private:
+  template<class Value>
+  std::enable_if_t<std::is_arithmetic_v<Value> || std::is_enum_v<Value>> one(const Value& value)
+  {
+    key_.add(numberOf(value));
+  }
+  void one(const BeamAperture& aperture)
+  {
+    BeamAperture::visit(aperture, [&](double value, const Parameter&) { key_.add(value); });
+    key_.add(double(aperture.elevationIsArray));
+  }
+  void one(const std::vector<std::pair<double, double>>& curve)
+  {
+    key_.add(double(curve.size()));
+    for (const auto& [at, value] : curve)
+    {
+      key_.add(at).add(value);
+    }
+  }
+  template<class Shared>
+  void one(const std::shared_ptr<Shared>& shared)
+  {
+    whole_ = whole_ && !shared;
+  }
+
+  KeyText& key_;
+  bool whole_ = true;
+};
+
 } // namespace
+
+bool describe(const ImageSettings& settings, KeyText& key)
+{
+  Describer describer(key);
+  describer.all(settings.tracing);
+  describer.all(settings.echo);
+  describer.all(settings.bmode);
+  for (const double number : parametersOf(settings.geometry))
+  {
+    key.add(number);
+  }
+  key.add(settings.pixelMm);
+  return describer.whole();
+}
+
+void describe(const ProbePose& pose, KeyText& key)
+{
+  for (const Vec3d& v : { pose.positionMm, pose.axial, pose.lateral })
+  {
+    key.add(v.x).add(v.y).add(v.z);
+  }
+}
 
 bool same(const TraceSettings& a, const TraceSettings& b)
 {

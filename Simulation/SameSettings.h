@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/KeyText.h"
 #include "ImageSettings.h"
 #include "Trace/Targets.h"
 
@@ -9,6 +10,10 @@ namespace sono {
 
 // Whether two are the same to the bit, and give the same result therefore; what is shared counts as the same when it is
 // the same object.
+
+/// All of it, to the last bit. False where that cannot be written down, because something is shared: field, pulse.
+bool describe(const ImageSettings& settings, KeyText& key);
+void describe(const ProbePose& pose, KeyText& key);
 
 bool same(const TraceSettings& a, const TraceSettings& b);
 bool same(const EchoSettings& a, const EchoSettings& b);

@@ -31,6 +31,7 @@ if [[ $stage =~ ^[a-z]+$ && -f "$stages/$stage.py" ]]; then
   "$root/Testing/build-preset.sh" release SonoVDB vtkSonoFiltersPython vtkSonoWidgetsPython >&2
   export SONOVDB_PLUGIN="$root/build/lib/paraview-5.11/plugins/SonoVDB/SonoVDB.so"
   export PYTHONPATH="$root/build/lib/python3/dist-packages"
+  export XDG_CACHE_HOME=/dev/null # what an earlier run has kept is no figure
   exec pvpython "$stages/$stage.py"
 fi
 if [[ ! $stage =~ ^[a-z]+$ || ! -f "$stages/$stage.cpp" ]]; then

@@ -10,7 +10,7 @@ namespace sono {
 
 /// A NanoVDB file (.nvdb) with a text of ours in it, written and read under the format's own rules, so that other
 /// programs see its grids. The text is the blind data "sonovdb" of the first grid: eight bytes hash64 of the text, then
-/// the text: one line of fingerprints, hash64 of each grid's tree in hexadecimal; one line of who writes the file; and
+/// the text: one line of fingerprints, hash64 of each grid's tree in hexadecimal; one line from who wrote the file; and
 /// perhaps bytes.
 struct NanoFile
 {

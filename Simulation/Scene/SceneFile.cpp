@@ -1,6 +1,7 @@
 #include "Scene/SceneFile.h"
 
 #include "Core/Hash64.h"
+#include "Core/KeptResults.h"
 #include "Core/ParallelFor.h"
 #include "Scene/LabelMask.h"
 #include "Scene/NanoConvert.h"
@@ -200,6 +201,7 @@ std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& ta
       NanoFile file = readNanoFile(path);
       SceneGrids grids = takeGrids(path, file, parseSceneText(path, file.text));
       scene->adopt(std::move(grids.labels), std::move(grids.surfaces));
+      markUsed(path);
       report(progress, 1.0);
       return scene;
     }
@@ -210,6 +212,7 @@ std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& ta
   }
   scene->buildAll(partOf(progress, 0.0, 0.7));
   writeNanoScene(path, *scene, {});
+  trimCacheFolder(cacheFolder);
   report(progress, 1.0);
   return scene;
 }

@@ -3,6 +3,7 @@
 #include "Scene/SceneText.h"
 #include "TestScenes.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -245,10 +246,13 @@ TEST_F(SceneFiles, CacheIsKeyedByContent)
   const auto first = makeCachedScene(smallVolume(), smallTable(), "air", cache);
   ASSERT_EQ(filesThere(), 1);
   const fs::path entry = fs::directory_iterator(cache)->path();
-  const auto written = fs::last_write_time(entry);
+  fs::create_hard_link(entry, file("written"));
+  fs::last_write_time(entry, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const auto hourAgo = fs::last_write_time(entry);
 
   const auto second = makeCachedScene(smallVolume(), smallTable(2.5), "air", cache);
-  EXPECT_EQ(fs::last_write_time(entry), written);
+  EXPECT_TRUE(fs::equivalent(entry, file("written"))); // not written anew, which makes another file
+  EXPECT_GT(fs::last_write_time(entry), hourAgo);      // but used
   expectSameScene(*first, *second);
   EXPECT_EQ(second->tissues()[2].impedanceMRayl, 2.5); // the caller's table, not the file's
 
