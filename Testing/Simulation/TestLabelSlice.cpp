@@ -19,7 +19,7 @@ LabelVolume obliqueVolume()
   Mat3d turn =
     Mat3d(Vec3d(c, s, 0), Vec3d(-s, c, 0), Vec3d(0, 0, 1)) * Mat3d(Vec3d(1, 0, 0), Vec3d(0, d, t), Vec3d(0, -t, d));
   turn[2] = -turn[2];
-  volume.placement = { { 40, 30, 25 }, { 12.0, -7.0, 33.0 }, { 1.0, 1.5, 2.5 }, turn };
+  volume.placement = { { 40, 30, 25 }, { 12.0, -7.0, 33.0 }, { 1.0, 1.5, 2.5 }, turn, {} };
   for (int n = 0; n < 40 * 30 * 25; ++n)
   {
     volume.voxels.push_back(std::uint16_t(1 + n));
