@@ -2,6 +2,8 @@
 
 #include "Core/Progress.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
 #include <dlfcn.h>
 #include <filesystem>
@@ -41,6 +43,16 @@ std::vector<std::string> dataFiles(const std::string& folder, const std::string&
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+std::string dataFileCalled(const std::string& label, const std::string& folder, const std::string& extension)
+{
+  std::string file = vtksys::SystemTools::LowerCase(label);
+  std::replace_if(
+    file.begin(), file.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  const std::vector<std::string> names = dataFiles(folder, extension);
+  const bool isKnown = std::find(names.begin(), names.end(), file) != names.end();
+  return isKnown ? dataFile(folder + "/" + file + extension) : std::string();
 }
 
 std::string chosenOrBundled(const std::string& chosen, const std::string& bundledName)

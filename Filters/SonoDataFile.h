@@ -13,6 +13,9 @@ std::string dataFile(const std::string& name);
 /// Error naming the folder.
 std::vector<std::string> dataFiles(const std::string& folder, const std::string& extension);
 
+/// The bundled file of a folder that a panel calls `label`: "S-Shaped" is s_shaped.csv. Empty where there is none.
+std::string dataFileCalled(const std::string& label, const std::string& folder, const std::string& extension);
+
 /// `chosen`, or where it is empty the bundled file.
 std::string chosenOrBundled(const std::string& chosen, const std::string& bundledName);
 

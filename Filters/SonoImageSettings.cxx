@@ -15,7 +15,7 @@ ImageSettings imageSettings(const ProbeField& probe, const vtkSonoRayTracer& tra
   settings.tracing = tracer.Settings(probe);
   settings.echo = formation.Settings(probe, tracer.RfSamplingMHz(probe));
   settings.setDevice(settings.tracing.device);
-  settings.bmode = bmode.Settings();
+  settings.bmode = bmode.Settings(probe);
   settings.pixelMm = pixelMm;
   return settings;
 }

@@ -1,7 +1,10 @@
 #include "vtkSonoBMode.h"
 
+#include "Echo/Pulse.h"
 #include "Image/BMode.h"
+#include "Image/GreyMap.h"
 #include "Simulator.h"
+#include "SonoDataFile.h"
 #include "SonoLineImage.h"
 #include "SonoOutputs.h"
 #include "SonoProbeField.h"
@@ -32,37 +35,34 @@ void vtkSonoBMode::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   this->Parameters->print(os, indent);
-  os << indent << "TgcPoints (mm, dB):";
-  for (const auto& [depthMm, gainDb] : this->Settings().tgcCurve)
+  os << indent << "GreyMap: " << this->GreyMap << endl;
+  os << indent << "GreyMapFile: " << this->GreyMapFile << endl;
+}
+
+sono::BModeSettings vtkSonoBMode::Settings(const sono::ProbeSettings& probe) const
+{
+  sono::BModeSettings settings = sono::settingsIn<sono::BModeSettings>(std::as_const(*this->Parameters));
+  settings.frequencyMHz = probe.centreFrequencyMHz;
+  settings.pulseSigmaMm = sono::pulseSigmaMm(probe.centreFrequencyMHz, probe.fractionalBandwidth);
+  settings.linesAcross = probe.geometry.lineCount;
+  if (this->GreyMapFile.empty() && this->GreyMap == "Linear")
   {
-    os << " (" << depthMm << ", " << gainDb << ")";
+    return settings;
   }
-  os << endl;
-}
-
-const sono::BModeSettings& vtkSonoBMode::Settings() const
-{
-  return sono::settingsIn<sono::BModeSettings>(std::as_const(*this->Parameters));
-}
-
-void vtkSonoBMode::AddTgcPoint(double depthMm, double gainDb)
-{
-  sono::settingsIn<sono::BModeSettings>(*this->Parameters).tgcCurve.emplace_back(depthMm, gainDb);
-  this->Modified();
-}
-
-void vtkSonoBMode::RemoveAllTgcPoints()
-{
-  if (this->GetNumberOfTgcPoints() > 0)
+  const std::string path =
+    this->GreyMapFile.empty() ? sono::dataFileCalled(this->GreyMap, "grey_maps", ".csv") : this->GreyMapFile;
+  if (path.empty())
   {
-    sono::settingsIn<sono::BModeSettings>(*this->Parameters).tgcCurve.clear();
-    this->Modified();
+    throw sono::Error("There is no grey map '" + this->GreyMap +
+                      "'; set GreyMap to Linear, Square Root or S-Shaped, or GreyMapFile to a table of your own.");
   }
-}
-
-int vtkSonoBMode::GetNumberOfTgcPoints() const
-{
-  return static_cast<int>(this->Settings().tgcCurve.size());
+  if (path != this->GreyTablePath)
+  {
+    this->GreyTable = sono::readGreyMap(path);
+    this->GreyTablePath = path;
+  }
+  settings.greyMap = this->GreyTable;
+  return settings;
 }
 
 int vtkSonoBMode::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
@@ -85,14 +85,15 @@ int vtkSonoBMode::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     vtkImageData* lines = vtkImageData::GetData(input[0]);
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
+    const sono::BModeSettings settings = this->Settings(probe);
     if (const sono::RfResult rf = sono::rfOf(lines))
     {
-      return sono::fillBMode(this->Simulator->makeBMode(rf, this->Settings()), vtkImageData::GetData(output));
+      return sono::fillBMode(this->Simulator->makeBMode(rf, settings), vtkImageData::GetData(output));
     }
     const std::vector<float> envelope =
       sono::lineValues("Envelope", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
-    sono::fillBMode(sono::BModeResult(sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm,
-                                                      this->Settings())),
-                    vtkImageData::GetData(output));
+    sono::fillBMode(
+      sono::BModeResult(sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm, settings)),
+      vtkImageData::GetData(output));
   });
 }

@@ -6,10 +6,13 @@
 #include "vtkSonoFiltersModule.h" // for export macro
 
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace sono {
 class Simulator;
 struct BModeSettings;
+struct ProbeSettings;
 }
 
 /**
@@ -26,13 +29,6 @@ public:
   vtkTypeMacro(vtkSonoBMode, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  enum GreyMaps
-  {
-    LINEAR = 0,
-    SQUARE_ROOT = 1,
-    SIGMOID = 2
-  };
-
   ///@{
   /**
    * Units, ranges, defaults and what they do: sono::BModeSettings.
@@ -41,28 +37,56 @@ public:
   sonoParameter(DynamicRangeDb, double);
   sonoParameter(TgcDbPerCm, double);
   sonoParameter(RejectDb, double);
-  sonoParameter(GreyMap, int);
   sonoSwitch(AutomaticReference);
   sonoParameter(ReferenceAmplitude, double);
   sonoSwitch(AddNoise);
   sonoParameter(NoiseDb, double);
+  sonoSwitch(AddHaze);
+  sonoParameter(HazeDb, double);
+  sonoParameter(HazeFallDbPerCmMHz, double);
+  sonoParameter(HazeVariationDb, double);
   sonoParameter(NoiseSeed, int);
+  sonoParameter(AxialSmoothingMm, double);
+  sonoParameter(Tgc1Db, double);
+  sonoParameter(Tgc2Db, double);
+  sonoParameter(Tgc3Db, double);
+  sonoParameter(Tgc4Db, double);
+  sonoParameter(Tgc5Db, double);
+  sonoParameter(Tgc6Db, double);
+  sonoParameter(Tgc7Db, double);
+  sonoParameter(Tgc8Db, double);
+  sonoParameter(LateralGain1Db, double);
+  sonoParameter(LateralGain2Db, double);
+  sonoParameter(LateralGain3Db, double);
+  sonoParameter(LateralGain4Db, double);
+  sonoParameter(LateralGain5Db, double);
+  sonoParameter(LateralGain6Db, double);
+  sonoParameter(LateralGain7Db, double);
+  sonoParameter(LateralGain8Db, double);
   ///@}
 
   ///@{
   /**
-   * Points (depth in mm, gain in dB) of a curve that is added to the slope, by ascending depth; straight between
-   * points, constant beyond the ends. Default none.
+   * What turns the compressed level into grey, applied last: "Linear", "Square Root", which lifts weak echoes, or
+   * "S-Shaped", with more contrast in the middle (the tables in Data/grey_maps). Default "Linear".
    */
-  void AddTgcPoint(double depthMm, double gainDb);
-  void RemoveAllTgcPoints();
-  int GetNumberOfTgcPoints() const;
+  vtkSetStdStringFromCharMacro(GreyMap);
+  vtkGetCharFromStdStringMacro(GreyMap);
+  ///@}
+
+  ///@{
+  /**
+   * A table of one's own instead: a CSV file with the columns level (ascending, from 0, the bottom of the range, to 1,
+   * white) and grey (0 black to 1 white). Empty, the default: the grey map.
+   */
+  vtkSetStdStringFromCharMacro(GreyMapFile);
+  vtkGetCharFromStdStringMacro(GreyMapFile);
   ///@}
 
   /**
-   * What the stage is asked to do.
+   * What the stage is asked to do for a probe. Throws Error when the grey map cannot be read.
    */
-  const sono::BModeSettings& Settings() const;
+  sono::BModeSettings Settings(const sono::ProbeSettings& probe) const;
 
 protected:
   vtkSonoBMode();
@@ -78,6 +102,10 @@ private:
 
   std::unique_ptr<sono::ParameterSet> Parameters;
   std::unique_ptr<sono::Simulator> Simulator;
+  std::string GreyMap = "Linear";
+  std::string GreyMapFile;
+  mutable std::string GreyTablePath; // that was read last
+  mutable std::vector<float> GreyTable;
 };
 
 #endif

@@ -71,17 +71,14 @@ sono::LabelVolume readVti(const std::string& fileName)
 /// The bundled list of this name: "CT-ORG" is label_lists/ct_org.csv.
 std::string listOfNames(const std::string& name)
 {
-  std::string file = vtksys::SystemTools::LowerCase(name);
-  std::replace_if(
-    file.begin(), file.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
-  const std::vector<std::string> lists = sono::dataFiles("label_lists", ".csv");
-  if (std::find(lists.begin(), lists.end(), file) == lists.end())
+  const std::string file = sono::dataFileCalled(name, "label_lists", ".csv");
+  if (file.empty())
   {
     throw sono::Error("There is no list of label names '" + name +
                       "'; set LabelNames to From File, TotalSegmentator v2 or "
                       "another of those that the panel offers.");
   }
-  return sono::dataFile("label_lists/" + file + ".csv");
+  return file;
 }
 
 bool isVti(const std::string& fileName)

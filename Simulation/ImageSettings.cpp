@@ -1,6 +1,7 @@
 #include "ImageSettings.h"
 
 #include "Core/Error.h"
+#include "Echo/Pulse.h"
 
 #include <cmath>
 #include <string>
@@ -31,6 +32,9 @@ void ImageSettings::matchStages()
   tracing.frequencyMHz = echo.centreFrequencyMHz;
   tracing.aperture = echo.aperture;
   tracing.echoSampleMm = echo.sampleMm();
+  bmode.frequencyMHz = echo.centreFrequencyMHz;
+  bmode.pulseSigmaMm = sono::pulseSigmaMm(echo.centreFrequencyMHz, echo.fractionalBandwidth);
+  bmode.linesAcross = geometry.lineCount;
 }
 
 void ImageSettings::requireMatch() const

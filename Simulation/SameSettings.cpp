@@ -35,7 +35,7 @@ auto rest(const EchoSettings& s)
 
 auto rest(const BModeSettings& s)
 {
-  return std::tie(s.tgcCurve, s.noiseSeed);
+  return std::tie(s.greyMap, s.noiseSeed, s.frequencyMHz, s.pulseSigmaMm, s.linesAcross);
 }
 
 auto all(const ProbePose& p)

@@ -90,12 +90,14 @@ struct RfFrom
 struct BModeJobFrom
 {
   BModeSettings settings;
+  int lineCount;
   int sampleCount;
   double sampleMm;
 
   bool same(const BModeJobFrom& o) const
   {
-    return sampleCount == o.sampleCount && sampleMm == o.sampleMm && sono::same(settings, o.settings);
+    return lineCount == o.lineCount && sampleCount == o.sampleCount && sampleMm == o.sampleMm &&
+           sono::same(settings, o.settings);
   }
 };
 
@@ -216,10 +218,10 @@ struct Simulator::Last
   LastResult<ErrorFrom, ImageResult> errorMap;
   LastResult<PathsFrom, std::shared_ptr<const std::vector<RecordedPath>>> paths;
 
-  const std::shared_ptr<const BModeJob>& bmodeJobFor(const BModeSettings& settings, int sampleCount, double sampleMm)
+  const std::shared_ptr<const BModeJob>& bmodeJobFor(const BModeSettings& settings, const RfLines& rf)
   {
-    return bmodeJob.get({ settings, sampleCount, sampleMm }, [&] {
-      return std::make_shared<const BModeJob>(makeBModeJob(settings, sampleCount, sampleMm));
+    return bmodeJob.get({ settings, rf.lineCount, rf.sampleCount, rf.sampleMm }, [&] {
+      return std::make_shared<const BModeJob>(makeBModeJob(settings, rf.lineCount, rf.sampleCount, rf.sampleMm));
     });
   }
 };
@@ -329,8 +331,7 @@ BModeResult Simulator::makeBMode(const RfResult& rf, const BModeSettings& settin
         sono::makeBMode(layout.envelope(), layout.lineCount, layout.sampleCount, layout.sampleMm, settings));
     }
     return BModeResult({ layout.lineCount, layout.sampleCount, layout.sampleMm, 0.0, {} },
-                       DeviceImager::instance().compress(
-                         last_->bmodeJobFor(settings, layout.sampleCount, layout.sampleMm), *rf.onDevice(), 1),
+                       DeviceImager::instance().compress(last_->bmodeJobFor(settings, layout), *rf.onDevice(), 1),
                        fetchGrey);
   });
 }

@@ -108,7 +108,8 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
     if (!bmodeJob)
     {
-      bmodeJob = std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, rfOfOne.sampleCount, rfOfOne.sampleMm));
+      bmodeJob =
+        std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, perImage, rfOfOne.sampleCount, rfOfOne.sampleMm));
     }
     const auto rf = imager.formRf(echoJob, { 0, range.count }, traced.get(), false);
     const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));

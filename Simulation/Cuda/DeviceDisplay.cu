@@ -11,14 +11,51 @@ namespace {
 
 constexpr int threads = 256;
 
-__global__ void addNoise(const float* envelope, float* noisy, std::size_t count, int lines, int samples, float rms,
-                         std::uint64_t seed)
+__device__ float withNoise(float envelope, float rms, float nodesPerSample, std::uint64_t seed, std::uint32_t line,
+                           int sample)
+{
+  const float position = float(sample) * nodesPerSample;
+  const int node = int(position);
+  Vec2f nodes[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    nodes[k] = noiseNode(seed, line, std::uint32_t(node + k));
+  }
+  return noisyEnvelope(envelope, rms, nodes, position - float(node));
+}
+
+/// Without noise where its rms is 0, without haze where it has no nodes.
+__global__ void addNoiseAndHaze(const float* envelope, float* received, std::size_t count, int lines, int samples,
+                                float rms, float noiseNodesPerSample, std::uint64_t seed, const float* haze,
+                                int hazeNodes, float hazeNodesPerSample)
+{
+  const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
+  if (i >= count)
+  {
+    return;
+  }
+  const auto line = std::uint32_t((i / samples) % lines);
+  const int sample = int(i % samples);
+  float value = envelope[i];
+  if (rms > 0.0f)
+  {
+    value = withNoise(value, rms, noiseNodesPerSample, seed, line, sample);
+  }
+  if (hazeNodes > 0)
+  {
+    value = hazyEnvelope(value, haze + std::size_t(line) * hazeNodes, float(sample) * hazeNodesPerSample);
+  }
+  received[i] = value;
+}
+
+__global__ void smoothLines(const float* envelope, float* smoothed, std::size_t count, int samples,
+                            const float* weights, int half)
 {
   const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
   if (i < count)
   {
-    const std::size_t line = i / samples;
-    noisy[i] = noisyEnvelope(envelope[i], rms, seed, std::uint32_t(line % lines), std::uint32_t(i % samples));
+    const int sample = int(i % samples);
+    smoothed[i] = smoothedEnvelope(envelope + (i - sample), samples, sample, weights, half);
   }
 }
 
@@ -155,8 +192,10 @@ __global__ void setReference(double* reference, int images, double value)
   }
 }
 
-__global__ void compressSamples(const float* envelope, const double* gainDb, const double* reference, int samples,
-                                std::size_t perImage, float rangeDb, float rejectDb, GreyMap map, float* grey)
+/// `mapCount` 0: a linear grey map.
+__global__ void compressSamples(const float* envelope, const double* gainDb, const float* lateralGainDb,
+                                const double* reference, int samples, std::size_t perImage, float rangeDb,
+                                float rejectDb, const float* map, int mapCount, float* grey)
 {
   const std::size_t image = blockIdx.y;
   const double referenceDb = 20.0 * log10(reference[image]);
@@ -165,7 +204,8 @@ __global__ void compressSamples(const float* envelope, const double* gainDb, con
   {
     const std::size_t at = image * perImage + i;
     const float offsetDb = float(gainDb[i % samples] - referenceDb);
-    grey[at] = mapGrey(map, compressedLevel(envelope[at], offsetDb, rangeDb, rejectDb));
+    const float level = compressedLevel(envelope[at], offsetDb + lateralGainDb[i / samples], rangeDb, rejectDb);
+    grey[at] = mapCount > 0 ? mapGrey(map, mapCount, level) : level;
   }
 }
 
@@ -245,8 +285,37 @@ void DeviceDisplay::prepare(const BModeJob& job, cudaStream_t stream, Traffic& t
   settings_ = job;
   settings_.gainFactor.clear();
   settings_.gainDb.clear();
+  settings_.lateralGainDb.clear();
+  settings_.haze.power.clear();
   factor_.upload(job.gainFactor, stream, traffic);
   gainDb_.upload(job.gainDb, stream, traffic);
+  lateralGainDb_.upload(job.lateralGainDb, stream, traffic);
+  greyMap_.upload(job.greyMap, stream, traffic);
+  smoothing_.upload(job.smoothing, stream, traffic);
+  haze_.upload(job.haze.power, stream, traffic);
+}
+
+const float* DeviceDisplay::receive(const float* envelope, std::size_t count, int lines, int samples,
+                                    cudaStream_t stream)
+{
+  const auto blocks = unsigned((count + threads - 1) / threads);
+  const HazePower& haze = settings_.haze;
+  if (settings_.noiseRms > 0.0f || haze.nodeCount > 0)
+  {
+    received_.resize(count);
+    addNoiseAndHaze<<<blocks, threads, 0, stream>>>(
+      envelope, received_.data(), count, lines, samples, settings_.noiseRms, settings_.noiseNodesPerSample,
+      settings_.noiseSeed, haze_.data(), haze.nodeCount, haze.nodesPerSample);
+    envelope = received_.data();
+  }
+  if (!settings_.smoothing.empty())
+  {
+    smoothed_.resize(count);
+    smoothLines<<<blocks, threads, 0, stream>>>(envelope, smoothed_.data(), count, samples, smoothing_.data(),
+                                                int(settings_.smoothing.size()) - 1);
+    envelope = smoothed_.data();
+  }
+  return envelope;
 }
 
 GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines, int samples, cudaStream_t stream)
@@ -257,13 +326,7 @@ GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines,
   out.reference.resize(images);
   out.grey.resize(count);
   const int imageBlocks = (images + threads - 1) / threads;
-  if (settings_.noiseRms > 0.0f)
-  {
-    noisy_.resize(count);
-    addNoise<<<unsigned((count + threads - 1) / threads), threads, 0, stream>>>(
-      envelope, noisy_.data(), count, lines, samples, settings_.noiseRms, settings_.noiseSeed);
-    envelope = noisy_.data();
-  }
+  envelope = receive(envelope, count, lines, samples, stream);
   if (settings_.automaticReference)
   {
     rank_.resize(sizeof(RankState) * std::size_t(images));
@@ -284,9 +347,9 @@ GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines,
     setReference<<<imageBlocks, threads, 0, stream>>>(out.reference.data(), images, settings_.referenceAmplitude);
   }
   const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 1024, 2048))), images);
-  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), out.reference.data(), samples, perImage,
-                                                settings_.rangeDb, settings_.rejectDb, settings_.greyMap,
-                                                out.grey.data());
+  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), lateralGainDb_.data(), out.reference.data(),
+                                                samples, perImage, settings_.rangeDb, settings_.rejectDb,
+                                                greyMap_.data(), int(settings_.greyMap.size()), out.grey.data());
   check(cudaGetLastError(), "compressing grey levels");
   return out;
 }

@@ -28,11 +28,19 @@ public:
   DeviceArray<std::uint8_t> maskOf(const PlaneScan& scan, cudaStream_t stream);
 
 private:
+  /// The envelopes with noise and haze, smoothed; they stay until the next call.
+  const float* receive(const float* envelope, std::size_t count, int lines, int samples, cudaStream_t stream);
+
   BModeJob settings_; ///< without its tables
   DeviceArray<float> factor_;
   DeviceArray<double> gainDb_;
+  DeviceArray<float> lateralGainDb_;
+  DeviceArray<float> greyMap_;
+  DeviceArray<float> smoothing_;
+  DeviceArray<float> haze_;
   DeviceArray<std::uint8_t> rank_;
-  DeviceArray<float> noisy_;
+  DeviceArray<float> received_;
+  DeviceArray<float> smoothed_;
 };
 
 } // namespace sono

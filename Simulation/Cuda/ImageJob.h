@@ -2,6 +2,7 @@
 
 #include "Echo/PointTable.h"
 #include "Echo/ScattererDensity.h"
+#include "Image/Haze.h"
 #include "Kernel/BeamSight.h"
 #include "Kernel/Downshift.h"
 #include "Kernel/EchoSplat.h"
@@ -196,15 +197,19 @@ struct EchoJob
 /// B-mode as a device needs it, for each sample of a line.
 struct BModeJob
 {
-  std::vector<float> gainFactor; ///< for the automatic reference
-  std::vector<double> gainDb;    ///< of depth, all other gain and the bottom of the range, without the reference
-  int firstReferenceSample = 0;  ///< of a line: the automatic reference leaves out what lies above
+  std::vector<float> gainFactor;    ///< for the automatic reference
+  std::vector<double> gainDb;       ///< of depth, all other gain and the bottom of the range, without the reference
+  std::vector<float> lateralGainDb; ///< of each line of an image
+  std::vector<float> greyMap;       ///< empty: linear
+  std::vector<float> smoothing;     ///< weights of 0, 1, ... samples away; empty: none
+  HazePower haze;                   ///< of the lines of an image
+  int firstReferenceSample = 0;     ///< of a line: the automatic reference leaves out what lies above
   bool automaticReference = true;
   double referenceAmplitude = 1.0;
   float rangeDb = 60.0f;
   float rejectDb = 0.0f;
-  GreyMap greyMap = GreyMap::Linear;
   float noiseRms = 0.0f; ///< 0: none
+  float noiseNodesPerSample = 0.0f;
   std::uint64_t noiseSeed = 1;
 };
 

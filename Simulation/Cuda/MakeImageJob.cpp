@@ -5,6 +5,7 @@
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
 #include "Image/LabelSlice.h"
+#include "Image/ReceiverNoise.h"
 #include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"
 
@@ -397,7 +398,7 @@ LabelJob makeLabelJob(const Scene& scene, const ProbePose* poses, int poseCount,
   return job;
 }
 
-BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sampleMm)
+BModeJob makeBModeJob(const BModeSettings& settings, int lineCount, int sampleCount, double sampleMm)
 {
   settings.validate();
   BModeJob job;
@@ -412,8 +413,12 @@ BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sam
   job.referenceAmplitude = settings.referenceAmplitude;
   job.rangeDb = float(settings.dynamicRangeDb);
   job.rejectDb = float(settings.rejectDb);
+  job.lateralGainDb = lateralGainDb(settings, lineCount);
   job.greyMap = settings.greyMap;
+  job.smoothing = smoothingWeights(settings, sampleMm);
+  job.haze = makeHaze(settings, lineCount, sampleCount, sampleMm);
   job.noiseRms = settings.addNoise ? float(std::pow(10.0, settings.noiseDb / 20.0)) : 0.0f;
+  job.noiseNodesPerSample = noiseNodesPerSample(settings.pulseSigmaMm / sampleMm);
   job.noiseSeed = settings.noiseSeed;
   return job;
 }

@@ -25,6 +25,7 @@ EchoJob makeEchoJob(const EchoSetup& setup);
 /// The scene's own labels in an image of this layout, for each pose.
 LabelJob makeLabelJob(const Scene& scene, const ProbePose* poses, int poseCount, const PlaneImage& layout);
 
-BModeJob makeBModeJob(const BModeSettings& settings, int sampleCount, double sampleMm);
+/// Of images of that many lines.
+BModeJob makeBModeJob(const BModeSettings& settings, int lineCount, int sampleCount, double sampleMm);
 
 } // namespace sono

@@ -1,7 +1,10 @@
 #include "Image/BMode.h"
 
+#include "Core/ParallelFor.h"
 #include "Core/Require.h"
+#include "Image/Haze.h"
 #include "Image/ReceiverNoise.h"
+#include "Kernel/GreyLevel.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -20,25 +23,13 @@ namespace {
 /// The automatic reference leaves it out: the skin and what the transducer's own ringing would cover.
 constexpr double nearFieldMm = 6.0;
 
-double curveGainDb(const std::vector<std::pair<double, double>>& curve, double depthMm)
+/// Between sliders that stand in the middle of equal parts, at a share of the whole from 0 to 1.
+double sliderGainDb(const GainSliders& sliders, double share)
 {
-  if (curve.empty())
-  {
-    return 0.0;
-  }
-  const auto above = std::upper_bound(curve.begin(), curve.end(), depthMm,
-                                      [](double depth, const auto& point) { return depth < point.first; });
-  if (above == curve.begin())
-  {
-    return curve.front().second;
-  }
-  if (above == curve.end())
-  {
-    return curve.back().second;
-  }
-  const auto& [depthA, gainA] = *(above - 1);
-  const auto& [depthB, gainB] = *above;
-  return gainA + (gainB - gainA) * (depthMm - depthA) / (depthB - depthA);
+  const double last = double(sliders.size() - 1);
+  const double position = std::clamp(share * double(sliders.size()) - 0.5, 0.0, last);
+  const auto i = std::size_t(std::min(position, last - 1.0));
+  return sliders[i] + (position - double(i)) * (sliders[i + 1] - sliders[i]);
 }
 
 /// Exact order statistic in two passes: the upper bits of the floats are counted, then the values that share the
@@ -158,6 +149,32 @@ void validateSizes(const std::vector<float>& envelope, int lineCount, int sample
   }
 }
 
+/// The envelope with noise and haze, smoothed.
+std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampleCount, double sampleMm,
+                           const BModeSettings& settings)
+{
+  if (settings.addNoise)
+  {
+    addReceiverNoise(envelope, sampleCount, settings.noiseDb, settings.pulseSigmaMm / sampleMm, settings.noiseSeed);
+  }
+  const HazePower haze = makeHaze(settings, lineCount, sampleCount, sampleMm);
+  const std::vector<float> weights = smoothingWeights(settings, sampleMm);
+  parallelFor(lineCount, {}, [&](int l) {
+    float* line = envelope.data() + std::size_t(l) * std::size_t(sampleCount);
+    const float* power = haze.power.data() + std::size_t(l) * std::size_t(haze.nodeCount);
+    for (int s = 0; haze.nodeCount > 0 && s < sampleCount; ++s)
+    {
+      line[s] = hazyEnvelope(line[s], power, float(s) * haze.nodesPerSample);
+    }
+    const std::vector<float> rough(line, line + (weights.empty() ? 0 : sampleCount));
+    for (int s = 0; !weights.empty() && s < sampleCount; ++s)
+    {
+      line[s] = smoothedEnvelope(rough.data(), sampleCount, s, weights.data(), int(weights.size()) - 1);
+    }
+  });
+  return envelope;
+}
+
 } // namespace
 
 int firstReferenceSample(int sampleCount, double sampleMm)
@@ -172,9 +189,32 @@ std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, 
   for (int s = 0; s < sampleCount; ++s)
   {
     const double depthMm = s * sampleMm;
-    gain[s] = settings.tgcDbPerCm * depthMm / 10.0 + curveGainDb(settings.tgcCurve, depthMm);
+    gain[s] =
+      settings.tgcDbPerCm * depthMm / 10.0 + sliderGainDb(settings.tgcDb, double(s) / std::max(1, sampleCount - 1));
   }
   return gain;
+}
+
+std::vector<float> lateralGainDb(const BModeSettings& settings, int lineCount)
+{
+  const int across = settings.linesAcross > 0 ? settings.linesAcross : lineCount;
+  std::vector<float> gain(lineCount);
+  for (int l = 0; l < lineCount; ++l)
+  {
+    gain[l] = float(sliderGainDb(settings.lateralGainDb, (l % across + 0.5) / across));
+  }
+  return gain;
+}
+
+std::vector<float> smoothingWeights(const BModeSettings& settings, double sampleMm)
+{
+  std::vector<float> weights;
+  const double sigma = settings.axialSmoothingMm / sampleMm / std::sqrt(8.0 * std::log(2.0)); // samples
+  for (int i = 0; settings.axialSmoothingMm > 0.0 && i <= int(std::ceil(4.0 * sigma)); ++i)
+  {
+    weights.push_back(float(std::exp(-0.5 * (i / sigma) * (i / sigma))));
+  }
+  return weights;
 }
 
 float gainFactor(double decibels)
@@ -188,13 +228,12 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   settings.validate();
   validateSizes(echoEnvelope, lineCount, sampleCount, sampleMm);
 
-  std::vector<float> noisy;
-  if (settings.addNoise)
+  std::vector<float> received;
+  if (settings.addNoise || settings.addHaze || settings.axialSmoothingMm > 0.0)
   {
-    noisy = echoEnvelope;
-    addReceiverNoise(noisy, sampleCount, settings.noiseDb, settings.noiseSeed);
+    received = receive(echoEnvelope, lineCount, sampleCount, sampleMm, settings);
   }
-  const std::vector<float>& envelope = settings.addNoise ? noisy : echoEnvelope;
+  const std::vector<float>& envelope = received.empty() ? echoEnvelope : received;
   const std::vector<double> gainDb = depthGainDb(settings, sampleCount, sampleMm);
   BModeLines result{ lineCount, sampleCount, sampleMm, settings.referenceAmplitude, {} };
   if (settings.automaticReference)
@@ -211,18 +250,19 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   float* grey = result.grey.data();
   const auto rangeDb = static_cast<float>(settings.dynamicRangeDb);
   const auto rejectDb = static_cast<float>(settings.rejectDb);
+  const std::vector<float> lineDb = lateralGainDb(settings, lineCount);
   tbb::parallel_for(tbb::blocked_range<int>(0, lineCount), [&](const tbb::blocked_range<int>& lines) {
     for (int l = lines.begin(); l < lines.end(); ++l)
     {
       const std::size_t first = std::size_t(l) * sampleCount;
       for (std::size_t s = 0; s < offsetDb.size(); ++s)
       {
-        grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s], rangeDb, rejectDb);
+        grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s] + lineDb[l], rangeDb, rejectDb);
       }
-      if (settings.greyMap != GreyMap::Linear)
+      if (!settings.greyMap.empty())
       {
         std::transform(grey + first, grey + first + offsetDb.size(), grey + first,
-                       [&](float x) { return mapGrey(settings.greyMap, x); });
+                       [&](float x) { return mapGrey(settings.greyMap.data(), int(settings.greyMap.size()), x); });
       }
     }
   });

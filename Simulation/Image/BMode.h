@@ -17,8 +17,12 @@ struct BModeLines
   std::vector<float> grey;         ///< lineCount x sampleCount, 0 (black) to 1 (white)
 };
 
-/// The gain of each sample, dB: slope and curve.
+/// The gain of each sample, dB: slope and sliders.
 std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm);
+/// The lateral gain of each line, dB.
+std::vector<float> lateralGainDb(const BModeSettings& settings, int lineCount);
+/// The weights of the envelope's smoothing, 0, 1, ... samples away; empty where there is none.
+std::vector<float> smoothingWeights(const BModeSettings& settings, double sampleMm);
 /// The same as a factor, at most the largest finite float.
 float gainFactor(double decibels);
 
@@ -34,13 +38,13 @@ constexpr double whiteOverRank = 17.7827941;
 /// The sample of a line from which on the automatic reference looks: what lies above is the skin.
 int firstReferenceSample(int sampleCount, double sampleMm);
 
-/// Time-gain compensation, log compression, reject:
-/// x = 1 + (20 log10(envelope + noise) + tgc(depth) + gain - 20 log10(reference)) / range, clamped to [0, 1], within
-/// 1e-4 dB, then grey = greyMap(x). `envelope` is lineCount x sampleCount. NaN, negative and subnormal envelopes are
-/// black, +infinity is white. The automatic reference is whiteOverRank times the envelope of referenceRank among those
-/// from 6 mm on (among all, where the lines end there): tissue keeps its grey whether or not a wall shines beside it.
-/// Where that envelope is zero it is the largest finite one; where all are zero, 1. Throws Error for settings out of
-/// range, counts below 1 and sizes that do not match.
+/// Noise, haze, smoothing, time-gain compensation, log compression, reject:
+/// x = 1 + (20 log10(a) + tgc(depth) + gain(line) - 20 log10(reference)) / range, clamped to [0, 1], within 1e-4 dB,
+/// then grey = greyMap(x), where a is the smoothed sqrt(|envelope + noise|^2 + haze). `envelope` is lineCount x
+/// sampleCount. NaN, negative and subnormal envelopes are black, +infinity is white. The automatic reference is
+/// whiteOverRank times the envelope of referenceRank among those from 6 mm on (among all, where the lines end there):
+/// tissue keeps its grey whether or not a wall shines beside it. Where that envelope is zero it is the largest finite
+/// one; where all are zero, 1. Throws Error for settings out of range, counts below 1 and sizes that do not match.
 BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm,
                      const BModeSettings& settings);
 

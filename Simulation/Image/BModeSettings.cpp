@@ -1,10 +1,9 @@
 #include "Image/BModeSettings.h"
 
 #include "Core/Require.h"
-#include "Kernel/FastMath.h"
+#include "Kernel/GreyLevel.h"
 
 #include <cmath>
-#include <limits>
 
 namespace sono {
 
@@ -15,13 +14,13 @@ void BModeSettings::validate() const
                    (referenceAmplitude >= smallestNormalFloat && referenceAmplitude <= largestFiniteFloat),
                  "referenceAmplitude", referenceAmplitude, "in [1.2e-38, 3.4e38]");
   requireInRange(rejectDb < dynamicRangeDb, "rejectDb", rejectDb, "below dynamicRangeDb");
-  double previousMm = -std::numeric_limits<double>::infinity();
-  for (const auto& [depthMm, gain] : tgcCurve)
+  requireInRange(pulseSigmaMm > 0.0 && std::isfinite(pulseSigmaMm), "pulseSigmaMm", pulseSigmaMm, "above 0 and finite");
+  requireInRange(frequencyMHz > 0.0 && std::isfinite(frequencyMHz), "frequencyMHz", frequencyMHz, "above 0 and finite");
+  requireInRange(linesAcross >= 0, "linesAcross", linesAcross, "at least 0");
+  requireInRange(greyMap.size() != 1, "The number of greyMap's values", 1, "0 or at least 2");
+  for (const float grey : greyMap)
   {
-    requireInRange(std::isfinite(depthMm) && depthMm > previousMm, "A depth of tgcCurve", depthMm,
-                   "finite and greater than the depth before it, in mm");
-    requireInRange(gain >= -300.0 && gain <= 300.0, "A gain of tgcCurve", gain, "in [-300, 300] dB");
-    previousMm = depthMm;
+    requireInRange(grey >= 0.0f && grey <= 1.0f, "A value of greyMap", grey, "in [0, 1]");
   }
 }
 

@@ -1,4 +1,6 @@
 """How the stages work as a pipeline: what they make, when they run again, how they stop."""
+import os
+import tempfile
 import unittest
 
 import numpy as np
@@ -139,8 +141,26 @@ class TestRunningAgain(unittest.TestCase):
     def test_gain(self):
         self.assertEqual(self.changed(lambda chain: chain.bmode.SetGainDb(6)), {"bmode", "converter"})
 
-    def test_tgc_curve(self):
-        self.assertEqual(self.changed(lambda chain: chain.bmode.AddTgcPoint(10, 3)), {"bmode", "converter"})
+    def test_tgc_slider(self):
+        self.assertEqual(self.changed(lambda chain: chain.bmode.SetTgc3Db(3)), {"bmode", "converter"})
+
+    def test_sliders_brighten_their_part(self):
+        chain = Chain()
+        chain.bmode.Update()
+        before = values(chain.bmode.GetOutput(), "BMode").reshape(12, -1).copy()
+        chain.bmode.AutomaticReferenceOff()
+        reference = chain.bmode.GetOutput().GetFieldData().GetArray("ReferenceAmplitude").GetTuple1(0)
+        chain.bmode.SetReferenceAmplitude(reference)
+        chain.bmode.SetTgc8Db(6)
+        chain.bmode.SetLateralGain1Db(12)
+        chain.bmode.Update()
+        lift = values(chain.bmode.GetOutput(), "BMode").reshape(12, -1) - before
+        shown = (before > 0) & (before + lift < 1)
+        samples = lift.shape[1]
+        np.testing.assert_allclose(lift[4:, :samples // 2][shown[4:, :samples // 2]], 0, atol=2e-5)
+        end = slice(int(0.95 * samples), None)
+        np.testing.assert_allclose(lift[4:, end][shown[4:, end]], 0.1, atol=2e-5)  # 6 dB of 60
+        np.testing.assert_allclose(lift[0, :samples // 2][shown[0, :samples // 2]], 0.2, atol=2e-5)
 
     def test_pixel_size(self):
         self.assertEqual(self.changed(lambda chain: chain.converter.SetPixelMm(0.5)), {"converter"})
@@ -157,9 +177,30 @@ class TestRunningAgain(unittest.TestCase):
         chain = Chain()
         chain.bmode.Update()
         level = values(chain.bmode.GetOutput(), "BMode").copy()
-        chain.bmode.SetGreyMap(1)
+        chain.bmode.SetGreyMap("S-Shaped")
         chain.bmode.Update()
-        np.testing.assert_allclose(values(chain.bmode.GetOutput(), "BMode"), np.sqrt(level), atol=1e-5)
+        expected = level * level * (3 - 2 * level)
+        np.testing.assert_allclose(values(chain.bmode.GetOutput(), "BMode"), expected, atol=6e-5)
+
+    def test_grey_map_of_ones_own(self):
+        chain = Chain()
+        chain.bmode.Update()
+        level = values(chain.bmode.GetOutput(), "BMode").copy()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "inverse.csv")
+            with open(path, "w") as file:
+                file.write("level,grey\n0,1\n1,0\n")
+            chain.bmode.SetGreyMapFile(path)
+            chain.bmode.Update()
+        np.testing.assert_allclose(values(chain.bmode.GetOutput(), "BMode"), 1 - level, atol=1e-5)
+
+    def test_grey_map_that_is_none(self):
+        chain = Chain()
+        said = listen(chain.bmode)
+        chain.bmode.SetGreyMap("Sepia")
+        chain.bmode.Update()
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("S-Shaped", said[0])
 
     def test_noise_is_added_only_when_asked_for(self):
         chain = Chain()

@@ -218,7 +218,7 @@ class TestRunningAgain(unittest.TestCase):
 
     def test_gain_does_not_trace_again(self):
         self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "GainDb").SetGainDb(6)), {BMODE_LINES, IMAGE})
-        self.assertEqual(self.changed(lambda ultrasound: ultrasound.GetBMode().AddTgcPoint(10, 3)), {BMODE_LINES, IMAGE})
+        self.assertEqual(self.changed(lambda ultrasound: ultrasound.GetBMode().SetTgc3Db(3)), {BMODE_LINES, IMAGE})
 
     def test_pixel_size_makes_the_image_only(self):
         self.assertEqual(self.changed(lambda ultrasound: owner(ultrasound, "PixelMm").SetPixelMm(0.5)), {IMAGE})

@@ -186,7 +186,8 @@ TEST(GpuSmall, EveryUsualKernel)
   settings.geometry.depthMm = 12.0;
   settings.tracing.pathsPerLine = 50;
   settings.bmode.addNoise = true;
-  settings.bmode.addNoise = true;
+  settings.bmode.addHaze = true;
+  settings.bmode.axialSmoothingMm = 0.3;
   settings.bmode.noiseDb = -60.0;
   settings.matchStages();
   settings.setDevice(Device::Cuda);

@@ -178,8 +178,9 @@ TEST(GpuStages, WholeImagesAndSweeps)
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
   s.bmode.addNoise = true;
-  s.bmode.addNoise = true;
   s.bmode.noiseDb = -80.0;
+  s.bmode.addHaze = true;
+  s.bmode.axialSmoothingMm = 0.3;
   std::vector<ProbePose> poses;
   for (int i = 0; i < 21; ++i) // a group and a part of one
   {
@@ -319,7 +320,9 @@ TEST(GpuStages, ScanConversionOfEveryGeometry)
     s.tracing.pathsPerLine = 200;
     s.bmode.automaticReference = false;
     s.bmode.referenceAmplitude = 0.05;
-    s.bmode.greyMap = GreyMap::Sigmoid;
+    s.bmode.greyMap = { 0.0f, 0.1f, 0.5f, 0.9f, 1.0f };
+    s.bmode.tgcDb = { 3.0, 0.0, -2.0, 1.0, 5.0, -4.0, 0.0, 2.0 };
+    s.bmode.lateralGainDb = { 4.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 3.0 };
     s.matchStages();
     const std::vector<ProbePose> poses{ thoraxPhantomA4C().orthonormalized() };
     s.setDevice(Device::Cpu);

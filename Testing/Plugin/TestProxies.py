@@ -74,11 +74,6 @@ class TestProxies(unittest.TestCase):
                     shown = [shown.GetElement(i) for i in range(shown.GetNumberOfElements())]
                     self.assertEqual(shown, values(getattr(fresh, "Get" + name)()))
 
-    def test_curve_is_empty_by_default(self):
-        proxy = servermanager.ProxyManager().NewProxy("filters", "SonoBMode")
-        self.assertEqual(proxy.GetProperty("TgcPoints").GetNumberOfElements(), 0)
-        self.assertEqual(vtkSonoFilters.vtkSonoBMode().GetNumberOfTgcPoints(), 0)
-
     def test_every_setting_has_a_property_and_the_other_way_round(self):
         for kind, _, description in self.each():
             commands = {e.get("command") for e in description}

@@ -136,7 +136,7 @@ class TestUltrasound(unittest.TestCase):
         self.assertEqual(made(), scene_and_lines)
 
     def test_state_file_brings_the_picture_back(self):
-        before = grey(make_ultrasound(GainDb=3, TgcPoints=[0, 0, 50, 12], **POSE))
+        before = grey(make_ultrasound(GainDb=3, Tgc5Db=12, GreyMap="S-Shaped", **POSE))
         with tempfile.TemporaryDirectory() as folder:
             path = str(pathlib.Path(folder, "ultrasound.pvsm"))
             simple.SaveState(path)

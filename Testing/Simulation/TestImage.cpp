@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -100,24 +101,55 @@ TEST(BMode, SlopeCompensatesExponentialDecay)
   }
 }
 
-TEST(BMode, CurveIsLinearBetweenPointsAndConstantBeyond)
+TEST(BMode, SlidersStandInTheMiddleOfTheirEighths)
 {
   BModeSettings settings = plainSettings();
-  settings.tgcCurve = { { 2.0, 0.0 }, { 4.0, 6.0 }, { 8.0, -6.0 } };
-  const std::vector<double> expectedDb{ 0.0, 0.0, 0.0, 3.0, 6.0, 3.0, 0.0, -3.0, -6.0, -6.0 };
-  const auto grey = greyOf(std::vector<float>(10, 0.1f), settings);
-  for (std::size_t s = 0; s < grey.size(); ++s)
+  settings.tgcDb = { 0.0, 6.0, -6.0, 0.0, 0.0, 0.0, 4.0, 10.0 };
+  // 160 mm: sliders at 10, 30, ..., 150 mm
+  const std::vector<std::pair<std::size_t, double>> expectedDb{ { 0, 0.0 },   { 10, 0.0 },  { 20, 3.0 },  { 30, 6.0 },
+                                                                { 40, 0.0 },  { 45, -3.0 }, { 50, -6.0 }, { 70, 0.0 },
+                                                                { 90, 0.0 },  { 120, 2.0 }, { 135, 5.5 }, { 150, 10.0 },
+                                                                { 160, 10.0 } };
+  const auto grey = greyOf(std::vector<float>(161, 0.1f), settings);
+  for (const auto& [sample, decibels] : expectedDb)
   {
-    EXPECT_NEAR(grey[s], 1.0 + (expectedDb[s] - 20.0) / 60.0, 2e-6) << s;
+    EXPECT_NEAR(grey[sample], 1.0 + (decibels - 20.0) / 60.0, 2e-6) << sample;
   }
 }
 
-TEST(BMode, CurveAddsToTheSlope)
+TEST(BMode, SlidersAddToTheSlope)
 {
   BModeSettings settings = plainSettings();
   settings.tgcDbPerCm = 2.0;
-  settings.tgcCurve = { { 0.0, 3.0 } };
+  settings.tgcDb.fill(3.0);
   EXPECT_NEAR(greyOf(std::vector<float>(21, 0.01f), settings)[20], 1.0 + (4.0 + 3.0 - 40.0) / 60.0, 2e-6);
+}
+
+TEST(BMode, LateralGainFollowsTheLines)
+{
+  BModeSettings settings = plainSettings();
+  settings.lateralGainDb = { -8.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 16.0 };
+  // One line an eighth: each slider is a line's.
+  const auto grey = makeBMode(std::vector<float>(16, 0.1f), 8, 2, 1.0, settings).grey;
+  EXPECT_NEAR(grey[0], 1.0 - 28.0 / 60.0, 2e-6);
+  EXPECT_NEAR(grey[7], 1.0 - 20.0 / 60.0, 2e-6);
+  EXPECT_NEAR(grey[14], 1.0 - 4.0 / 60.0, 2e-6);
+  EXPECT_EQ(grey[14], grey[15]);
+  // Two lines an eighth, in two planes: the second line stands a quarter of a step behind its slider.
+  settings.linesAcross = 16;
+  const auto planes = makeBMode(std::vector<float>(32, 0.1f), 32, 1, 1.0, settings).grey;
+  EXPECT_NEAR(planes[1], 1.0 - (20.0 + 8.0 * 0.75) / 60.0, 2e-6);
+  EXPECT_NEAR(planes[14], 1.0 - (20.0 - 16.0 * 0.75) / 60.0, 2e-6);
+  EXPECT_TRUE(std::equal(planes.begin(), planes.begin() + 16, planes.begin() + 16));
+}
+
+TEST(BMode, LateralGainLeavesTheReferenceAlone)
+{
+  BModeSettings settings;
+  const auto envelope = rayleighEnvelope(16 * 500, 3);
+  const double reference = makeBMode(envelope, 16, 500, 0.1, settings).referenceAmplitude;
+  settings.lateralGainDb.fill(12.0);
+  EXPECT_EQ(makeBMode(envelope, 16, 500, 0.1, settings).referenceAmplitude, reference);
 }
 
 TEST(BMode, RejectBlackensTheBottom)
@@ -140,7 +172,7 @@ TEST(BMode, AmplitudesThatAreNoneAreBlack)
   {
     BModeSettings settings = plainSettings();
     settings.automaticReference = automatic;
-    settings.tgcCurve = { { 0.0, 300.0 } }; // the strongest gain must not lift nothing to something
+    settings.tgcDb.fill(40.0); // the strongest gain must not lift nothing to something
     settings.gainDb = 300.0;
     settings.dynamicRangeDb = 300.0;
     const auto grey = greyOf(envelope, settings);
@@ -157,7 +189,7 @@ TEST(BMode, AutomaticReferenceIsThePercentile)
 {
   BModeSettings settings;
   settings.tgcDbPerCm = 1.5;
-  settings.tgcCurve = { { 5.0, -3.0 }, { 40.0, 4.0 } };
+  settings.tgcDb = { -3.0, -3.0, -3.0, -3.0, 4.0, 4.0, 4.0, 4.0 };
   settings.gainDb = 12.0; // leaves the reference alone
   const double sampleMm = 0.05;
   for (const int sampleCount : { 1, 7, 125, 1000, 1237 })
@@ -173,7 +205,8 @@ TEST(BMode, AutomaticReferenceIsThePercentile)
         continue;
       }
       const double depth = sample * sampleMm;
-      const double curve = depth < 5.0 ? -3.0 : depth > 40.0 ? 4.0 : -3.0 + 7.0 * (depth - 5.0) / 35.0;
+      const double eighth = 8.0 * sample / std::max(1, sampleCount - 1);
+      const double curve = eighth < 3.5 ? -3.0 : eighth > 4.5 ? 4.0 : -3.0 + 7.0 * (eighth - 3.5);
       gained.push_back(envelope[k] * std::pow(10.0, (0.15 * depth + curve) / 20.0));
     }
     std::sort(gained.begin(), gained.end());
@@ -234,9 +267,13 @@ TEST(BMode, RefusesWhatMakesNoSense)
   expectError(with([&](auto& s) { s.dynamicRangeDb = nan; }), "dynamicRangeDb");
   expectError(with([&](auto& s) { s.rejectDb = 60.0; }), "rejectDb");
   expectError(with([&](auto& s) { s.rejectDb = -1.0; }), "rejectDb");
-  expectError(with([&](auto& s) { s.tgcCurve = { { 1.0, 0.0 }, { 1.0, 3.0 } }; }), "tgcCurve");
-  expectError(with([&](auto& s) { s.tgcCurve = { { nan, 0.0 } }; }), "tgcCurve");
-  expectError(with([&](auto& s) { s.tgcCurve = { { 1.0, nan } }; }), "tgcCurve");
+  expectError(with([&](auto& s) { s.tgcDb[2] = nan; }), "tgc3Db");
+  expectError(with([&](auto& s) { s.tgcDb[7] = 41.0; }), "tgc8Db");
+  expectError(with([&](auto& s) { s.lateralGainDb[0] = -41.0; }), "lateralGain1Db");
+  expectError(with([&](auto& s) { s.axialSmoothingMm = -1.0; }), "axialSmoothingMm");
+  expectError(with([&](auto& s) { s.hazeDb = nan; }), "hazeDb");
+  expectError(with([&](auto& s) { s.greyMap = { 0.5f }; }), "greyMap");
+  expectError(with([&](auto& s) { s.greyMap = { 0.0f, 1.5f }; }), "greyMap");
   expectError([] { makeBMode({}, 0, 1, 1.0, plainSettings()); }, "lineCount");
   expectError([] { makeBMode({}, 1, 0, 1.0, plainSettings()); }, "sampleCount");
   expectError([] { makeBMode({ 1.0f }, 1, 1, 0.0, plainSettings()); }, "sampleMm");

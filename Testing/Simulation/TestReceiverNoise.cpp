@@ -23,10 +23,12 @@ BModeSettings plainSettings()
   return settings;
 }
 
-std::vector<float> noiseOf(double levelDb, std::uint64_t seed, int lines, int samples, float echo)
+/// The default pulse is so short that all samples are independent.
+std::vector<float> noiseOf(double levelDb, std::uint64_t seed, int lines, int samples, float echo,
+                           double pulseSigmaSamples = 0.1)
 {
   std::vector<float> envelope(std::size_t(lines) * std::size_t(samples), echo);
-  addReceiverNoise(envelope, samples, levelDb, seed);
+  addReceiverNoise(envelope, samples, levelDb, pulseSigmaSamples, seed);
   return envelope;
 }
 
@@ -73,7 +75,46 @@ TEST(ReceiverNoise, AddsToEchoesAsPower)
   EXPECT_NEAR(m, 0.5 + 0.01 / (4.0 * 0.5), 5e-4);
 }
 
-TEST(ReceiverNoise, IsWhite)
+TEST(ReceiverNoise, IsAsLongAsThePulse)
+{
+  // The intensity of a complex normal process has the squared correlation of its amplitude; that of noise through a
+  // Gaussian filter of sigma is exp(-lag^2 / (4 sigma^2)).
+  const double sigma = 13.0;
+  const auto noise = noiseOf(0.0, 11, 400, 4000, 0.0f, sigma);
+  EXPECT_NEAR(mean(noise, 2), 1.0, 0.01);
+  for (const int lag : { 6, 13, 20, 26, 39 })
+  {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t n = 0; n + std::size_t(lag) < noise.size(); ++n)
+    {
+      if (n % 4000 + std::size_t(lag) < 4000)
+      {
+        sum += std::pow(double(noise[n]) * double(noise[n + std::size_t(lag)]), 2) - 1.0;
+        count += 1.0;
+      }
+    }
+    EXPECT_NEAR(sum / count, std::exp(-2.0 * lag * lag / (4.0 * sigma * sigma)), 0.05) << lag;
+  }
+}
+
+TEST(ReceiverNoise, IsAsStrongBetweenItsNodesAsOnThem)
+{
+  const int lines = 20000;
+  const int samples = 24;
+  const auto noise = noiseOf(0.0, 2, lines, samples, 0.0f, 6.0);
+  for (int s = 0; s < samples; ++s)
+  {
+    double sum = 0.0;
+    for (int l = 0; l < lines; ++l)
+    {
+      sum += std::pow(double(noise[std::size_t(l * samples + s)]), 2);
+    }
+    EXPECT_NEAR(sum / lines, 1.0, 4.5 / std::sqrt(double(lines))) << s;
+  }
+}
+
+TEST(ReceiverNoise, IsWhiteWhereThePulseIsShort)
 {
   const auto noise = noiseOf(0.0, 5, 200, 2000, 0.0f);
   const double m = mean(noise, 1);
@@ -107,7 +148,7 @@ TEST(ReceiverNoise, LeavesWhatIsNoAmplitude)
 {
   const float infinity = std::numeric_limits<float>::infinity();
   std::vector<float> envelope{ -1.0f, std::numeric_limits<float>::quiet_NaN(), infinity, 1e30f };
-  addReceiverNoise(envelope, 4, 0.0, 1);
+  addReceiverNoise(envelope, 4, 0.0, 13.0, 1);
   EXPECT_EQ(envelope[0], -1.0f);
   EXPECT_TRUE(std::isnan(envelope[1]));
   EXPECT_EQ(envelope[2], infinity);
@@ -153,23 +194,4 @@ TEST(BModeNoise, RefusesLevelsThatAreNone)
   expectError([&] { makeBMode({ 1.0f }, 1, 1, 1.0, settings); }, "noiseDb");
   settings.noiseDb = 201.0;
   expectError([&] { makeBMode({ 1.0f }, 1, 1, 1.0, settings); }, "noiseDb");
-}
-
-TEST(GreyMaps, ClosedForms)
-{
-  BModeSettings settings = plainSettings();
-  const std::vector<float> envelope{ 1.0f, 0.1f, 0.0316227766f, 0.01f, 0.0005f }; // x = 1, 2/3, 1/2, 1/3, 0
-  const auto grey = [&](GreyMap map) {
-    settings.greyMap = map;
-    return makeBMode(envelope, 1, 5, 1.0, settings).grey;
-  };
-  const std::vector<double> root{ 1.0, 0.8164966, 0.7071068, 0.5773503, 0.0 };
-  const std::vector<double> sigmoid{ 1.0, 20.0 / 27.0, 0.5, 7.0 / 27.0, 0.0 };
-  for (std::size_t n = 0; n < 5; ++n)
-  {
-    EXPECT_NEAR(grey(GreyMap::SquareRoot)[n], root[n], 2e-6) << n;
-    EXPECT_NEAR(grey(GreyMap::Sigmoid)[n], sigmoid[n], 2e-6) << n;
-  }
-  settings.greyMap = GreyMap(9);
-  expectError([&] { makeBMode({ 1.0f }, 1, 1, 1.0, settings); }, "greyMap");
 }

@@ -158,7 +158,19 @@ TEST(Simulator, AChangeRunsTheStagesThatItConcerns)
       "rf bmode image " },
     { "field", [&](ImageInput& i) { i.settings.echo.field = field(); }, "rf bmode image " },
     { "gain", [](ImageInput& i) { i.settings.bmode.gainDb = 3.0; }, "bmode image " },
-    { "noise", [](ImageInput& i) { i.settings.bmode.addNoise = true; }, "bmode image " },
+    { "lateral gain", [](ImageInput& i) { i.settings.bmode.lateralGainDb[3] = 3.0; }, "bmode image " },
+    { "grey map",
+      [](ImageInput& i) {
+        i.settings.bmode.greyMap = { 0.0f, 0.8f, 1.0f };
+      },
+      "bmode image " },
+    { "haze", [](ImageInput& i) { i.settings.bmode.addHaze = true; }, "bmode image " },
+    { "noise",
+      [](ImageInput& i) {
+        i.settings.bmode.addNoise = true;
+        i.settings.bmode.noiseDb = -80.0;
+      },
+      "bmode image " },
     { "pixels", [](ImageInput& i) { i.settings.pixelMm = 0.4; }, "image " },
   };
   for (const Case& c : cases)

@@ -2,6 +2,7 @@
 #include "PhantomLesions.h"
 
 #include "Core/Progress.h"
+#include "Echo/Pulse.h"
 #include "Image/ReceiverNoise.h"
 #include "Study.h"
 
@@ -101,7 +102,8 @@ LesionRuns imageLesions(const PhantomBench& bench, const PhantomImaging& imaging
       std::vector<float> envelope = bench.image(imaging, view, seed).envelope();
       if (std::isfinite(noiseDb))
       {
-        addReceiverNoise(envelope, imaging.echo.sampleCount(), noiseDb, seed);
+        const double pulseMm = pulseSigmaMm(imaging.echo.centreFrequencyMHz, imaging.echo.fractionalBandwidth);
+        addReceiverNoise(envelope, imaging.echo.sampleCount(), noiseDb, pulseMm / imaging.echo.sampleMm(), seed);
       }
       for (std::size_t i = 0; i < seedLesions.size(); ++i)
       {
