@@ -97,7 +97,9 @@ int vtkSonoALine::LineAt(vtkFieldData* field, double lateralMm, double axialMm)
       return -1;
     }
     const float line = sono::beamFromPlane(geometry, lateralMm, axialMm).x;
-    return std::isnan(line) ? -1 : static_cast<int>(std::lround(line)) % geometry.lineCount;
+    return std::isnan(line) ? -1
+                            : geometry.lineCount * (geometry.fanCount() / 2) +
+                                static_cast<int>(std::lround(line)) % geometry.lineCount;
   }
   catch (const sono::Error&)
   {

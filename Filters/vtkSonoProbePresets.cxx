@@ -34,7 +34,7 @@ struct Setting
 std::vector<Setting> settingsOf(const sono::ProbeSettings& preset)
 {
   std::vector<Setting> settings;
-  sono::ProbeSettings::visit(preset, [&settings](const auto& value, const sono::Parameter& parameter) {
+  sono::ProbeSettings::visitPreset(preset, [&settings](const auto& value, const sono::Parameter& parameter) {
     settings.push_back({ sono::propertyName(parameter), sono::numberOf(value) });
   });
   return settings;

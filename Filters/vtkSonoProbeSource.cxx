@@ -77,6 +77,9 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   static_cast<sono::ProbeSettings&>(probe) = this->PresetFile.empty()
                                                ? sono::settingsIn<sono::ProbeSettings>(*this->Parameters)
                                                : sono::readProbePreset(presetPath(this->PresetFile));
+  const sono::ScanGeometry& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters).geometry;
+  probe.geometry.compoundFans = this->Preview ? 1 : given.compoundFans;
+  probe.geometry.compoundSpanDeg = given.compoundSpanDeg;
   probe.geometry.validate();
   probe.preview = this->Preview;
   probe.prepares = this->PrepareInteraction;

@@ -64,6 +64,8 @@ public:
   sonoParameter(TransmitFocusMm, double);
   sonoParameter(ElevationFocusMm, double);
   sonoParameter(ElementWidthMm, double);
+  sonoParameter(CompoundFans, int);
+  sonoParameter(CompoundSpanDeg, double);
   ///@}
 
   /**

@@ -346,7 +346,7 @@ ImageResult Simulator::scanConvert(const ScanGeometry& geometry, const BModeResu
       return ImageResult(
         scanConvertVolume(geometry, bmode.host().grey, layout.sampleCount, layout.sampleMm, pixelMm, progress));
     }
-    if (!bmode.onDevice() || layout.lineCount != geometry.lineCount)
+    if (!bmode.onDevice() || layout.lineCount != geometry.totalLineCount())
     {
       return ImageResult(
         PlaneResult(sono::scanConvert(geometry, bmode.host().grey, layout.sampleCount, layout.sampleMm, pixelMm)));

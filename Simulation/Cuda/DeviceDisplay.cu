@@ -214,8 +214,10 @@ struct Pixel
 {
   bool exists;
   bool inside;
-  float line;
+  float line; // of a fan that is not steered
   float depthMm;
+  float lateralMm;
+  float fromCentreMm; // along the axis
   std::size_t at;
 };
 
@@ -225,22 +227,35 @@ __device__ Pixel pixelOf(const PlaneScan& scan)
   const int j = blockIdx.x * blockDim.y + threadIdx.y; // the longer axis of a grid, for any height
   if (i >= scan.width || j >= scan.height)
   {
-    return { false, false, 0.0f, 0.0f, 0 };
+    return {};
   }
   const float lateral = scan.lateralMm(i);
   const float x = scan.beams.axialFromCentre(scan.axialMm(j));
-  const bool parallel = scan.beams.parallel;
-  const float line =
-    parallel ? scan.beams.lineOfParallel(lateral) : scan.beams.lineOfFan(lateral, PlaneBeams::notZero(x));
-  const float depth = parallel ? x - scan.beams.faceRadiusMm : scan.beams.depthInFan(lateral, x);
-  return { true, scan.area.contains(line, depth), line, depth,
+  float line;
+  float depth;
+  scan.beams.beamAt(lateral, x, line, depth);
+  float unused;
+  const bool inside =
+    scan.area.contains(line, depth) && (scan.fanCount == 1 || scan.compound(nullptr, lateral, x, unused));
+  return { true,
+           inside,
+           line,
+           depth,
+           lateral,
+           x,
            (std::size_t(blockIdx.z) * scan.height + std::size_t(j)) * scan.width + std::size_t(i) };
 }
 
 __device__ float levelOf(const PlaneScan& scan, const float* grey, const Pixel& pixel)
 {
-  const std::size_t perImage = std::size_t(scan.lineCount) * scan.sampleCount;
-  return scan.samples(grey + blockIdx.z * perImage).at(pixel.line, pixel.depthMm * scan.samplesPerMm);
+  const float* values = grey + blockIdx.z * scan.valueCount();
+  if (scan.fanCount == 1)
+  {
+    return scan.samples(values).at(pixel.line, pixel.depthMm * scan.samplesPerMm);
+  }
+  float level;
+  scan.compound(values, pixel.lateralMm, pixel.fromCentreMm, level);
+  return level;
 }
 
 __global__ void fillBytes(PlaneScan scan, const float* grey, std::uint8_t* bytes)

@@ -65,7 +65,7 @@ bool sameScan(const PlaneScan& a, const PlaneScan& b)
 {
   const auto all = [](const PlaneScan& s) {
     return std::make_tuple(s.area.lastLine, s.area.firstMm, s.area.lastMm, s.width, s.height, s.pixelMm, s.lateralMinMm,
-                           s.axialMinMm);
+                           s.axialMinMm, s.fanCount, s.steering[0].sine);
   };
   return a.beams == b.beams && all(a) == all(b);
 }

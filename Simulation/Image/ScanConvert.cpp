@@ -45,11 +45,10 @@ void validateSizes(const ScanGeometry& geometry, const std::vector<float>& value
   {
     message << "sampleMm is " << sampleMm << " but must be positive and finite.";
   }
-  else if (values.size() != std::size_t(geometry.lineCount) * sampleCount)
+  else if (values.size() != std::size_t(geometry.totalLineCount()) * sampleCount)
   {
-    message << "The lines have " << values.size()
-            << " values but must have lineCount x sampleCount = " << std::size_t(geometry.lineCount) * sampleCount
-            << ".";
+    message << "The lines have " << values.size() << " values but must have lineCount x sampleCount = "
+            << std::size_t(geometry.totalLineCount()) * sampleCount << ".";
   }
   else
   {
@@ -100,17 +99,25 @@ PlaneScan planeScan(const ScanGeometry& geometry, int sampleCount, double sample
   const int lastLine = geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1;
   const ScannedArea area{ float(lastLine) + ScannedArea::lineSlack, float(-1e-4 * pixelMm),
                           float(std::min(geometry.depthMm, sampleCount * sampleMm) + 1e-4 * pixelMm) };
-  return { planeBeams(geometry),
-           area,
-           float(1.0 / sampleMm),
-           geometry.lineCount,
-           sampleCount,
-           geometry.closesCircle(),
-           layout.width,
-           layout.height,
-           pixelMm,
-           layout.lateralMinMm,
-           layout.axialMinMm };
+  PlaneScan scan{ planeBeams(geometry),
+                  area,
+                  float(1.0 / sampleMm),
+                  geometry.lineCount,
+                  sampleCount,
+                  geometry.closesCircle(),
+                  layout.width,
+                  layout.height,
+                  pixelMm,
+                  layout.lateralMinMm,
+                  layout.axialMinMm,
+                  geometry.fanCount(),
+                  {} };
+  for (int fan = 0; fan < scan.fanCount; ++fan)
+  {
+    const double radians = geometry.steeringDeg(fan) * 3.14159265358979323846 / 180.0;
+    scan.steering[fan] = { float(std::sin(radians)), float(std::cos(radians)) };
+  }
+  return scan;
 }
 
 PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
@@ -138,7 +145,16 @@ PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& v
       std::uint8_t* mask = image.mask.data() + std::size_t(j) * image.width;
       for (int i = 0; i < image.width; ++i)
       {
-        if (scan.area.contains(line[i], depthMm[i]))
+        if (!scan.area.contains(line[i], depthMm[i]))
+        {
+          continue;
+        }
+        if (scan.fanCount > 1)
+        {
+          const float x = scan.beams.axialFromCentre(scan.axialMm(j));
+          mask[i] = scan.compound(values.data(), lateralMm[i], x, value[i]) ? 1 : 0;
+        }
+        else
         {
           value[i] = samples.at(line[i], depthMm[i] * scan.samplesPerMm);
           mask[i] = 1;

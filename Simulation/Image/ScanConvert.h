@@ -31,8 +31,10 @@ PlaneScan planeScan(const ScanGeometry& geometry, int sampleCount, double sample
 /// Bilinear scan conversion of lines x samples (`sampleMm` apart, the first at depth 0) onto square pixels that cover
 /// the sector's bounding box, centred laterally. The last sample holds for up to one sample more; depths that no
 /// sample reaches, and what lies beyond the geometry's depth, are outside. A single line is drawn one pixel wide.
-/// A closed circle is interpolated across its seam. Throws Error when pixelMm is not positive or asks for more than
-/// 2^28 pixels, when `values` is not lineCount x sampleCount, and for a matrix, whose lines fill a volume.
+/// A closed circle is interpolated across its seam. Where fans are compounded, `values` holds them one after the other,
+/// and a pixel that an unsteered fan covers is the mean of those that see it, outside where none does. Throws Error
+/// when pixelMm is not positive or asks for more than 2^28 pixels, when `values` is not totalLineCount x sampleCount,
+/// and for a matrix, whose lines fill a volume.
 PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount, double sampleMm,
                        double pixelMm);
 

@@ -31,6 +31,29 @@ struct PlaneBeams
     return sqrtf(lateralMm * lateralMm + x * x) - faceRadiusMm;
   }
   SONO_HD static float notZero(float x) { return x != 0.0f ? x : 1e-20f; }
+
+  /// Line and depth of a place, `x` as axialFromCentre.
+  SONO_HD void beamAt(float lateralMm, float x, float& line, float& depthMm) const
+  {
+    line = parallel ? lineOfParallel(lateralMm) : lineOfFan(lateralMm, notZero(x));
+    depthMm = parallel ? x - faceRadiusMm : depthInFan(lateralMm, x);
+  }
+  /// The same in a fan that is steered by an angle. On a convex face, of radius R, the start of the line, the place, at
+  /// rho from the centre, and the centre form a triangle: rho^2 = R^2 + r^2 + 2 R r cos(angle).
+  SONO_HD void steeredBeamAt(float lateralMm, float x, float sine, float cosine, float& line, float& depthMm) const
+  {
+    if (parallel)
+    {
+      depthMm = (x - faceRadiusMm) / cosine;
+      line = lineOfParallel(lateralMm - depthMm * sine);
+      return;
+    }
+    const float across = faceRadiusMm * sine;
+    const float rest = lateralMm * lateralMm + x * x - across * across;
+    depthMm = sqrtf(rest > 0.0f ? rest : 0.0f) - faceRadiusMm * cosine;
+    const float turned = fastAtan2(depthMm * sine, notZero(faceRadiusMm + depthMm * cosine));
+    line = lineOfFan(lateralMm, notZero(x)) - turned * linesPerUnit;
+  }
   bool operator==(const PlaneBeams& other) const
   {
     return parallel == other.parallel && faceRadiusMm == other.faceRadiusMm && centreAxialMm == other.centreAxialMm &&
@@ -81,9 +104,18 @@ struct ScannedArea
   }
 };
 
+/// Fans that can be compounded.
+constexpr int maxCompoundFans = 15;
+
 /// All that a pixel needs but the samples.
 struct PlaneScan
 {
+  struct Steering
+  {
+    float sine;
+    float cosine;
+  };
+
   PlaneBeams beams;
   ScannedArea area;
   float samplesPerMm;
@@ -95,10 +127,38 @@ struct PlaneScan
   double pixelMm;
   double lateralMinMm;
   double axialMinMm;
+  int fanCount; ///< 1: not steered, and the steering below not used
+  Steering steering[maxCompoundFans];
 
   SONO_HD float lateralMm(int i) const { return float(lateralMinMm + i * pixelMm); }
   SONO_HD float axialMm(int j) const { return float(axialMinMm + j * pixelMm); }
   SONO_HD BeamSamples samples(const float* values) const { return { values, lineCount, sampleCount, closed }; }
+  SONO_HD std::size_t valueCount() const
+  {
+    return std::size_t(fanCount) * std::size_t(lineCount) * std::size_t(sampleCount);
+  }
+
+  /// Of a place within the area: the mean over the fans that see it, in `level`, where `values` is not null. Whether
+  /// one does.
+  SONO_HD bool compound(const float* values, float lateral, float x, float& level) const
+  {
+    float sum = 0.0f;
+    int count = 0;
+    for (int fan = 0; fan < fanCount; ++fan)
+    {
+      float line;
+      float depth;
+      beams.steeredBeamAt(lateral, x, steering[fan].sine, steering[fan].cosine, line, depth);
+      if (area.contains(line, depth))
+      {
+        const std::size_t first = std::size_t(fan) * std::size_t(lineCount) * std::size_t(sampleCount);
+        sum += values ? samples(values + first).at(line, depth * samplesPerMm) : 0.0f;
+        ++count;
+      }
+    }
+    level = count > 0 ? sum / float(count) : 0.0f;
+    return count > 0;
+  }
 };
 
 } // namespace sono

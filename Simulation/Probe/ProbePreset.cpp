@@ -149,7 +149,7 @@ ScanGeometry readGeometry(PresetReader& reader)
   reader.require("scan", found >= 0, "one of " + names);
   ScanGeometry geometry;
   geometry.kind = ScanKind(found);
-  ScanGeometry::visit(geometry, [&](auto& value, const Parameter& parameter) {
+  ScanGeometry::visitLayout(geometry, [&](auto& value, const Parameter& parameter) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (!std::is_same_v<Value, ScanKind>)
     {

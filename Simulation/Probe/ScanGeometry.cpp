@@ -65,13 +65,15 @@ struct PlaneLine
   double axialMm;
   double lateralStep;
   double axialStep;
+  double steering; ///< sine of the angle to the face's normal
 };
 
-PlaneLine planeLine(const ScanGeometry& geometry, double line)
+PlaneLine planeLine(const ScanGeometry& geometry, double line, double steeringRad = 0.0)
 {
   if (geometry.lineOrigin() == LineOrigin::Aperture)
   {
-    return { fractionOf(line, geometry.lineCount) * geometry.widthMm, 0.0, 0.0, 1.0 };
+    const double sine = std::sin(steeringRad);
+    return { fractionOf(line, geometry.lineCount) * geometry.widthMm, 0.0, sine, std::cos(steeringRad), sine };
   }
   const double angle = angleOf(geometry, line);
   const double radius = geometry.faceRadiusMm();
@@ -80,7 +82,11 @@ PlaneLine planeLine(const ScanGeometry& geometry, double line)
   const double half = std::sin(0.5 * angle);
   const bool isCatheter = geometry.lineOrigin() == LineOrigin::Catheter;
   const double axial = isCatheter ? radius * cosine : -2.0 * radius * half * half; // R (cos - 1)
-  return { radius * sine, axial, sine, cosine };
+  if (geometry.lineOrigin() == LineOrigin::Apex)
+  {
+    return { radius * sine, axial, sine, cosine, sine };
+  }
+  return { radius * sine, axial, std::sin(angle + steeringRad), std::cos(angle + steeringRad), std::sin(steeringRad) };
 }
 
 /// Throws as validate().
@@ -88,9 +94,13 @@ std::vector<PlaneLine> planeLines(const ScanGeometry& geometry)
 {
   geometry.validate();
   std::vector<PlaneLine> lines;
-  for (int n = 0; n < geometry.lineCount; ++n)
+  for (int fan = 0; fan < geometry.fanCount(); ++fan)
   {
-    lines.push_back(planeLine(geometry, n));
+    const double steeringRad = geometry.steeringDeg(fan) * radiansPerDegree;
+    for (int n = 0; n < geometry.lineCount; ++n)
+    {
+      lines.push_back(planeLine(geometry, n, steeringRad));
+    }
   }
   return lines;
 }
@@ -101,7 +111,7 @@ void placeLines(const ScanGeometry& geometry, const std::vector<PlaneLine>& plan
 {
   const ProbePose frame = pose.orthonormalized();
   const Vec3d across = glm::cross(frame.axial, frame.lateral);
-  const int elevations = geometry.totalLineCount() / geometry.lineCount;
+  const int elevations = geometry.isVolume() ? geometry.elevationLineCount : 1;
   for (int e = 0; e < elevations; ++e)
   {
     const double phi = elevations > 1 ? elevationAngle(geometry, e) : 0.0;
@@ -113,11 +123,8 @@ void placeLines(const ScanGeometry& geometry, const std::vector<PlaneLine>& plan
       line->axis = plane.lateralStep * frame.lateral + plane.axialStep * axial;
       line->lateral = plane.axialStep * frame.lateral - plane.lateralStep * axial;
       line->elevation = elevation;
-      if (geometry.lineOrigin() == LineOrigin::Apex)
-      {
-        line->steeringLateral = plane.lateralStep;
-        line->steeringElevational = plane.axialStep * std::sin(phi);
-      }
+      line->steeringLateral = plane.steering;
+      line->steeringElevational = plane.axialStep * std::sin(phi);
       ++line;
     }
   }
@@ -160,6 +167,11 @@ double ScanGeometry::fanCentreAxialMm() const
   return lineOrigin() == LineOrigin::ConvexFace ? -radiusMm : 0.0;
 }
 
+double ScanGeometry::steeringDeg(int fan) const
+{
+  return fractionOf(fan, fanCount()) * compoundSpanDeg;
+}
+
 bool ScanGeometry::uses(const Parameter& number) const
 {
   const std::string name = number.name;
@@ -184,7 +196,9 @@ void ScanGeometry::validate() const
       requireInRange(value, parameter);
     }
   });
-  requireInRange(totalLineCount(), Parameter{ "lineCount x elevationLineCount", "", between(1, 65536), "" });
+  requireInRange(
+    totalLineCount(),
+    Parameter{ isVolume() ? "lineCount x elevationLineCount" : "lineCount x compoundFans", "", between(1, 65536), "" });
 }
 
 bool operator==(const BeamAperture& a, const BeamAperture& b)

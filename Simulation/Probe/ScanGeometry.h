@@ -33,10 +33,19 @@ struct ScanGeometry
   double widthMm = 38.0;
   int elevationLineCount = 32; ///< at most 65536 lines altogether
   double elevationSectorDeg = 60.0;
+  int compoundFans = 1; ///< spatial compounding, of kinds whose lines have starts of their own
+  double compoundSpanDeg = 20.0;
 
   /// The numbers that a kind does not have (see ScanKinds.h) are not used and may be anything.
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
+  {
+    visitLayout(self, visitor);
+    visitCompounding(self, visitor);
+  }
+  /// What a preset says.
+  template<class Self, class Visitor>
+  static void visitLayout(Self& self, Visitor&& visitor)
   {
     visitor(self.kind, Parameter{ "scanKind", "Scan Kind", {}, scanKindSentence(), scanKindLabels() });
     visitor(self.lineCount, Parameter{ "lineCount", "Line Count", between(1, 4096),
@@ -56,6 +65,17 @@ struct ScanGeometry
             Parameter{ "elevationSectorDeg", "Elevation Sector (deg)", inside(0, 180),
                        "Angle between the outermost elevations of a matrix probe in degrees, between 0 and 180." });
   }
+  template<class Self, class Visitor>
+  static void visitCompounding(Self& self, Visitor&& visitor)
+  {
+    visitor(self.compoundFans,
+            Parameter{ "compoundFans", "Compound Fans", between(1, maxCompoundFans),
+                       "Number of fans, each steered to another angle, whose images are averaged (spatial "
+                       "compounding), 1 to 15, no unit. The lines from one point see each place from one side only: "
+                       "there is nothing to compound." });
+    visitor(self.compoundSpanDeg, Parameter{ "compoundSpanDeg", "Compound Span (deg)", between(0, 60),
+                                             "Angle between the outermost of these fans in degrees, 0 to 60." });
+  }
 
   /// Whether the kind uses a number, and what it may be.
   bool uses(const Parameter& number) const;
@@ -63,8 +83,12 @@ struct ScanGeometry
   /// Whether the lines fill a volume instead of a plane.
   bool isVolume() const { return traitsOf(kind).isVolume; }
   LineOrigin lineOrigin() const { return traitsOf(kind).origin; }
-  /// Of all elevations.
-  int totalLineCount() const { return isVolume() ? lineCount * elevationLineCount : lineCount; }
+  /// Fans that are compounded; of lines from one point, 1.
+  int fanCount() const { return traitsOf(kind).takesPart ? compoundFans : 1; }
+  /// How far a fan is steered, from the first, towards the lateral beginning, to the last.
+  double steeringDeg(int fan) const;
+  /// Of all elevations or fans.
+  int totalLineCount() const { return lineCount * (isVolume() ? elevationLineCount : fanCount()); }
   /// Whether the line before the first is the last one.
   bool closesCircle() const { return traitsOf(kind).maxSectorDeg == 360.0 && sectorDeg == 360.0 && lineCount > 1; }
   /// Distance of the face from the centre that the lines of a fan come from; 0 for lines from an apex.
@@ -88,8 +112,8 @@ struct ScanLine
   double steeringElevational = 0.0;
 };
 
-/// The lines in order of increasing lateral position (a matrix: for each elevation, in increasing order), in world
-/// coordinates.
+/// The lines in order of increasing lateral position (a matrix: for each elevation, compounded ones: for each fan, in
+/// increasing order), in world coordinates. A steered line starts where the straight one does.
 ///
 /// A matrix's elevation is a phased sector whose plane is turned by phi about the lateral axis: its line at angle theta
 /// points to (lateral, elevational, axial) = (sin theta, cos theta sin phi, cos theta cos phi).
@@ -98,15 +122,15 @@ std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const ProbePos
 std::vector<ScanLine> makeScanLines(const ScanGeometry& geometry, const std::vector<ProbePose>& poses);
 
 /// Position in the probe's image plane, (lateral, axial) mm from the pose's position, of depth `r` on a line whose
-/// index may be fractional; and back. `beamFromPlane` returns (line, r) with line in [0, lineCount - 1] and r in
-/// [0, depthMm]; points outside of that (beyond 1e-3 line or mm, for rounding) give NaN. On a closed circle line is in
-/// [0, lineCount), where the first line follows the last. A curvilinear face's centre of curvature lies at
-/// axial = -radiusMm; a radial one's at (0, 0), where a sector's lines all start. A matrix's plane is that of phi = 0.
-/// The geometry must be valid.
+/// index may be fractional; and back; of lines that are not steered. `beamFromPlane` returns (line, r) with line in [0,
+/// lineCount - 1] and r in [0, depthMm]; points outside of that (beyond 1e-3 line or mm, for rounding) give NaN. On a
+/// closed circle line is in [0, lineCount), where the first line follows the last. A curvilinear face's centre of
+/// curvature lies at axial = -radiusMm; a radial one's at (0, 0), where a sector's lines all start. A matrix's plane is
+/// that of phi = 0. The geometry must be valid.
 Vec2f planeFromBeam(const ScanGeometry& geometry, double line, double r);
 Vec2f beamFromPlane(const ScanGeometry& geometry, double lateralMm, double axialMm);
 
-/// The plane's map for the kernels: beamFromPlane in single precision.
+/// The plane's map for the kernels: beamFromPlane in single precision; of steered fans their own (see PlaneScan).
 PlaneBeams planeBeams(const ScanGeometry& geometry);
 
 /// Bounding box of the scanned plane, symmetric about the axis. A single line has no width.
@@ -185,7 +209,13 @@ struct ProbeSettings : BeamAperture
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
-    ScanGeometry::visit(self.geometry, visitor);
+    visitPreset(self, visitor);
+    ScanGeometry::visitCompounding(self.geometry, visitor);
+  }
+  template<class Self, class Visitor>
+  static void visitPreset(Self& self, Visitor&& visitor)
+  {
+    ScanGeometry::visitLayout(self.geometry, visitor);
     visitPulse(self, visitor);
     BeamAperture::visit(self, visitor);
   }

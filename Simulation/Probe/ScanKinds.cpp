@@ -7,7 +7,14 @@ namespace sono {
 const std::vector<ScanKindTraits>& scanKinds()
 {
   static const std::vector<ScanKindTraits> all{
-    { "linear", "Linear", "parallel", LineOrigin::Aperture, true, false, 0.0, { "widthMm" } },
+    { "linear",
+      "Linear",
+      "parallel",
+      LineOrigin::Aperture,
+      true,
+      false,
+      0.0,
+      { "widthMm", "compoundFans", "compoundSpanDeg" } },
     { "phased_sector", "Phased Sector", "from one point", LineOrigin::Apex, false, false, 180.0, { "sectorDeg" } },
     { "curvilinear",
       "Curvilinear",
@@ -16,7 +23,7 @@ const std::vector<ScanKindTraits>& scanKinds()
       true,
       false,
       180.0,
-      { "sectorDeg", "radiusMm" } },
+      { "sectorDeg", "radiusMm", "compoundFans", "compoundSpanDeg" } },
     { "matrix",
       "Matrix",
       "from one point over a volume",

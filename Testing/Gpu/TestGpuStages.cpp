@@ -317,6 +317,7 @@ TEST(GpuStages, ScanConversionOfEveryGeometry)
     s.geometry.depthMm = 60.0;
     s.geometry.sectorDeg = kind == ScanKind::Radial ? 360.0 : 60.0;
     s.geometry.radiusMm = kind == ScanKind::Radial ? 3.0 : 60.0;
+    s.geometry.compoundFans = 3; // of linear and curvilinear
     s.tracing.pathsPerLine = 200;
     s.bmode.automaticReference = false;
     s.bmode.referenceAmplitude = 0.05;
