@@ -8,6 +8,7 @@
 // a property.
 #include "Echo/EchoSettings.h"
 #include "Image/BModeSettings.h"
+#include "Image/DisplaySettings.h"
 #include "Labels/BodyFill.h"
 #include "Probe/ScanGeometry.h"
 #include "Scene/ScanDetail.h"
@@ -76,6 +77,7 @@ std::vector<Described> parametersOf(const std::string& settings)
   static const std::map<std::string, std::function<std::vector<Described>()>> all{
     { "BModeSettings", describeWithChest<sono::BModeSettings> },
     { "BodyFillSettings", describe<sono::BodyFillSettings> },
+    { "DisplaySettings", describe<sono::DisplaySettings> },
     { "EchoSettings", describe<sono::EchoSettings> },
     { "EchoSampling",
       [] {

@@ -311,10 +311,12 @@ void UltrasoundStages::makeErrorMap(const ImageInput& image, const TracedResult&
   }
 }
 
-void UltrasoundStages::makeImage(const ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat)
+void UltrasoundStages::makeImage(const ImageInput& image, std::optional<double> time, vtkDataArray* errors,
+                                 vtkImageData* world, vtkImageData* flat)
 {
   isImageAsked_ = true;
-  const ImageResult made = simulator_.image(image, progress(converter, 0.0, 1.0));
+  const ImageResult made =
+    display_.show(simulator_.image(image, progress(converter, 0.0, 1.0)), field_, time, converter->DisplaySettings());
   // All else before the picture, which may have to be waited for.
   placeImage(made, image.pose, world);
   placeFlat(made, image.pose, world, flat);
@@ -510,7 +512,8 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   {
     world->GetFieldData()->ShallowCopy(fields);
   }
-  makeImage(image, owner_->GetErrorMap() ? errorArrays_->GetScalars() : nullptr, world,
+  makeImage(image, timeOf(inputs[Filter::LABELS_OR_SCENE]),
+            owner_->GetErrorMap() ? errorArrays_->GetScalars() : nullptr, world,
             vtkImageData::GetData(output, Filter::FLAT_IMAGE));
   keep(blocks->GetFieldData());
 }

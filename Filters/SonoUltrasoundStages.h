@@ -3,6 +3,7 @@
 #include "Simulator.h"
 #include "SonoAnatomy.h"
 #include "SonoContent.h"
+#include "SonoDisplay.h"
 #include "SonoProbeField.h"
 
 #include "vtkSmartPointer.h"
@@ -98,7 +99,8 @@ private:
   void makeLines(const Result& result, Result (*resultOf)(vtkImageData*), const Fill& fill,
                  vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines);
   void makePaths(int port, const ImageInput& image, vtkPolyData* output);
-  void makeImage(const ImageInput& image, vtkDataArray* errors, vtkImageData* world, vtkImageData* flat);
+  void makeImage(const ImageInput& image, std::optional<double> time, vtkDataArray* errors, vtkImageData* world,
+                 vtkImageData* flat);
   std::string keptKey();
   bool takeKept(vtkInformationVector* output);
   void keep(vtkFieldData* anatomy);
@@ -123,6 +125,7 @@ private:
   TracedResult traced_;
   bool isAsked_ = false;      ///< for what is traced, since the last announcement
   bool isImageAsked_ = false; ///< for an image, the same
+  Display display_;
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;
   std::string contactWarning_;    ///< of what was traced

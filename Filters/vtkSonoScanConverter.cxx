@@ -3,11 +3,13 @@
 #include "Image/LabelSlice.h"
 #include "Scene/Scene.h"
 #include "Simulator.h"
+#include "SonoDisplay.h"
 #include "SonoImagePlacement.h"
 #include "SonoLabelImage.h"
 #include "SonoLineImage.h"
 #include "SonoOutputs.h"
 #include "SonoProbeField.h"
+#include "SonoSettings.h"
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
@@ -16,6 +18,8 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+
+#include <utility>
 
 vtkStandardNewMacro(vtkSonoScanConverter);
 
@@ -37,7 +41,9 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkFieldData* field)
 } // namespace
 
 vtkSonoScanConverter::vtkSonoScanConverter()
-  : Simulator(new sono::Simulator)
+  : Parameters(new sono::SettingsOf<sono::DisplaySettings>)
+  , Simulator(new sono::Simulator)
+  , Display(new sono::Display)
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
@@ -50,6 +56,12 @@ void vtkSonoScanConverter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "PixelMm: " << this->PixelMm << endl;
+  this->Parameters->print(os, indent);
+}
+
+const sono::DisplaySettings& vtkSonoScanConverter::DisplaySettings() const
+{
+  return sono::settingsIn<sono::DisplaySettings>(std::as_const(*this->Parameters));
 }
 
 int vtkSonoScanConverter::FillInputPortInformation(int port, vtkInformation* info)
@@ -117,7 +129,8 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     this->Simulator->setScene(scene);
     const double pixelMm = sono::pixelMmOf(probe, this->PixelMm);
     const sono::ImageResult image =
-      this->Simulator->scanConvert(probe.geometry, bmode, pixelMm, sono::progressOf(this));
+      this->Display->show(this->Simulator->scanConvert(probe.geometry, bmode, pixelMm, sono::progressOf(this)), probe,
+                          sono::timeOf(lines), this->DisplaySettings());
     // All else before the picture, which may have to be waited for.
     vtkImageData* world = vtkImageData::GetData(output, 0);
     vtkImageData* flat = vtkImageData::GetData(output, 1);

@@ -1,13 +1,16 @@
 #ifndef vtkSonoScanConverter_h
 #define vtkSonoScanConverter_h
 
+#include "SonoParameters.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
 #include <memory>
 
 namespace sono {
+class Display;
 class Simulator;
+struct DisplaySettings;
 struct LabelVolume;
 }
 
@@ -43,6 +46,17 @@ public:
   vtkGetMacro(PixelMm, double);
   ///@}
 
+  ///@{
+  /**
+   * What a scanner does to the finished image. Units, ranges, defaults and what they do: sono::DisplaySettings. The
+   * images that persistence averages are those of the input's time steps.
+   */
+  sonoParameter(Persistence, double);
+  sonoParameter(SpeckleReduction, int);
+  sonoParameter(SpeckleThreshold, double);
+  const sono::DisplaySettings& DisplaySettings() const;
+  ///@}
+
 protected:
   vtkSonoScanConverter();
   ~vtkSonoScanConverter() override;
@@ -58,7 +72,9 @@ private:
 
   std::shared_ptr<const sono::LabelVolume> ConnectedLabels(vtkImageData* image);
 
+  std::unique_ptr<sono::ParameterSet> Parameters;
   std::unique_ptr<sono::Simulator> Simulator;
+  std::unique_ptr<sono::Display> Display;
   double PixelMm = 0.23;
   std::shared_ptr<const sono::LabelVolume> Labels; // of port 1, kept while its image is unchanged
   vtkMTimeType LabelsTime = 0;                     // of that image

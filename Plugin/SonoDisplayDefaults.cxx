@@ -96,6 +96,14 @@ void showRays(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
+/// A second as wide as a scanner's sweep shows it; the data stay in s.
+void stretchTime(vtkSMProxy* representation)
+{
+  const double mmPerS[] = { 100.0, 1.0, 1.0 };
+  vtkSMPropertyHelper(representation, "Scale", true).Set(mmPerS, 3);
+  representation->UpdateVTKObjects();
+}
+
 /// On its way from a server ParaView 5.11 loses how an image is turned, but not where a surface's points lie.
 void keepInPlace(vtkSMProxy* representation)
 {
@@ -197,6 +205,11 @@ public:
     {
       hideUnscanned(registered->Proxy->GetSessionProxyManager());
       keepInPlace(registered->Proxy);
+    }
+    else if (equal(input->GetXMLName(), "SonoMMode"))
+    {
+      hideUnscanned(registered->Proxy->GetSessionProxyManager());
+      stretchTime(registered->Proxy);
     }
     else if (isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::ERROR_MAP))
     {

@@ -4,6 +4,7 @@
 #include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
+#include "Image/DisplaySettings.h"
 #include "Labels/BodyFill.h"
 #include "Phantoms/CalibrationPhantom.h"
 #include "Phantoms/TestObjects.h"
@@ -21,6 +22,7 @@
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoPulseEchoField.h"
 #include "vtkSonoRayTracer.h"
+#include "vtkSonoScanConverter.h"
 #include "vtkSonoSceneBuilder.h"
 #include "vtkSonoThoraxSource.h"
 
@@ -52,6 +54,7 @@ TEST(FilterDefaults, StagesHaveTheSettingsOfSimulation)
   expectPrinted<sono::TraceSettings>(vtkNew<vtkSonoRayTracer>().Get());
   expectPrinted<sono::EchoSettings>(vtkNew<vtkSonoImageFormation>().Get());
   expectPrinted<sono::BModeSettings>(vtkNew<vtkSonoBMode>().Get());
+  expectPrinted<sono::DisplaySettings>(vtkNew<vtkSonoScanConverter>().Get());
   expectPrinted<sono::ProbeSettings>(vtkNew<vtkSonoProbeSource>().Get());
   expectPrinted<sono::BodyFillSettings>(vtkNew<vtkSonoSceneBuilder>().Get());
 }

@@ -51,7 +51,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 25)
+        self.assertEqual(len(CLASSES), 26)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()
@@ -125,7 +125,7 @@ class TestProxies(unittest.TestCase):
                     not domains & {"EnumerationDomain", "BooleanDomain"}:
                 numbers += 1
                 self.assertTrue(domains & {"IntRangeDomain", "DoubleRangeDomain"})
-                self.assertRegex(tooltip, r"\b(mm|cm|dB|MHz|degrees|no unit)\b")
+                self.assertRegex(tooltip, r"\b(mm|cm|dB|MHz|degrees|seconds|no unit)\b")
                 self.assertRegex(tooltip, r"\d|any place")
         self.assertGreater(numbers, 60)
 
