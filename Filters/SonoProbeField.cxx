@@ -111,9 +111,14 @@ void writeProbe(const ProbeField& probe, vtkFieldData* field, vtkFieldData* befo
 ProbeField readProbe(vtkFieldData* field)
 {
   ProbeField probe;
-  ProbeSettings::visit(probe, [field](auto& value, const Parameter& parameter) {
+  const auto read = [field](auto& value, const Parameter& parameter) {
     value = valueOf<std::decay_t<decltype(value)>>(readNumber(propertyName(parameter).c_str(), field));
-  });
+  };
+  ProbeSettings::visitPreset(probe, read);
+  if (field->HasArray("CompoundFans")) // not in older files
+  {
+    ScanGeometry::visitCompounding(probe.geometry, read);
+  }
   probe.geometry.validate();
   probe.pose.positionMm = readVector("ProbePositionMm", field);
   probe.pose.axial = readVector("ProbeAxial", field);

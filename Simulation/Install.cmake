@@ -12,6 +12,7 @@ set(public_headers
   Image/ScanConvertVolume.h
   Labels/AssignTissues.h
   Labels/BodyFill.h
+  Image/GreyMap.h
   Labels/LabelTable.h
   Labels/ReadIntensities.h
   Labels/ReadLabelMap.h

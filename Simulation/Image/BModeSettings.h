@@ -34,7 +34,7 @@ struct BModeSettings
   std::uint64_t noiseSeed = 1;
   double axialSmoothingMm = 0.0; ///< of the envelope, before any gain
   double frequencyMHz = 2.5;     ///< centre of the pulse's band, > 0
-  double pulseSigmaMm = 0.2;     ///< of the receive filter's pulse (see pulseSigmaMm): the noise's grain along a line
+  double pulseSigmaMm = 0.2;     ///< standard deviation of the receive filter's pulse: the noise's grain along a line
   int linesAcross = 0;           ///< lines side by side; those that follow lie in other planes. 0: all
 
   template<class Self, class Visitor>
