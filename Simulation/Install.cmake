@@ -7,12 +7,12 @@ set(public_headers
   Echo/FormRf.h
   Echo/PointScatterers.h
   Image/BMode.h
+  Image/GreyMap.h
   Image/LabelSlice.h
   Image/ScanConvert.h
   Image/ScanConvertVolume.h
   Labels/AssignTissues.h
   Labels/BodyFill.h
-  Image/GreyMap.h
   Labels/LabelTable.h
   Labels/ReadIntensities.h
   Labels/ReadLabelMap.h
