@@ -22,10 +22,11 @@ struct DisplaySettings
             Parameter{ "speckleReduction", "Speckle Reduction", between(0, 100),
                        "Iterations of the anisotropic diffusion that evens out speckle and spares edges, 0 to 100, no "
                        "unit. 0: none." });
-    visitor(self.speckleThreshold,
-            Parameter{ "speckleThreshold", "Speckle Threshold", aboveUpTo(0, 255),
-                       "Step between neighbouring pixels from which on it is an edge, in grey levels, above 0 up to "
-                       "255." });
+    visitor(
+      self.speckleThreshold,
+      Parameter{ "speckleThreshold", "Speckle Threshold", aboveUpTo(0, 255),
+                 "Step between neighbouring pixels from which on it is an edge, in grey levels (no unit), above 0 "
+                 "up to 255." });
   }
 };
 
