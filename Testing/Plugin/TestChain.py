@@ -25,7 +25,7 @@ def make_chain():
     scene = simple.UltrasoundScene(registrationName="scene", Input=thorax)
     traced = simple.UltrasoundRayTracer(registrationName="traced", Scene=scene, Probe=probe, PathsperLine=20)
     rf = simple.UltrasoundImageFormation(registrationName="rf", Input=traced)
-    bmode = simple.UltrasoundBMode(registrationName="bmode", Input=rf, TGCPointsmmdB=[0, 0, 50, 12])
+    bmode = simple.UltrasoundBMode(registrationName="bmode", Input=rf, TGC5dB=12)
     return simple.ScanConverter(registrationName="picture", Input=bmode)
 
 
@@ -156,7 +156,7 @@ class TestChain(unittest.TestCase):
             self.tearDown()
             self.assertIsNone(simple.FindSource("picture"))
             simple.LoadState(path)
-        self.assertEqual(list(simple.FindSource("bmode").TGCPointsmmdB), [0, 0, 50, 12])
+        self.assertEqual(simple.FindSource("bmode").TGC5dB, 12)
         self.assertTrue((grey(simple.FindSource("picture")) == before).all())
 
     def test_label_array_can_be_chosen(self):
