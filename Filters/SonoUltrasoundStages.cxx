@@ -342,7 +342,8 @@ std::string UltrasoundStages::keptKey()
   const bool isAlone = owner_->GetNumberOfInputConnections(Filter::TARGETS) == 0 &&
                        owner_->GetNumberOfInputConnections(Filter::SCATTERERS) == 0 &&
                        owner_->GetNumberOfInputConnections(Filter::PULSE_ECHO_FIELD) == 0;
-  if (!isAlone || field_.preview || owner_->GetErrorMap())
+  const DisplaySettings display = converter->DisplaySettings();
+  if (!isAlone || field_.preview || owner_->GetErrorMap() || display.persistence > 0.0)
   {
     return {};
   }
@@ -361,6 +362,7 @@ std::string UltrasoundStages::keptKey()
     key.add(double(chooseDevice(settings_.tracing).cuda)).add(double(chooseDevice(settings_.echo.device).cuda));
     key.add(pulse.empty() ? pulse : fileKey(pulse));
     describe(field_.pose, key);
+    DisplaySettings::visit(display, [&](const auto& value, const Parameter&) { key.add(double(value)); });
     return describe(settings_, key) ? key.text() : std::string();
   }
   catch (const Error&)

@@ -86,12 +86,12 @@ private:
     BeamAperture::visit(aperture, [&](double value, const Parameter&) { key_.add(value); });
     key_.add(double(aperture.elevationIsArray));
   }
-  void one(const std::vector<std::pair<double, double>>& curve)
+  void one(const std::vector<float>& table)
   {
-    key_.add(double(curve.size()));
-    for (const auto& [at, value] : curve)
+    key_.add(double(table.size()));
+    for (const float value : table)
     {
-      key_.add(at).add(value);
+      key_.add(double(value));
     }
   }
   template<class Shared>

@@ -18,6 +18,10 @@ struct BeamCulling
   float elevation;
   Vec2f perWidening{ 1.0f }; ///< of a beam of an aperture or an array, by its angle
   ArraySightView array{};    ///< of a beam of an array
+  // Of an aperture's beam, for the layer of bricks that is looked at: between these depths it is nowhere wider.
+  float layerFromMm = 0.0f;
+  float layerToMm = -1.0f;
+  Vec2f perLayerWidth{ 0.0f };
 };
 
 float halfExtent(const Vec3f& direction, float edge)
@@ -94,10 +98,22 @@ bool sees(const BeamCulling& s, const Vec3f& centre)
   }
   if (s.reach.table)
   {
+    const float asideL = std::max(0.0f, std::fabs(lateral) - s.lateral) * s.perWidening.x;
+    const float asideE = std::max(0.0f, std::fabs(elevational) - s.elevation) * s.perWidening.y;
+    const float most = s.reach.share * s.reach.share;
+    if (r - s.axial >= s.layerFromMm && r + s.axial <= s.layerToMm)
+    {
+      const float l = asideL * s.perLayerWidth.x;
+      const float e = asideE * s.perLayerWidth.y;
+      if (l * l + e * e > 1.001f * most) // most bricks, without a look into the table
+      {
+        return false;
+      }
+    }
     const Vec2f seen = s.reach.table->widest(r - s.axial, r + s.axial);
-    const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) * s.perWidening.x / seen.x;
-    const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) * s.perWidening.y / seen.y;
-    return dl * dl + de * de < s.reach.share * s.reach.share;
+    const float dl = asideL / seen.x;
+    const float de = asideE / seen.y;
+    return dl * dl + de * de < most;
   }
   const float dl = std::max(0.0f, std::fabs(lateral) - s.lateral) / b.lateralSigmaMm;
   const float de = std::max(0.0f, std::fabs(elevational) - s.elevation) / b.elevationalSigmaMm;
@@ -152,7 +168,7 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
                    const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit)
 {
   const float edge = grid.edgeMm;
-  const std::vector<BeamCulling> beams = makeBeamCulling(group, edge);
+  std::vector<BeamCulling> beams = makeBeamCulling(group, edge);
   const int axis = mainAxis(beams);
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
@@ -165,10 +181,17 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
   {
     Vec2f first(1e30f);
     Vec2f last(-1e30f);
-    for (const BeamCulling& s : beams)
+    for (BeamCulling& s : beams)
     {
       const Vec2f part =
         clipToSlab(s.reach, axis, float(layer) * edge - s.radius[axis], float(layer + 1) * edge + s.radius[axis]);
+      s.layerToMm = -1.0f;
+      if (s.reach.table && part[0] <= part[1])
+      {
+        s.layerFromMm = part[0] - s.axial;
+        s.layerToMm = part[1] + s.axial;
+        s.perLayerWidth = 1.0f / s.reach.table->widest(s.layerFromMm, s.layerToMm);
+      }
       const Vec3f radius = s.reach.table && part[0] <= part[1] ? seenRadius(s.reach, edge, part[0], part[1]) : s.radius;
       // Between the two ends of the part the axis is straight: its bounds are theirs.
       for (int end = 0; end < 2 && part[0] <= part[1]; ++end)

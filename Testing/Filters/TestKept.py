@@ -148,7 +148,8 @@ class Kept(unittest.TestCase):
         settings = [{"DetailDbPer100Hu": 30.0}, {"DetailDirection": 2}, {"FillFromCt": False}, {"FillBody": 1},
                     {"FallbackTissue": "fat"}, {"GainDb": 5.0}, {"PathsPerLine": 20}, {"PathSeed": 3}, {"SectorDeg": 50.0},
                     {"Beam": 1}, {"PositionMm": [p + 0.01 for p in self.pose[0]]}, {"PixelMm": 0.5},
-                    {"NoiseSeed": 7, "NoiseDb": -30.0}, {"LabelTissueFile": str(words)}]
+                    {"NoiseSeed": 7, "NoiseDb": -30.0}, {"SpeckleReduction": 5},
+                    {"GreyMap": "S-Shaped"}, {"LabelTissueFile": str(words)}]
         for number, changed in enumerate(settings):
             with self.subTest(**changed):
                 run = self.run_of(**changed)
