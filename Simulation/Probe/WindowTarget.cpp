@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -136,9 +138,14 @@ std::string presetOf(const Scene& scene, const std::vector<int>& labels)
   return curved;
 }
 
-/// Whether an organ goes on beyond the box: its section with one of the box's faces is more than half of its largest
-/// section along that axis. Every other voxel of a row is looked at.
-bool isCutThrough(const Scene& scene, const std::vector<int>& labels)
+/// How much of an organ the box holds.
+struct OrganInBox
+{
+  std::int64_t voxels; ///< half of them: every other voxel of a row is looked at
+  bool isCut;          ///< its section with one of the box's faces is more than half of its largest one along that axis
+};
+
+OrganInBox organInBox(const Scene& scene, const std::vector<int>& labels)
 {
   std::vector<char> wanted(65536, 0);
   for (const int id : labels)
@@ -165,9 +172,10 @@ bool isCutThrough(const Scene& scene, const std::vector<int>& labels)
       }
     }
   }
-  return std::any_of(sections.begin(), sections.end(), [](const std::vector<int>& section) {
+  const bool isCut = std::any_of(sections.begin(), sections.end(), [](const std::vector<int>& section) {
     return 2 * std::max(section.front(), section.back()) > *std::max_element(section.begin(), section.end());
   });
+  return { std::accumulate(sections[0].begin(), sections[0].end(), std::int64_t(0)), isCut };
 }
 
 /// The labels of an organ by their names, or else by their tissue.
@@ -177,12 +185,25 @@ std::vector<int> labelsOrTissueOf(const Scene& scene, const Organ& organ, const 
   return named.empty() ? labelsThat(scene, [&](const LabelInfo& label) { return label.tissue == tissue; }) : named;
 }
 
-/// The heart, or the liver where there is no heart or only the liver is whole, or else the body.
+/// Whether the liver is the better first picture of the two: where the heart goes on beyond the box and the liver does
+/// not, or where next to nothing of the heart is in it.
+bool showsLiverRather(const Scene& scene, const std::vector<int>& heart, const std::vector<int>& liver)
+{
+  const OrganInBox ofHeart = organInBox(scene, heart);
+  if (!ofHeart.isCut)
+  {
+    return false;
+  }
+  const OrganInBox ofLiver = organInBox(scene, liver);
+  return !ofLiver.isCut || 10 * ofHeart.voxels < ofLiver.voxels;
+}
+
+/// The heart, or the liver where there is no heart or the liver is the better picture, or else the body.
 WindowTarget defaultTarget(const Scene& scene)
 {
   const std::vector<int> heart = labelsOrTissueOf(scene, organs[0], "myocardium");
   const std::vector<int> liver = labelsOrTissueOf(scene, organs[1], "liver");
-  if (!liver.empty() && (heart.empty() || (isCutThrough(scene, heart) && !isCutThrough(scene, liver))))
+  if (!liver.empty() && (heart.empty() || showsLiverRather(scene, heart, liver)))
   {
     return targetOf(organs[1].name, liver, organs[1].preset);
   }
