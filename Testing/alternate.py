@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""alternate.py OLD_BUILD NEW_BUILD [ROUNDS]: is anything slower than it was?
+"""alternate.py OLD_BUILD NEW_BUILD [ROUNDS] [defaults]: is anything slower than it was?
 
 Two build folders' filters make the bundled A4C in turn, each time in a new process, on the CPU, with Amadou2024's
-numbers, which every version knows. Prints the processor seconds of each part, medians of ROUNDS (6), as
+numbers, which every version knows, or each with its own defaults. Prints the processor seconds of each part, medians of ROUNDS (6), as
 `name old new new/old`. What else the machine does meets both alike.
 """
 import os
@@ -17,7 +17,7 @@ def processor_s():
     return used.ru_utime + used.ru_stime
 
 
-def parts():
+def parts(defaults):
     import sonovdb.vtkSonoFilters as filters
 
     thorax = filters.vtkSonoThoraxSource()
@@ -36,10 +36,11 @@ def parts():
         stage.SetInputConnection(port, source.GetOutputPort())
     tracer.SetDevice(1)
     former.SetDevice(1)
-    tracer.SetInterfaceModel(1)
-    tracer.SetPathsPerLine(1000)
-    tracer.SetMaxCollisions(7)
-    tracer.SetLobeSigmaDeg(45.0)
+    if not defaults:
+        tracer.SetInterfaceModel(1)
+        tracer.SetPathsPerLine(1000)
+        tracer.SetMaxCollisions(7)
+        tracer.SetLobeSigmaDeg(45.0)
     set_seed = getattr(tracer, "SetPathSeed", None) or tracer.SetSeed
 
     def cost(stage):
@@ -61,11 +62,11 @@ def parts():
         yield "drag", cost(converter)
 
 
-def run(build):
+def run(build, words):
     libraries = os.path.join(build, "lib")
     environment = dict(os.environ, PYTHONPATH=os.path.join(libraries, "python3/dist-packages"),
                        LD_LIBRARY_PATH=libraries)
-    printed = subprocess.run(["pvpython", os.path.abspath(__file__), "parts"], env=environment, check=True,
+    printed = subprocess.run(["pvpython", os.path.abspath(__file__), "parts", *words], env=environment, check=True,
                              stdout=subprocess.PIPE, text=True).stdout
     costs = {}
     for line in printed.splitlines():
@@ -75,14 +76,16 @@ def run(build):
 
 
 def main():
-    if sys.argv[1:] == ["parts"]:
-        for name, seconds in parts():
+    words = [word for word in sys.argv[1:] if word == "defaults"]
+    given = [word for word in sys.argv[1:] if word != "defaults"]
+    if given == ["parts"]:
+        for name, seconds in parts(bool(words)):
             print(name, f"{seconds:.4f}")
         return
-    if len(sys.argv) not in (3, 4):
+    if len(given) not in (2, 3):
         sys.exit(__doc__)
-    builds = sys.argv[1:3]
-    rounds = [[run(build) for build in builds] for _ in range(int(sys.argv[3]) if len(sys.argv) == 4 else 6)]
+    builds = given[:2]
+    rounds = [[run(build, words) for build in builds] for _ in range(int(given[2]) if len(given) == 3 else 6)]
     for name in rounds[0][0]:
         old, new = (statistics.median(each[which][name] for each in rounds) for which in (0, 1))
         print(f"{name} {old:.4f} {new:.4f} {new / old:.3f}")
