@@ -189,4 +189,15 @@ bool isAskedNothing(vtkInformation* outInfo)
   return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
 }
 
+bool isInputUpToDate(vtkAlgorithm* consumer, int port)
+{
+  if (consumer->GetNumberOfInputConnections(port) == 0)
+  {
+    return true;
+  }
+  auto* producer = vtkDemandDrivenPipeline::SafeDownCast(consumer->GetInputExecutive(port, 0));
+  vtkDataObject* data = consumer->GetInputDataObject(port, 0);
+  return producer && data && data->GetUpdateTime() > producer->GetPipelineMTime();
+}
+
 } // namespace sono

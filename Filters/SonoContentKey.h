@@ -53,4 +53,7 @@ void giveNothing(vtkInformation* outInfo);
 /// updates it.
 bool isOutputWanted(vtkAlgorithm* producer, int port);
 
+/// Whether a request for data would leave what a port has as it is; so it does where nothing is connected.
+bool isInputUpToDate(vtkAlgorithm* consumer, int port);
+
 } // namespace sono

@@ -23,12 +23,6 @@ bool isOff(const DisplaySettings& s)
   return s.persistence == 0.0 && s.speckleReduction == 0;
 }
 
-bool isSame(const DisplaySettings& a, const DisplaySettings& b)
-{
-  return a.persistence == b.persistence && a.speckleReduction == b.speckleReduction &&
-         a.speckleThreshold == b.speckleThreshold;
-}
-
 template<class Filter>
 void diffuse(vtkImageData* image, const DisplaySettings& settings)
 {
@@ -98,7 +92,7 @@ const ImageResult& Display::show(const ImageResult& image, const ProbeField& pro
 {
   requireInRange(settings);
   const bool isSameImage = image == from_;
-  const bool isSameDisplay = isSame(settings, settings_);
+  const bool isSameDisplay = same(settings, settings_);
   if (isSameImage && isSameDisplay)
   {
     return shown_;

@@ -1,14 +1,10 @@
 #include "SonoUltrasoundStages.h"
 
-#include "Core/KeptResults.h"
-#include "Core/KeyText.h"
-#include "SameSettings.h"
 #include "SonoChestDefaults.h"
 #include "SonoContentKey.h"
 #include "SonoFieldImage.h"
 #include "SonoImagePlacement.h"
 #include "SonoImageSettings.h"
-#include "SonoKeptArrays.h"
 #include "SonoLineImage.h"
 #include "SonoOutputs.h"
 #include "SonoPaths.h"
@@ -29,7 +25,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -56,20 +51,6 @@ using Filter = vtkSonoUltrasound; // of the ports
 constexpr double anatomyEnd = 0.3;
 constexpr double tracingEnd = 0.75;
 constexpr double bmodeEnd = 0.95;
-
-constexpr const char* keptKind = "picture";
-
-/// Whether a request for data would leave what a port has as it is; so it does where nothing is connected.
-bool isUpToDate(vtkAlgorithm* filter, int port)
-{
-  if (filter->GetNumberOfInputConnections(port) == 0)
-  {
-    return true;
-  }
-  auto* producer = vtkDemandDrivenPipeline::SafeDownCast(filter->GetInputExecutive(port, 0));
-  vtkDataObject* data = filter->GetInputDataObject(port, 0);
-  return producer && data && data->GetUpdateTime() > producer->GetPipelineMTime();
-}
 
 } // namespace
 
@@ -125,7 +106,7 @@ UltrasoundStages::Inputs UltrasoundStages::inputsOf(vtkInformationVector** input
 void UltrasoundStages::begin(vtkInformationVector** input)
 {
   const auto areUpToDate = [&](std::initializer_list<int> ports) {
-    return std::all_of(ports.begin(), ports.end(), [&](int port) { return isUpToDate(owner_, port); });
+    return std::all_of(ports.begin(), ports.end(), [&](int port) { return isInputUpToDate(owner_, port); });
   };
   const bool wholeImage = std::exchange(isImageAsked_, false);
   if (!std::exchange(isAsked_, false) || !areUpToDate({ Filter::LABELS_OR_SCENE, Filter::TARGETS }))
@@ -334,117 +315,6 @@ void UltrasoundStages::makeImage(const ImageInput& image, std::optional<double> 
       output->GetPointData()->AddArray(errors);
     }
   }
-}
-
-/// All that the picture depends on; empty where that is not known, or it is one of many.
-std::string UltrasoundStages::keptKey()
-{
-  const bool isAlone = owner_->GetNumberOfInputConnections(Filter::TARGETS) == 0 &&
-                       owner_->GetNumberOfInputConnections(Filter::SCATTERERS) == 0 &&
-                       owner_->GetNumberOfInputConnections(Filter::PULSE_ECHO_FIELD) == 0;
-  const DisplaySettings display = converter->DisplaySettings();
-  if (!isAlone || field_.preview || owner_->GetErrorMap() || display.persistence > 0.0)
-  {
-    return {};
-  }
-  const std::string content = contentKeyOf(owner_, Filter::LABELS_OR_SCENE);
-  const std::string anatomy = content.empty() ? content : scene->SettingsKey();
-  if (anatomy.empty())
-  {
-    return {};
-  }
-  try
-  {
-    const char* array = owner_->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-    const std::string pulse = formation->GetPulseFileName();
-    KeyText key;
-    key.add(programKey()).add(content).add(anatomy).add(array ? array : "");
-    key.add(double(chooseDevice(settings_.tracing).cuda)).add(double(chooseDevice(settings_.echo.device).cuda));
-    key.add(pulse.empty() ? pulse : fileKey(pulse));
-    describe(field_.pose, key);
-    DisplaySettings::visit(display, [&](const auto& value, const Parameter&) { key.add(double(value)); });
-    return describe(settings_, key) ? key.text() : std::string();
-  }
-  catch (const Error&)
-  {
-    return {}; // said when the picture is made
-  }
-}
-
-bool UltrasoundStages::findKept(int port)
-{
-  const std::string folder = keptFolder(scene->GetCacheFolder());
-  vtkDataObject* input = owner_->GetInputDataObject(Filter::LABELS_OR_SCENE, 0);
-  const bool isBuilt = input && isUpToDate(owner_, Filter::LABELS_OR_SCENE) && anatomy_->builtBlocks(input) != nullptr;
-  // What is built is there sooner than a file is looked for, and its pictures are many.
-  std::string key = folder.empty() || isBuilt || !vtkImageData::SafeDownCast(input) ? std::string() : keptKey();
-  if (key.empty() || key != key_)
-  {
-    kept_.clear();
-    key_ = std::move(key);
-  }
-  left_.erase(port);
-  if (!key_.empty() && kept_.empty())
-  {
-    kept_ = sono::findKept(folder, keptKind, key_).value_or(std::vector<std::string>());
-  }
-  if (kept_.empty() || port == Filter::IMAGE || port == Filter::FLAT_IMAGE || port == Filter::PROBE)
-  {
-    return !kept_.empty();
-  }
-  const bool isLeft = !isOutputWanted(owner_, port);
-  if (isLeft)
-  {
-    left_.insert(port);
-  }
-  return isLeft;
-}
-
-bool UltrasoundStages::isLeftWanted() const
-{
-  return std::any_of(left_.begin(), left_.end(), [this](int port) { return isOutputWanted(owner_, port); });
-}
-
-bool UltrasoundStages::takeKept(vtkInformationVector* output)
-{
-  vtkNew<vtkPointData> arrays;
-  vtkNew<vtkFieldData> fields;
-  if (kept_.size() != 3 || !addPackedArrays(kept_[0], arrays) || !addPackedArrays(kept_[1], fields))
-  {
-    return false;
-  }
-  arrays->SetActiveScalars("BMode");
-  vtkImageData* world = vtkImageData::GetData(output, Filter::IMAGE);
-  vtkImageData* flat = vtkImageData::GetData(output, Filter::FLAT_IMAGE);
-  const ImagePlacement placement = placementOf(field_, settings_.pixelMm);
-  world->GetFieldData()->Initialize();
-  world->GetFieldData()->PassData(fields);
-  world->GetFieldData()->PassData(acquisition_);
-  world->GetPointData()->ShallowCopy(arrays);
-  placement.place(world);
-  flat->ShallowCopy(world);
-  placement.flat(field_.pose).place(flat);
-  for (const std::string& sentence : unpackedSentences(kept_[2]))
-  {
-    warn(owner_, sentence);
-  }
-  return true;
-}
-
-/// The picture that was just made.
-void UltrasoundStages::keep(vtkFieldData* anatomy)
-{
-  if (key_.empty() || key_ != keptKey()) // a file may have changed meanwhile
-  {
-    return;
-  }
-  std::vector<std::string> warnings = anatomy_->warnings();
-  if (!contactWarning_.empty())
-  {
-    warnings.push_back(contactWarning_);
-  }
-  sono::keep(keptFolder(scene->GetCacheFolder()), keptKind, key_,
-             { packedArrays(pictureArrays_), packedArrays(anatomy), packedSentences(warnings) });
 }
 
 void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformationVector* output)

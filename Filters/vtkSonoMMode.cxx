@@ -142,15 +142,14 @@ void vtkSonoMMode::TakeLine(vtkImageData* lines)
   this->Columns.emplace_back(first, first + layout.sampleCount);
 }
 
-void vtkSonoMMode::MakeImage(vtkImageData* image)
+void vtkSonoMMode::MakeImage(const std::vector<std::size_t>& shownSteps, vtkImageData* image)
 {
-  const TimeAxis axis = timeAxis(this->StepTimes, this->SecondsPerStep);
-  const std::size_t width = axis.shown.size();
+  const std::size_t width = shownSteps.size();
   const std::size_t height = this->Columns.front().size();
   std::vector<float> grey(width * height);
   for (std::size_t x = 0; x < width; ++x)
   {
-    const std::vector<float>& column = this->Columns[axis.shown[x]];
+    const std::vector<float>& column = this->Columns[shownSteps[x]];
     for (std::size_t y = 0; y < height; ++y)
     {
       grey[y * width + x] = column[y];
@@ -182,7 +181,7 @@ int vtkSonoMMode::RequestData(vtkInformation* request, vtkInformationVector** in
     image->SetDimensions(static_cast<int>(axis.shown.size()), static_cast<int>(this->Columns.front().size()), 1);
     image->SetOrigin(axis.firstS, lines->GetOrigin()[0], 0.0);
     image->SetSpacing(axis.stepS, sampleMm, 1.0);
-    this->MakeImage(image);
+    this->MakeImage(axis.shown, image);
     image->GetInformation()->Remove(vtkDataObject::DATA_TIME_STEP());
   });
   if (!request->Has(Pipeline::CONTINUE_EXECUTING())) // done, failed or stopped

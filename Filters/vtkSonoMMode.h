@@ -53,7 +53,7 @@ private:
   void operator=(const vtkSonoMMode&) = delete;
 
   void TakeLine(vtkImageData* lines);
-  void MakeImage(vtkImageData* image);
+  void MakeImage(const std::vector<std::size_t>& shownSteps, vtkImageData* image);
 
   int Line = 64;
   double SecondsPerStep = 0.0;

@@ -1,11 +1,11 @@
 #include "vtkSonoTextFile.h"
 
+#include "Core/WholeFile.h"
+
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 
-#include <filesystem>
-#include <fstream>
-#include <system_error>
+#include <ostream>
 
 vtkStandardNewMacro(vtkSonoTextFile);
 
@@ -27,19 +27,8 @@ void vtkSonoTextFile::Write()
   {
     return;
   }
-  const std::string part = this->FileName + ".part";
-  std::ofstream stream(part, std::ios::binary);
-  stream << this->Text;
-  stream.close();
-  std::error_code failed;
-  if (stream)
+  if (!sono::writeWholeFile(this->FileName, [this](std::ostream& stream) { stream << this->Text; }))
   {
-    std::filesystem::rename(part, this->FileName, failed);
-  }
-  if (!stream || failed)
-  {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
     this->Refusal =
       "Cannot write '" + this->FileName + "'; choose a folder that exists and where you may write, with room left.";
     return;

@@ -143,6 +143,11 @@ bool same(const BModeSettings& a, const BModeSettings& b)
   return rest(a) == rest(b) && parametersOf(a) == parametersOf(b);
 }
 
+bool same(const DisplaySettings& a, const DisplaySettings& b)
+{
+  return parametersOf(a) == parametersOf(b);
+}
+
 bool same(const ScanGeometry& a, const ScanGeometry& b)
 {
   return parametersOf(a) == parametersOf(b);

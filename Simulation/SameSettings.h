@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/KeyText.h"
+#include "Image/DisplaySettings.h"
 #include "ImageSettings.h"
 #include "Trace/Targets.h"
 
@@ -18,6 +19,7 @@ void describe(const ProbePose& pose, KeyText& key);
 bool same(const TraceSettings& a, const TraceSettings& b);
 bool same(const EchoSettings& a, const EchoSettings& b);
 bool same(const BModeSettings& a, const BModeSettings& b);
+bool same(const DisplaySettings& a, const DisplaySettings& b);
 bool same(const ScanGeometry& a, const ScanGeometry& b);
 bool same(const ProbePose& a, const ProbePose& b);
 bool same(const std::vector<ScanLine>& a, const std::vector<ScanLine>& b);

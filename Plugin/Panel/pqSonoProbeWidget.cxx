@@ -5,30 +5,23 @@
 #include "pqSonoWindowFinder.h"
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
-#include "vtkSonoUltrasound.h"
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
-#include "pqDataRepresentation.h"
 #include "pqDoubleLineEdit.h"
-#include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
-#include "vtkAlgorithm.h"
-#include "vtkDataObject.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
-#include "vtkPVDataInformation.h"
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
-#include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
@@ -172,8 +165,8 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->connect(this, SIGNAL(startInteraction()), SLOT(start()));
   this->connect(this, SIGNAL(interaction()), SLOT(move()));
   this->connect(this, &pqInteractivePropertyWidget::endInteraction, this, [this] { this->finish(); });
-  this->connect(pqApplicationCore::instance()->getServerManagerModel(), SIGNAL(preSourceRemoved(pqPipelineSource*)),
-                SLOT(forget(pqPipelineSource*)));
+  this->connect(pqApplicationCore::instance()->getServerManagerModel(), &pqServerManagerModel::preSourceRemoved, this,
+                [this](pqPipelineSource* source) { this->Surfaces.forget(source->getProxy()); });
 }
 
 pqSonoProbeWidget::~pqSonoProbeWidget() = default;
@@ -480,50 +473,7 @@ void pqSonoProbeWidget::findSkin()
   vtkNew<vtkMultiBlockDataSet> surfaces;
   if (this->view())
   {
-    for (pqRepresentation* each : this->view()->getRepresentations())
-    {
-      auto* shown = qobject_cast<pqDataRepresentation*>(each);
-      pqOutputPort* port = shown && shown->isVisible() ? shown->getOutputPortFromInput() : nullptr;
-      // Not the fan and the image of the probe itself; but the one filter passes the anatomy on.
-      if (port &&
-          (port->getSource()->getProxy() != this->proxy() || port->getPortNumber() == vtkSonoUltrasound::ANATOMY))
-      {
-        surfaces->SetBlock(surfaces->GetNumberOfBlocks(),
-                           this->fetch(port->getSource()->getProxy(), port->getPortNumber()));
-      }
-    }
+    this->Surfaces.collect(*this->view(), this->proxy(), surfaces);
   }
   this->probe()->GetSkin()->SetSurfaces(surfaces);
-}
-
-vtkDataObject* pqSonoProbeWidget::fetch(vtkSMProxy* source, int port)
-{
-  auto* producer = vtkSMSourceProxy::SafeDownCast(source);
-  vtkPVDataInformation* about = producer->GetDataInformation(static_cast<unsigned int>(port));
-  const bool isSurface = about->DataSetTypeIsA("vtkPolyData") || about->DataSetTypeIsA("vtkCompositeDataSet");
-  if (!isSurface)
-  {
-    return nullptr;
-  }
-  auto& fetcher = this->Fetchers[qMakePair(source, port)];
-  if (!fetcher)
-  {
-    // From a remote server, too; it runs again only when the data have changed.
-    fetcher.TakeReference(source->GetSessionProxyManager()->NewProxy("filters", "ClientServerMoveData"));
-    vtkSMPropertyHelper(fetcher, "Input").Set(source, static_cast<unsigned int>(port));
-  }
-  const bool isComposite = about->GetCompositeDataSetType() > 0;
-  vtkSMPropertyHelper(fetcher, "OutputDataType")
-    .Set(isComposite ? about->GetCompositeDataSetType() : about->GetDataSetType());
-  fetcher->UpdateVTKObjects();
-  vtkSMSourceProxy::SafeDownCast(fetcher)->UpdatePipeline();
-  return vtkAlgorithm::SafeDownCast(fetcher->GetClientSideObject())->GetOutputDataObject(0);
-}
-
-void pqSonoProbeWidget::forget(pqPipelineSource* source)
-{
-  for (auto each = this->Fetchers.begin(); each != this->Fetchers.end();)
-  {
-    each = each.key().first == source->getProxy() ? this->Fetchers.erase(each) : std::next(each);
-  }
 }

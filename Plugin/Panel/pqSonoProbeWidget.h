@@ -1,9 +1,10 @@
 #ifndef pqSonoProbeWidget_h
 #define pqSonoProbeWidget_h
 
+#include "SonoShownSurfaces.h"
+
 #include "pqInteractivePropertyWidget.h"
 
-#include <QMap>
 #include <QPair>
 #include <QTimer>
 
@@ -15,8 +16,6 @@ class QGridLayout;
 class QLabel;
 class SonoMovingViews;
 struct SonoWindow;
-class pqPipelineSource;
-class vtkDataObject;
 class vtkSMPropertyGroup;
 class vtkSonoProbeRepresentation;
 
@@ -58,7 +57,6 @@ private Q_SLOTS:
   void prepare();
   void snap();
   void resetPose();
-  void forget(pqPipelineSource* source);
   void stand(const SonoWindow& window);
 
 private:
@@ -70,7 +68,6 @@ private:
   void finish();
   void takePose();
   void findSkin();
-  vtkDataObject* fetch(vtkSMProxy* source, int port);
   vtkSonoProbeRepresentation* probe() const;
   bool isLive() const;
   QList<QPair<QString, QVector<double>>> pose() const;
@@ -88,7 +85,7 @@ private:
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests
-  QMap<QPair<vtkSMProxy*, int>, vtkSmartPointer<vtkSMProxy>> Fetchers;
+  SonoShownSurfaces Surfaces;
 };
 
 #endif

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <string>
 
 namespace sono {
 
@@ -40,6 +42,16 @@ inline std::uint64_t hash64(const void* data, std::size_t bytes, std::uint64_t s
   hash = (hash ^ (hash >> 33)) * p2;
   hash = (hash ^ (hash >> 29)) * p1;
   return hash ^ (hash >> 32);
+}
+
+constexpr std::size_t hashDigitCount = 16;
+
+/// In hexadecimal, small letters, with leading zeros.
+inline std::string hashDigits(std::uint64_t hash)
+{
+  char digits[hashDigitCount + 1];
+  std::snprintf(digits, sizeof(digits), "%016llx", static_cast<unsigned long long>(hash));
+  return digits;
 }
 
 } // namespace sono

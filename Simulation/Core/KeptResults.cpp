@@ -1,13 +1,13 @@
 #include "Core/KeptResults.h"
 
 #include "Core/Hash64.h"
+#include "Core/WholeFile.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <random>
 
 namespace sono {
 
@@ -18,22 +18,10 @@ namespace fs = std::filesystem;
 constexpr char magic[] = "sonovdb kept 1\n";
 constexpr std::size_t magicBytes = sizeof(magic) - 1;
 constexpr std::size_t hashBytes = sizeof(std::uint64_t);
-constexpr std::size_t keyDigits = 16;
-
-std::string digitsOf(std::uint64_t hash)
-{
-  constexpr char digits[] = "0123456789abcdef";
-  std::string text(keyDigits, '0');
-  for (std::size_t n = 0; n < keyDigits; ++n)
-  {
-    text[keyDigits - 1 - n] = digits[(hash >> (4 * n)) & 15];
-  }
-  return text;
-}
 
 fs::path pathOf(const std::string& folder, const std::string& kind, const std::string& key)
 {
-  return fs::path(folder) / (kind + '_' + digitsOf(hash64(key.data(), key.size())) + ".kept");
+  return fs::path(folder) / (kind + '_' + hashDigits(hash64(key.data(), key.size())) + ".kept");
 }
 
 void append(const std::string& part, std::string& bytes)
@@ -81,11 +69,11 @@ std::optional<std::vector<std::string>> partsOf(const std::string& bytes)
 bool isOurs(const fs::path& path)
 {
   const std::string stem = path.stem().string();
-  const bool isScene = path.extension() == ".nvdb" && stem.size() == keyDigits;
+  const bool isScene = path.extension() == ".nvdb" && stem.size() == hashDigitCount;
   const bool isKept =
-    path.extension() == ".kept" && stem.size() > keyDigits + 1 && stem[stem.size() - keyDigits - 1] == '_';
+    path.extension() == ".kept" && stem.size() > hashDigitCount + 1 && stem[stem.size() - hashDigitCount - 1] == '_';
   return (isScene || isKept) &&
-         stem.find_first_not_of("0123456789abcdef", stem.size() - keyDigits) == std::string::npos;
+         stem.find_first_not_of("0123456789abcdef", stem.size() - hashDigitCount) == std::string::npos;
 }
 
 } // namespace
@@ -132,24 +120,15 @@ void keep(const std::string& folder, const std::string& kind, const std::string&
     append(part, content);
   }
   const std::uint64_t hash = hash64(content.data(), content.size());
-  const fs::path path = pathOf(folder, kind, key);
-  // Another process may be writing the same.
-  const fs::path partial = path.string() + "." + std::to_string(std::random_device()()) + ".part";
-  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
-  stream.write(magic, magicBytes);
-  stream.write(reinterpret_cast<const char*>(&hash), hashBytes);
-  stream.write(content.data(), std::streamsize(content.size()));
-  stream.close();
-  if (stream)
+  const bool isKept = writeWholeFile(pathOf(folder, kind, key).string(), [&](std::ostream& stream) {
+    stream.write(magic, magicBytes);
+    stream.write(reinterpret_cast<const char*>(&hash), hashBytes);
+    stream.write(content.data(), std::streamsize(content.size()));
+  });
+  if (isKept)
   {
-    fs::rename(partial, path, error);
+    trimCacheFolder(folder);
   }
-  if (!stream || error)
-  {
-    fs::remove(partial, error);
-    return;
-  }
-  trimCacheFolder(folder);
 }
 
 void markUsed(const std::string& path)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Core/Hash64.h"
+
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -27,9 +29,7 @@ public:
   }
   KeyText& addHash(std::uint64_t hash)
   {
-    char digits[20];
-    std::snprintf(digits, sizeof(digits), "%016llx;", static_cast<unsigned long long>(hash));
-    text_ += digits;
+    text_ += hashDigits(hash) + ';';
     return *this;
   }
   const std::string& text() const { return text_; }

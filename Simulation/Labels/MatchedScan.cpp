@@ -1,6 +1,7 @@
 #include "Labels/MatchedScan.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Rounding.h"
 #include "Core/Simd.h"
 #include "Labels/LabelRuns.h"
 
@@ -54,13 +55,9 @@ struct ValueScale
   }
   std::int16_t operator()(float value) const { return rounded(value, factor); }
 
-  /// Halves away from zero, as lround, which is no vector's instruction.
   static std::int16_t rounded(float value, float factor)
   {
-    const float wanted = std::clamp(value * factor, -largestValue, largestValue);
-    const int whole = int(wanted);
-    const float rest = wanted - float(whole);
-    return std::int16_t(whole + int(rest >= 0.5f) - int(rest <= -0.5f));
+    return std::int16_t(roundedToInt(std::clamp(value * factor, -largestValue, largestValue)));
   }
 };
 

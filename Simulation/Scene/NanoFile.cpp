@@ -2,6 +2,7 @@
 
 #include "Core/Hash64.h"
 #include "Core/ParallelFor.h"
+#include "Core/WholeFile.h"
 #include "Scene/NanoGridStorage.h"
 
 #include <nanovdb/util/GridChecksum.h>
@@ -11,7 +12,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <sstream>
 
 namespace sono {
@@ -186,36 +186,23 @@ void writeNanoFile(const std::string& path, const std::vector<const NanoGrid*>& 
   }
   const Handle first = withText(grids.front()->storage->handle, whole);
 
-  // Another process may be writing the same scene.
-  const std::string partial = path + "." + std::to_string(std::random_device()()) + ".part";
-  const std::string cannot = "cannot write '" + path + "': the folder is missing or protected, or the disk is full.";
-  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
-  if (!stream)
-  {
-    throw Error(cannot);
-  }
   io::Segment segment(io::Codec::NONE);
   for (std::size_t n = 0; n < grids.size(); ++n)
   {
     segment.add(n == 0 ? first : grids[n]->storage->handle);
     segment.meta.back().fileSize = segment.meta.back().gridSize;
   }
-  segment.write(stream);
-  for (std::size_t n = 0; n < grids.size(); ++n)
+  const bool isWritten = writeWholeFile(path, [&](std::ostream& stream) {
+    segment.write(stream);
+    for (std::size_t n = 0; n < grids.size(); ++n)
+    {
+      const Handle& handle = n == 0 ? first : grids[n]->storage->handle;
+      stream.write(reinterpret_cast<const char*>(handle.data()), std::streamsize(handle.size()));
+    }
+  });
+  if (!isWritten)
   {
-    const Handle& handle = n == 0 ? first : grids[n]->storage->handle;
-    stream.write(reinterpret_cast<const char*>(handle.data()), std::streamsize(handle.size()));
-  }
-  stream.close();
-  std::error_code error;
-  if (stream)
-  {
-    fs::rename(partial, path, error);
-  }
-  if (!stream || error)
-  {
-    fs::remove(partial, error);
-    throw Error(cannot);
+    throw Error("cannot write '" + path + "': the folder is missing or protected, or the disk is full.");
   }
 }
 

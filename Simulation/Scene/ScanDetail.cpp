@@ -1,6 +1,7 @@
 #include "Scene/ScanDetail.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Rounding.h"
 #include "Core/Simd.h"
 #include "Kernel/DetailCode.h"
 #include "Labels/LabelRuns.h"
@@ -111,10 +112,7 @@ SONO_SIMD_CLONES void codeRun(const int* sums, const int* weights, const std::in
   {
     const float smoothed = float(sums[i]) / float(std::max(weights[i], 1));
     const float steps = std::clamp(slope * (smoothed - mean) / detailStepDb, -most, most);
-    const int whole = int(steps);
-    const float rest = steps - float(whole); // halves away from zero, as lround, which is no vector's instruction
-    const int code = detailNone + whole + int(rest >= 0.5f) - int(rest <= -0.5f);
-    codes[i] = std::uint8_t(values[i] == MatchedScan::nothing ? detailNone : code);
+    codes[i] = std::uint8_t(values[i] == MatchedScan::nothing ? detailNone : detailNone + roundedToInt(steps));
   }
 }
 

@@ -14,8 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iomanip>
-#include <sstream>
 
 namespace sono {
 
@@ -176,10 +174,7 @@ std::string sceneCacheKey(const LabelVolume& volume)
                                     placement.direction[a].y, placement.direction[a].z });
   }
   const std::uint64_t ofVoxels = hash64(slices.data(), slices.size() * sizeof(slices[0]));
-  std::ostringstream key;
-  key << std::hex << std::setw(16) << std::setfill('0')
-      << hash64(numbers.data(), numbers.size() * sizeof(numbers[0]), ofVoxels);
-  return key.str();
+  return hashDigits(hash64(numbers.data(), numbers.size() * sizeof(numbers[0]), ofVoxels));
 }
 
 std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& table, const std::string& outsideTissue,

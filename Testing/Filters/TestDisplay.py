@@ -1,14 +1,12 @@
 """What a scanner does to finished images: persistence over time steps, speckle reduction, compounded fans."""
-import pathlib
 import tempfile
 import unittest
 
 import numpy as np
-from chain import Chain, label_image, listen, make
-from sonovdb.vtkSonoFilters import (vtkSonoBMode, vtkSonoImageFormation, vtkSonoLabelMapReader, vtkSonoProbeSource,
-                                    vtkSonoRayTracer, vtkSonoScanConverter, vtkSonoSceneBuilder, vtkSonoUltrasound)
+from chain import Chain, listen, make, moving_plane
+from sonovdb.vtkSonoFilters import (vtkSonoBMode, vtkSonoImageFormation, vtkSonoProbeSource, vtkSonoRayTracer,
+                                    vtkSonoScanConverter, vtkSonoSceneBuilder, vtkSonoUltrasound)
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 SETTINGS = {"LineCount": 24, "ScanKind": 0, "WidthMm": 24.0, "DepthMm": 40.0, "PathsPerLine": 20, "PixelMm": 0.4,
             "PositionMm": (20.0, 20.0, 0.0), "Axial": (0.0, 0.0, 1.0), "Lateral": (1.0, 0.0, 0.0),
@@ -26,17 +24,7 @@ class Phases(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.reader = vtkSonoLabelMapReader()
-        for phase, plane in enumerate((10, 20, 30)):
-            voxels = np.full((42, 40, 40), 1, np.uint16)
-            voxels[plane:] = 2
-            writer = vtkXMLImageDataWriter()
-            writer.SetInputData(label_image(voxels))
-            writer.SetFileName(str(pathlib.Path(folder.name, f"phase{phase}.vti")))
-            writer.Write()
-            self.reader.AddFileName(writer.GetFileName())
-        table = pathlib.Path(folder.name, "labels.csv")
-        table.write_text("id,name\n1,muscle\n2,fat\n")
+        self.reader = moving_plane(folder.name, (10, 20, 30), (42, 40, 40), ("muscle", "fat"))
 
     def one(self, **settings):
         """Simulate Ultrasound; what it shows at a time."""

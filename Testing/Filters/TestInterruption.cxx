@@ -1,4 +1,5 @@
 // What a stop by the interrupter, a GUI's button, leaves behind.
+#include "Simulation/TemporaryFolder.h"
 #include "SonoInterruption.h"
 
 #include "vtkCommand.h"
@@ -222,8 +223,8 @@ TEST(Interruption, TheOneFilterStopsInAnyOfItsStages)
 
 TEST(Interruption, ASceneWhoseWritingIsStoppedIsNotThere)
 {
-  const std::string path = testing::TempDir() + "stopped.nvdb";
-  std::filesystem::remove(path);
+  const sono::testing::TemporaryFolder folder;
+  const std::string path = folder.file("stopped.nvdb");
   Button button;
   Chain chain;
   vtkNew<Counter> warnings;
@@ -241,7 +242,7 @@ TEST(Interruption, ASceneWhoseWritingIsStoppedIsNotThere)
   writer->Write();
   EXPECT_EQ(writer->GetErrorCode(), static_cast<unsigned long>(vtkErrorCode::NoError));
   EXPECT_EQ(warnings->count, 1);
-  EXPECT_TRUE(std::filesystem::remove(path));
+  EXPECT_TRUE(std::filesystem::exists(path));
 }
 
 TEST(Interruption, ALongLineStopsInItsMiddle)

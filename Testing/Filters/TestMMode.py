@@ -1,13 +1,11 @@
 """M-mode shows a line over the phases of a label map, in s and mm."""
-import pathlib
 import tempfile
 import unittest
 
 import numpy as np
-from chain import Chain, label_image, listen, make
-from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoMMode, vtkSonoUltrasound
+from chain import Chain, listen, make, moving_plane
+from sonovdb.vtkSonoFilters import vtkSonoMMode, vtkSonoUltrasound
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 PLANES = (12, 16, 24, 30, 27, 20)  # mm, less half a voxel
 SETTINGS = {"LineCount": 16, "ScanKind": 0, "WidthMm": 16.0, "DepthMm": 40.0, "PathsPerLine": 20,
@@ -20,17 +18,8 @@ class TestMMode(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.reader = vtkSonoLabelMapReader()
-        for phase, plane in enumerate(PLANES):
-            voxels = np.full((44, 40, 40), 1, np.uint16)
-            voxels[plane:] = 2
-            writer = vtkXMLImageDataWriter()
-            writer.SetInputData(label_image(voxels))
-            writer.SetFileName(str(pathlib.Path(folder.name, f"phase{phase}.vti")))
-            writer.Write()
-            self.reader.AddFileName(writer.GetFileName())
-        # 1540 mm/us in front, so that depths are those of the label map; bone shines.
-        pathlib.Path(folder.name, "labels.csv").write_text("id,name\n1,soft_tissue\n2,rib\n")
+        # 1540 m/s in front, so that depths are those of the label map; bone shines.
+        self.reader = moving_plane(folder.name, PLANES, (44, 40, 40), ("soft_tissue", "rib"))
         self.ultrasound = make(vtkSonoUltrasound, **SETTINGS)
         self.ultrasound.SetInputConnection(self.reader.GetOutputPort())
 

@@ -4,11 +4,10 @@ import tempfile
 import unittest
 
 import numpy as np
-from chain import label_image, listen
+from chain import listen, write_labels
 from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 TIME_STEPS = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
 
@@ -20,11 +19,7 @@ class TestPhases(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def write(self, name, voxels):
-        writer = vtkXMLImageDataWriter()
-        writer.SetInputData(label_image(voxels))
-        writer.SetFileName(str(self.folder / name))
-        writer.Write()
-        return str(self.folder / name)
+        return write_labels(self.folder / name, voxels)
 
     def reader(self, *files):
         reader = vtkSonoLabelMapReader()

@@ -1,9 +1,13 @@
 """What the filters' tests share: a small chain of all stages, and ears for what they say."""
+import pathlib
+
+import numpy as np
 import paraview  # noqa: F401  (finds ParaView's VTK libraries)
-from sonovdb.vtkSonoFilters import (vtkSonoBMode, vtkSonoImageFormation, vtkSonoProbeSource, vtkSonoRayTracer,
-                                    vtkSonoScanConverter, vtkSonoSceneBuilder, vtkSonoThoraxSource)
+from sonovdb.vtkSonoFilters import (vtkSonoBMode, vtkSonoImageFormation, vtkSonoLabelMapReader, vtkSonoProbeSource,
+                                    vtkSonoRayTracer, vtkSonoScanConverter, vtkSonoSceneBuilder, vtkSonoThoraxSource)
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 
 def listen(algorithm, event="ErrorEvent"):
@@ -50,6 +54,26 @@ def label_image(voxels, name="Labels"):
     array.SetName(name)
     image.GetPointData().SetScalars(array)
     return image
+
+
+def write_labels(path, voxels):
+    """A label map as a file, from an array indexed [z, y, x]; its path as text."""
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(label_image(voxels))
+    writer.SetFileName(str(path))
+    writer.Write()
+    return str(path)
+
+
+def moving_plane(folder, depths, size, names):
+    """A reader of phases of two labels, `names`, that meet at a depth; one file a depth, all in a folder."""
+    reader = vtkSonoLabelMapReader()
+    for phase, depth in enumerate(depths):
+        voxels = np.full(size, 1, np.uint16)
+        voxels[depth:] = 2
+        reader.AddFileName(write_labels(pathlib.Path(folder, f"phase{phase}.vti"), voxels))
+    pathlib.Path(folder, "labels.csv").write_text("id,name\n1,{}\n2,{}\n".format(*names))
+    return reader
 
 
 class Chain:

@@ -3,10 +3,10 @@
 #include "ErrorText.h"
 
 #include "Labels/ReadLabelMap.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -16,17 +16,7 @@ namespace sono::testing {
 class LabelFolder : public ::testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("sono_" + std::string(info->test_suite_name()) + "_" + std::string(info->name()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
   std::string text(const std::string& name, const std::string& content) const
   {
     std::ofstream(file(name), std::ios::binary) << content;
@@ -38,7 +28,7 @@ protected:
   }
 
 private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 } // namespace sono::testing

@@ -3,12 +3,12 @@
 #include "Phantoms/CalibrationPhantom.h"
 #include "Phantoms/TestObjects.h"
 #include "Scene/Scene.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -176,10 +176,11 @@ TEST(CalibrationPhantom, BadInputIsOneSentence)
 
 TEST(CalibrationPhantom, BadTablesNameLineAndColumn)
 {
-  const auto path = std::filesystem::path(::testing::TempDir()) / "sono_phantom_targets.csv";
+  const sono::testing::TemporaryFolder folder;
+  const std::string path = folder.file("targets.csv");
   const auto errorFor = [&](const std::string& row) {
     std::ofstream(path) << "kind,view,name,lateral_mm,depth_mm,diameter_mm,tissue\n" << row << "\n";
-    return errorOf([&] { readPhantomTargets(path.string()); });
+    return errorOf([&] { readPhantomTargets(path); });
   };
   EXPECT_EQ(errorFor("wire,1,near,0,45,0.1,phantom_nylon"), "no error");
   expectContains(errorFor("ball,1,near,0,45,0.1,phantom_nylon"), "line 2");
@@ -190,7 +191,6 @@ TEST(CalibrationPhantom, BadTablesNameLineAndColumn)
   expectContains(errorFor("wire,1,near,0,45,0,phantom_nylon"), "'diameter_mm'");
   expectContains(errorFor("wire,1,near,0,45,0.1,"), "'tissue'");
   expectContains(errorFor(""), "no targets");
-  std::filesystem::remove(path);
 }
 
 TEST(TestObjects, SpheresHaveTheirVolumeAndTheCubeItsSide)

@@ -1,11 +1,11 @@
 #include "Image/BMode.h"
 #include "Image/GreyMap.h"
 #include "ImageTestTools.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 using namespace sono;
@@ -17,10 +17,13 @@ class GreyMaps : public ::testing::Test
 protected:
   std::string write(const std::string& text)
   {
-    const auto path = std::filesystem::temp_directory_path() / "sonovdb_grey_map.csv";
+    const std::string path = folder_.file("map.csv");
     std::ofstream(path) << text;
-    return path.string();
+    return path;
   }
+
+private:
+  sono::testing::TemporaryFolder folder_;
 };
 
 /// Grey of levels between black and white; 0 dB is 1, black is -60 dB.

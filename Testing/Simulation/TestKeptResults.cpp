@@ -2,6 +2,7 @@
 #include "Core/KeptResults.h"
 #include "Core/KeyText.h"
 #include "ErrorText.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
@@ -21,20 +22,13 @@ namespace {
 class KeptResults : public ::testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("sono_kept_" + std::string(info->name()));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string folder() const { return folder_.string(); }
-  fs::path path(const std::string& name) const { return folder_ / name; }
+  std::string folder() const { return folder_.path(); }
+  fs::path path(const std::string& name) const { return folder_.file(name); }
 
   std::vector<fs::path> files() const
   {
     std::vector<fs::path> found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder()))
     {
       found.push_back(entry.path());
     }
@@ -55,7 +49,7 @@ protected:
   }
 
 private:
-  fs::path folder_;
+  sono::testing::TemporaryFolder folder_;
 };
 
 const std::vector<std::string> someParts{ "one", std::string("t\0o\n", 4), "", std::string(100000, 'x') };

@@ -1,5 +1,6 @@
 #include "ErrorText.h"
 #include "Probe/PulseEchoFieldFile.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
@@ -48,8 +49,6 @@ std::vector<float> trilinearValues(double scale)
 class FieldFile : public ::testing::Test
 {
 protected:
-  ~FieldFile() override { fs::remove(path); }
-
   void write(const std::string& header, const std::vector<double>& values) const
   {
     std::ofstream stream(path, std::ios::binary);
@@ -63,12 +62,12 @@ protected:
     header.replace(header.find(from), from.size(), to);
     write(header, values);
     const std::string message = errorOf([&] { readPulseEchoField(path); });
-    expectContains(message, "sono_field_");
+    expectContains(message, "field.nrrd");
     return message;
   }
 
-  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = (fs::temp_directory_path() / ("sono_field_" + name + ".nrrd")).string();
+  const sono::testing::TemporaryFolder folder;
+  const std::string path = folder.file("field.nrrd");
   const std::string good = "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\nsizes: 3 1 2\n"
                            "labels: \"lateral\" \"elevational\" \"depth\"\nunits: \"mm\" \"mm\" \"mm\"\n"
                            "axis mins: 0 0 5\nspacings: 0.5 1 10\n\n";

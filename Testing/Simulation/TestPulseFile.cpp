@@ -1,11 +1,11 @@
 #include "ErrorText.h"
 #include "Probe/PulseFile.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-namespace fs = std::filesystem;
 using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
@@ -48,18 +47,16 @@ std::complex<double> expected(double r, double sigmaUs, double phase, double shi
 class PulseFile : public ::testing::Test
 {
 protected:
-  ~PulseFile() override { fs::remove(path); }
-
   std::string refusal(const std::string& text) const
   {
     std::ofstream(path) << text;
     const std::string message = errorOf([&] { readPulse(path); });
-    expectContains(message, "sono_pulse_");
+    expectContains(message, "pulse.csv");
     return message;
   }
 
-  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = (fs::temp_directory_path() / ("sono_pulse_" + name + ".csv")).string();
+  const sono::testing::TemporaryFolder folder;
+  const std::string path = folder.file("pulse.csv");
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "ErrorText.h"
 #include "Probe/ScanGeometry.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
@@ -230,13 +231,14 @@ TEST(ProbePreset, ErrorsNameFileAndKey)
 {
   std::ifstream stream(SONOVDB_DATA_DIR "/probes/phased_p4-2.json");
   const std::string good((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  const std::string path = (fs::temp_directory_path() / "sono_preset_errors.json").string();
+  const sono::testing::TemporaryFolder folder;
+  const std::string path = folder.file("preset.json");
   const auto refusal = [&](const std::string& from, const std::string& to) {
     std::string content = good;
     content.replace(content.find(from), from.size(), to);
     std::ofstream(path) << content;
     const std::string error = errorOf([&] { readProbePreset(path); });
-    expectContains(error, "sono_preset_errors.json");
+    expectContains(error, "preset.json");
     return error;
   };
   expectContains(refusal("\"depthMm\"", "\"depth\""), "lacks 'depthMm'");

@@ -1,6 +1,7 @@
 #include "ErrorText.h"
 #include "Scene/SceneFile.h"
 #include "Scene/SceneText.h"
+#include "TemporaryFolder.h"
 #include "TestScenes.h"
 
 #include <chrono>
@@ -63,16 +64,8 @@ TissueTable smallTable(double bloodImpedance = 1.61)
 class SceneFiles : public ::testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("sono_scene_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string folder() const { return folder_.string(); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  std::string folder() const { return folder_.path(); }
 
   static std::string bytesOf(const std::string& path)
   {
@@ -90,7 +83,7 @@ protected:
   }
 
 private:
-  fs::path folder_;
+  sono::testing::TemporaryFolder folder_;
 };
 
 void expectSameScene(const Scene& a, const Scene& b)

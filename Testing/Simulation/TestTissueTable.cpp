@@ -1,16 +1,15 @@
 #include "ErrorText.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/TissueTable.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 
-namespace fs = std::filesystem;
 using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
@@ -21,22 +20,14 @@ const std::string header =
   "tissue,impedance_MRayl,sound_speed_m_per_s,attenuation_dB_per_cm_MHz,mu0,sigma0,mu1,tau,gamma,"
   "source\n";
 
-/// A file that goes away with its test.
 class TextFile
 {
 public:
-  explicit TextFile(const std::string& content)
-    : path_((fs::temp_directory_path() /
-             ("sono_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".csv"))
-              .string())
-  {
-    std::ofstream(path_, std::ios::binary) << content;
-  }
-  ~TextFile() { fs::remove(path_); }
-  const std::string& path() const { return path_; }
+  explicit TextFile(const std::string& content) { std::ofstream(path(), std::ios::binary) << content; }
+  std::string path() const { return folder_.file("table.csv"); }
 
 private:
-  std::string path_;
+  sono::testing::TemporaryFolder folder_;
 };
 
 std::string tableError(const std::string& content)

@@ -3,12 +3,12 @@
 #include "Image/ScanConvertVolume.h"
 #include "Kernel/PixelMath.h"
 #include "Probe/ScanGeometry.h"
+#include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -378,7 +378,8 @@ TEST(ScanOutline, LiesOnTheBorderOfTheScannedArea)
 
 TEST(ProbePreset, MatrixAndRadial)
 {
-  const std::string path = (std::filesystem::temp_directory_path() / "sono_preset_volume.json").string();
+  const sono::testing::TemporaryFolder folder;
+  const std::string path = folder.file("preset.json");
   const auto entry = [](const std::string& key, const std::string& value) {
     return ", \"" + key + "\": {\"value\": " + value + ", \"source\": \"test\"}";
   };
@@ -404,5 +405,4 @@ TEST(ProbePreset, MatrixAndRadial)
   EXPECT_TRUE(ring.closesCircle());
   write("radial", entry("sectorDeg", "361") + entry("radiusMm", "1.2"));
   expectContains(errorOf([&] { readProbePreset(path); }), "at most 360");
-  std::filesystem::remove(path);
 }

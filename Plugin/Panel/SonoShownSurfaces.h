@@ -1,0 +1,32 @@
+#ifndef SonoShownSurfaces_h
+#define SonoShownSurfaces_h
+
+#include "vtkSmartPointer.h"
+
+#include <QMap>
+#include <QPair>
+
+class pqView;
+class vtkDataObject;
+class vtkMultiBlockDataSet;
+class vtkSMProxy;
+
+/**
+ * The surfaces that a view shows, on the client, whatever server they are on.
+ */
+class SonoShownSurfaces
+{
+public:
+  /// Adds a block for each that is visible in `view`; of `probe`, which has a fan and an image of its own, the anatomy
+  /// alone.
+  void collect(const pqView& view, vtkSMProxy* probe, vtkMultiBlockDataSet* surfaces);
+  /// A source that goes away.
+  void forget(vtkSMProxy* source);
+
+private:
+  vtkDataObject* fetch(vtkSMProxy* source, int port);
+
+  QMap<QPair<vtkSMProxy*, int>, vtkSmartPointer<vtkSMProxy>> Fetchers;
+};
+
+#endif
