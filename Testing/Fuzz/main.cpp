@@ -5,7 +5,7 @@
 #include "Mutate.h"
 #include "Targets.h"
 
-#include <unistd.h>
+#include <sys/time.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using sono::fuzz::Bytes;
 
-constexpr unsigned slowestS = 60; // what takes longer hangs
+constexpr int slowestS = 60; // of the processor, however busy it is: what takes longer hangs
 
 std::vector<Bytes> corpusOf(const fs::path& folder)
 {
@@ -62,12 +62,13 @@ int main(int argc, char** argv)
   {
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }
+  const itimerval longest{ {}, { slowestS, 0 } };
   for (std::uint64_t n = 0; n < inputs; ++n)
   {
     std::mt19937_64 random(seed * 0x9E3779B97F4A7C15u + n);
     const Bytes& one = corpus.at(random() % corpus.size());
     const Bytes input = sono::fuzz::mutated(one, corpus.at(random() % corpus.size()), random);
-    alarm(slowestS);
+    setitimer(ITIMER_PROF, &longest, nullptr);
     LLVMFuzzerTestOneInput(input.data(), input.size());
   }
   fs::remove_all(sono::fuzz::workFolder());
