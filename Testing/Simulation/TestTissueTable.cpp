@@ -92,7 +92,7 @@ TEST(TissueTable, ErrorsNameFileTissueAndColumn)
   for (const auto& [row, column] : rows)
   {
     const std::string error = tableError(header + row + "\n");
-    expectContains(error, "ErrorsNameFileTissueAndColumn.csv' line 2");
+    expectContains(error, "table.csv' line 2");
     expectContains(error, "'bad'");
     expectContains(error, "'" + std::string(column) + "'");
   }
@@ -172,7 +172,7 @@ TEST(LabelTissueMap, Patterns)
 TEST(LabelTissueMap, FileErrors)
 {
   const TextFile lacking("pattern,tissue\na,b\nc,\n");
-  expectContains(errorOf([&] { LabelTissueMap::read(lacking.path()); }), "FileErrors.csv' line 3");
+  expectContains(errorOf([&] { LabelTissueMap::read(lacking.path()); }), "table.csv' line 3");
   const TextFile guess("pattern,tissue,guess\na,b,perhaps\n");
   expectContains(errorOf([&] { LabelTissueMap::read(guess.path()); }), "'perhaps' in column 'guess'");
   const TextFile columns("label,tissue\na,b\n");
