@@ -10,7 +10,7 @@ namespace sono {
 
 namespace {
 
-constexpr int chunk = 64;
+constexpr int chunk = SplatBatch::most;
 
 /// What each scatterer of a chunk adds, (re, im) to the sample before it and to the one behind it.
 struct Splats
@@ -48,12 +48,15 @@ SONO_SIMD_CLONES void weigh(const ScattererView v, int first, int count, const B
   }
 }
 
-/// The same with the Gaussians of an aperture.
-SONO_SIMD_CLONES void weighByAperture(const ScattererView v, int first, int count, const Beam b, LineGrid g,
-                                      Splats& out)
+/// The same with the Gaussians of an aperture, of which it is known through what each axis receives: a loop that asks
+/// is no vector loop.
+template<bool lateralLens, bool elevationalLens>
+inline void weighByProfile(const ScattererView& v, int first, int count, const Beam& b, const LineGrid& g, Splats& out)
 {
   const float mmPerSample = 1.0f / g.samplesPerMm;
-  const ApertureProfile profile = b.profile;
+  ApertureProfile profile = b.profile;
+  profile.lateral.lens = lateralLens;
+  profile.elevational.lens = elevationalLens;
   for (int i = 0; i < count; ++i)
   {
     const BeamPlace p = placeOf(v, first + i, b, g);
@@ -62,6 +65,21 @@ SONO_SIMD_CLONES void weighByAperture(const ScattererView v, int first, int coun
     const bool seen = (squared < beamCutSigma * beamCutSigma) & (p.position >= 0.0f) & (p.position < g.lastSample);
     const float weight = at.amplitude * expNegative(-0.5f * squared);
     split(seen ? v.scale * v.amplitude[first + i] * weight : 0.0f, p.position, seen, g, i, out);
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void weighByAperture(const ScattererView v, int first, int count,
+                                                               const Beam b, LineGrid g, Splats& out)
+{
+  if (b.profile.lateral.lens)
+  {
+    b.profile.elevational.lens ? weighByProfile<true, true>(v, first, count, b, g, out)
+                               : weighByProfile<true, false>(v, first, count, b, g, out);
+  }
+  else
+  {
+    b.profile.elevational.lens ? weighByProfile<false, true>(v, first, count, b, g, out)
+                               : weighByProfile<false, false>(v, first, count, b, g, out);
   }
 }
 
@@ -181,37 +199,84 @@ SONO_SIMD_CLONES void weighByArray(const ScattererView v, int first, int count, 
   }
 }
 
+/// At most `chunk` of them.
+void splatChunk(const ScattererView& scatterers, int first, int count, const Beam& beam, const LineGrid& grid,
+                LineSum& sum)
+{
+  Splats splats;
+  switch (beam.kind)
+  {
+    case BeamKind::Gaussian:
+      weigh(scatterers, first, count, beam, grid, splats);
+      break;
+    case BeamKind::Aperture:
+      weighByAperture(scatterers, first, count, beam, grid, splats);
+      break;
+    case BeamKind::Field:
+      weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
+      break;
+    case BeamKind::Array:
+      weighByArray(scatterers, first, count, beam, *beam.array, grid, splats);
+      break;
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    float* to = sum.iq.data() + 2 * std::size_t(splats.sample[i]);
+    for (int c = 0; c < 4; ++c) // adjacent: one vector addition
+    {
+      to[c] += splats.added[i][c];
+    }
+  }
+}
+
 } // namespace
 
 void splat(const ScattererView& scatterers, const Beam& beam, const LineGrid& grid, LineSum& sum)
 {
-  Splats splats;
   for (int first = 0; first < scatterers.count; first += chunk)
   {
-    const int count = std::min(chunk, scatterers.count - first);
-    switch (beam.kind)
-    {
-      case BeamKind::Gaussian:
-        weigh(scatterers, first, count, beam, grid, splats);
-        break;
-      case BeamKind::Aperture:
-        weighByAperture(scatterers, first, count, beam, grid, splats);
-        break;
-      case BeamKind::Field:
-        weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
-        break;
-      case BeamKind::Array:
-        weighByArray(scatterers, first, count, beam, *beam.array, grid, splats);
-        break;
-    }
-    for (int i = 0; i < count; ++i)
-    {
-      float* to = sum.iq.data() + 2 * std::size_t(splats.sample[i]);
-      for (int c = 0; c < 4; ++c) // adjacent: one vector addition
-      {
-        to[c] += splats.added[i][c];
-      }
-    }
+    splatChunk(scatterers, first, std::min(chunk, scatterers.count - first), beam, grid, sum);
+  }
+}
+
+SplatBatch::SplatBatch(const Beam& beam, LineSum& sum)
+  : beam_(beam)
+  , gain_(beam.kind == BeamKind::Array ? beam.gain : 1.0f)
+  , grid_(lineGrid(sum))
+  , sum_(&sum)
+{
+  beam_.gain = 1.0f; // it is in the amplitudes that wait
+}
+
+void SplatBatch::add(const ScattererView& scatterers)
+{
+  const float scale = scatterers.scale * gain_;
+  const std::size_t at = std::size_t(count_);
+  const std::size_t count = std::size_t(scatterers.count);
+  std::copy_n(scatterers.x, count, x_.data() + at);
+  std::copy_n(scatterers.y, count, y_.data() + at);
+  std::copy_n(scatterers.z, count, z_.data() + at);
+  std::transform(scatterers.amplitude, scatterers.amplitude + count, amplitude_.data() + at,
+                 [scale](float a) { return scale * a; });
+  count_ += scatterers.count;
+  if (count_ >= most)
+  {
+    addFirst(most);
+  }
+}
+
+void SplatBatch::finish()
+{
+  addFirst(count_);
+}
+
+void SplatBatch::addFirst(int count)
+{
+  splatChunk({ x_.data(), y_.data(), z_.data(), amplitude_.data(), count, 1.0f }, 0, count, beam_, grid_, *sum_);
+  count_ -= count;
+  for (std::array<float, 2 * most>* values : { &x_, &y_, &z_, &amplitude_ })
+  {
+    std::copy_n(values->data() + count, count_, values->data());
   }
 }
 

@@ -22,6 +22,11 @@ struct BeamCulling
   float layerFromMm = 0.0f;
   float layerToMm = -1.0f;
   Vec2f perLayerWidth{ 0.0f };
+  bool isInLayer = false;
+  Vec2f besideMm{ 0.0f }; ///< no centre that is seen in the layer is further from the axis, lateral and elevational
+  Vec3f perBrick{ 0.0f }; ///< of one brick along a row: 1 / change of depth, lateral and elevational place, 1/mm
+  int rowFirst = 0;       ///< first and last brick of a row that may be seen
+  int rowLast = -1;
 };
 
 float halfExtent(const Vec3f& direction, float edge)
@@ -148,18 +153,65 @@ void clipBox(const std::vector<BeamCulling>& beams, Vec3f& low, Vec3f& high)
   high = glm::min(high, seenHigh);
 }
 
-/// The part of a beam's axis inside the slab low <= x[axis] <= high, as depths; empty when from > to.
-Vec2f clipToSlab(const BeamReach& b, int axis, float low, float high)
+/// The part of a beam's axis inside the slab low <= x[axis] <= high, as depths, by so much beyond the beam's ends;
+/// empty when from > to.
+Vec2f clipToSlab(const BeamReach& b, int axis, float low, float high, float beyondMm = 0.0f)
 {
+  const float fromMm = b.fromMm - beyondMm;
+  const float toMm = b.depthMm + beyondMm;
   const float o = b.beam.origin[axis];
   const float d = b.beam.axis[axis];
   if (std::fabs(d) < 1e-6f)
   {
-    return o < low || o > high ? Vec2f(1.0f, -1.0f) : Vec2f(b.fromMm, b.depthMm);
+    return o < low || o > high ? Vec2f(fromMm + 1.0f, fromMm) : Vec2f(fromMm, toMm);
   }
   const float t0 = (low - o) / d;
   const float t1 = (high - o) / d;
-  return { std::max(b.fromMm, std::min(t0, t1)), std::min(b.depthMm, std::max(t0, t1)) };
+  return { std::max(fromMm, std::min(t0, t1)), std::min(toMm, std::max(t0, t1)) };
+}
+
+/// How far from the axis the centre of a seen brick may lie at these depths, lateral and elevational.
+Vec2f besideAxis(const BeamCulling& s, float fromMm, float toMm)
+{
+  const BeamReach& reach = s.reach;
+  if (reach.sight)
+  {
+    return Vec2f(reach.sight->lateralMm(), reach.sight->elevationalMm());
+  }
+  const Vec2f brick(s.lateral, s.elevation);
+  if (reach.array)
+  {
+    return reach.array->furthest(fromMm, toMm) * wideningOf(reach) + brick;
+  }
+  if (reach.table)
+  {
+    return reach.table->widest(fromMm, toMm) * wideningOf(reach) * reach.share + brick;
+  }
+  return beamCutSigma * reach.share * Vec2f(reach.beam.lateralSigmaMm, reach.beam.elevationalSigmaMm) + brick;
+}
+
+/// Narrows [first, last] to the bricks n of a row with |at + n step| <= most, and some more for rounding.
+void narrow(float at, float perStep, float most, float& first, float& last)
+{
+  const float middle = -at * perStep;
+  const float half = (most + 1e-3f) * std::fabs(perStep) + 0.01f;
+  first = std::max(first, middle - half);
+  last = std::min(last, middle + half);
+}
+
+/// Sets which bricks of a row a beam may see: `start` is the centre of its brick 0.
+void clipRow(const Vec3f& start, int firstBrick, int lastBrick, BeamCulling& s)
+{
+  float first = float(firstBrick);
+  float last = float(lastBrick);
+  const Beam& b = s.reach.beam;
+  const Vec3f q = start - b.origin;
+  const float middleMm = 0.5f * (s.reach.fromMm + s.reach.depthMm);
+  narrow(glm::dot(q, b.axis) - middleMm, s.perBrick.x, s.reach.depthMm - middleMm + s.axial, first, last);
+  narrow(glm::dot(q, b.lateral), s.perBrick.y, s.besideMm.x, first, last);
+  narrow(glm::dot(q, b.elevation), s.perBrick.z, s.besideMm.y, first, last);
+  s.rowFirst = first <= last ? int(std::ceil(first)) : 0;
+  s.rowLast = first <= last ? int(std::floor(last)) : -1;
 }
 
 } // namespace
@@ -176,6 +228,16 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
   Vec3f high = grid.highMm;
   clipBox(beams, low, high);
 
+  for (BeamCulling& s : beams)
+  {
+    const Beam& b = s.reach.beam;
+    const auto perBrick = [&](const Vec3f& direction) {
+      const float step = direction[v] * edge;
+      return 1.0f / (std::fabs(step) > 1e-6f ? step : 1e-6f);
+    };
+    s.perBrick = { perBrick(b.axis), perBrick(b.lateral), perBrick(b.elevation) };
+  }
+
   std::vector<std::size_t> seeing;
   for (int layer = int(std::floor(low[axis] / edge)); float(layer) * edge < high[axis]; ++layer)
   {
@@ -183,14 +245,21 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
     Vec2f last(-1e30f);
     for (BeamCulling& s : beams)
     {
-      const Vec2f part =
-        clipToSlab(s.reach, axis, float(layer) * edge - s.radius[axis], float(layer + 1) * edge + s.radius[axis]);
+      const float lowMm = float(layer) * edge - s.radius[axis];
+      const float highMm = float(layer + 1) * edge + s.radius[axis];
+      const Vec2f part = clipToSlab(s.reach, axis, lowMm, highMm);
       s.layerToMm = -1.0f;
       if (s.reach.table && part[0] <= part[1])
       {
         s.layerFromMm = part[0] - s.axial;
         s.layerToMm = part[1] + s.axial;
         s.perLayerWidth = 1.0f / s.reach.table->widest(s.layerFromMm, s.layerToMm);
+      }
+      const Vec2f near = clipToSlab(s.reach, axis, lowMm, highMm, s.axial);
+      s.isInLayer = near[0] <= near[1];
+      if (s.isInLayer)
+      {
+        s.besideMm = besideAxis(s, near[0] - s.axial, near[1] + s.axial);
       }
       const Vec3f radius = s.reach.table && part[0] <= part[1] ? seenRadius(s.reach, edge, part[0], part[1]) : s.radius;
       // Between the two ends of the part the axis is straight: its bounds are theirs.
@@ -201,21 +270,41 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
         last = glm::max(last, Vec2f(p[u] + radius[u], p[v] + radius[v]));
       }
     }
+    if (last.x < -1e29f)
+    {
+      continue; // no beam is here
+    }
     first = glm::max(first, Vec2f(low[u], low[v]));
     last = glm::min(last, Vec2f(high[u], high[v]));
+    const int rowFirst = int(std::floor(first.y / edge));
+    const int rowLast = int(std::ceil(last.y / edge)) - 1;
     for (int j = int(std::floor(first.x / edge)); float(j) * edge < last.x; ++j)
     {
-      for (int k = int(std::floor(first.y / edge)); float(k) * edge < last.y; ++k)
+      Vec3i brick;
+      brick[axis] = layer;
+      brick[u] = j;
+      brick[v] = 0;
+      const Vec3f start = (Vec3f(brick) + 0.5f) * edge;
+      int from = rowLast + 1;
+      int to = rowFirst - 1;
+      for (BeamCulling& s : beams)
       {
-        Vec3i brick;
-        brick[axis] = layer;
-        brick[u] = j;
+        s.rowLast = s.rowFirst - 1;
+        if (s.isInLayer)
+        {
+          clipRow(start, rowFirst, rowLast, s);
+          from = s.rowFirst <= s.rowLast ? std::min(from, s.rowFirst) : from;
+          to = s.rowFirst <= s.rowLast ? std::max(to, s.rowLast) : to;
+        }
+      }
+      for (int k = from; k <= to; ++k)
+      {
         brick[v] = k;
         const Vec3f centre = (Vec3f(brick) + 0.5f) * edge;
         seeing.clear();
         for (const BeamCulling& s : beams)
         {
-          if (sees(s, centre))
+          if (k >= s.rowFirst && k <= s.rowLast && sees(s, centre))
           {
             seeing.push_back(s.index);
           }

@@ -37,16 +37,23 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
   };
   const NestedScatterers& nested = *setup.nested;
   const DensityView density = setup.density->view();
-  const LineGrid grid = lineGrid(sums.front());
+  std::vector<SplatBatch> batches;
+  for (std::size_t i = 0; i < beams.size(); ++i)
+  {
+    batches.emplace_back(beams[i].beam, sums[i]);
+  }
   NestedScatterers::Buffer buffer;
   std::vector<Taken> taken;
   std::vector<BeamReach> reaching;
+  std::vector<Vec2f> halfMm; // of a brick
   for (int level = density.finest; level <= density.coarsest; ++level)
   {
     const ScattererDensity::Range range = setup.density->range(level);
     reaching = beams;
+    halfMm.clear();
     for (BeamReach& beam : reaching)
     {
+      halfMm.push_back(nestedHalfExtent(beam.beam, level));
       beam.share = isGaussian(beam.beam) ? nestedReach : 1.0f;
       beam.fromMm = range.fromMm;
       beam.depthMm = std::min(beam.depthMm, range.toMm);
@@ -60,11 +67,11 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
       for (const std::size_t i : seeing)
       {
         const Beam& b = beams[i].beam;
-        const float depthMm = glm::dot(centre - b.origin, b.axis);
+        const Vec3f q = centre - b.origin;
+        const float depthMm = glm::dot(q, b.axis);
         if (density.takes(level, depthMm, glm::dot(parent - b.origin, b.axis)))
         {
-          const Vec3f q = centre - b.origin;
-          if (relativeWeight(b, q, depthMm, nestedHalfExtent(b, level)) >= nestedLeastWeight)
+          if (relativeWeight(b, q, depthMm, halfMm[i]) >= nestedLeastWeight)
           {
             taken.push_back({ i, density.share(level, depthMm, relativeWeight(b, q, depthMm)) });
             most = std::max(most, taken.back().share.count);
@@ -78,10 +85,13 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
       nested.generate(level, brick, most, buffer);
       for (const Taken& t : taken)
       {
-        const Beam& b = beams[t.beam].beam;
-        splat(NestedScatterers::seen(buffer, t.share, b.axis), b, grid, sums[t.beam]);
+        batches[t.beam].add(NestedScatterers::seen(buffer, t.share, beams[t.beam].beam.axis));
       }
     });
+  }
+  for (SplatBatch& batch : batches)
+  {
+    batch.finish();
   }
 }
 

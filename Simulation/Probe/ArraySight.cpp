@@ -47,6 +47,21 @@ ArraySight::ArraySight(const ArrayBeamView& view, double depthMm)
   }
 }
 
+Vec2f ArraySight::furthest(float fromMm, float toMm) const
+{
+  const auto atEnd = [toMm](const Envelope& envelope, int step) { // places widen with the range
+    return std::max(toMm, envelope.nearMm) / std::max(float(step + 1) * stepMm, envelope.nearMm);
+  };
+  const int last = std::clamp(int(toMm / stepMm), 0, steps_ - 1);
+  Vec2f most(0.0f);
+  for (int n = std::clamp(int(fromMm / stepMm), 0, last); n <= last; ++n)
+  {
+    most = glm::max(most, Vec2f(reach_.lateralMm[std::size_t(n)] * atEnd(lateral_, n),
+                                reach_.elevationalMm[std::size_t(n)] * atEnd(elevational_, n)));
+  }
+  return most;
+}
+
 ArraySight::Envelope ArraySight::envelopeOf(const ArrayBeamAxis& axis, const ArrayBeamView& view) const
 {
   Envelope envelope{ axis.count, axis.perUnit, axis.nearMm, {}, {}, {} };

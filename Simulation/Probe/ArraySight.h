@@ -34,6 +34,8 @@ public:
   const std::vector<float>& lateral() const { return lateral_.values; }
   const std::vector<float>& elevational() const { return elevational_.values; }
   const BeamReachTable& reach() const { return reach_; }
+  /// No place that is seen in `view` between two ranges is further from the axis, along the array and across it, mm.
+  Vec2f furthest(float fromMm, float toMm) const;
   /// Bounds over all ranges: of the weight's modulus, and of its integral over places at one range.
   float largestWeight() const { return largestWeight_; }
   float largestAreaMm2() const { return largestAreaMm2_; }
