@@ -1,5 +1,6 @@
 #include "Labels/BodyDepth.h"
 
+#include "Core/ParallelFor.h"
 #include "Labels/DistanceField.h"
 
 #include <algorithm>
@@ -10,7 +11,11 @@ namespace sono {
 namespace {
 
 constexpr double coarseMm = 3.0;
-constexpr float deepInside = 1e3f; // mm, for filled holes
+constexpr float deepInside = 1e3f;  // mm, for filled holes
+constexpr double aheadCosine = 0.5; // of 60 degrees
+constexpr double closingBeforeShallowMm = 8.0;
+constexpr float halfBlockMm = float(0.5 * coarseMm); // from a block's centre to its face
+constexpr std::size_t shallowSamples = 200;
 
 /// Calls visit(neighbour) for the face neighbours of a block along the axes other than `except`.
 template<class Visit>
@@ -150,9 +155,53 @@ BodyDepth::BodyDepth(const GridPlacement& fine, const std::vector<char>& known, 
   {
     depthMm_[n] = inside[n] && !(depthMm_[n] > 0.0f) ? deepInside : depthMm_[n];
   }
+  openBefore(fine, known, estimate);
   alongX_ = interpolation(fine.size.x, grid_.factor.x, grid_.size.x);
   alongY_ = interpolation(fine.size.y, grid_.factor.y, grid_.size.y);
   alongZ_ = interpolation(fine.size.z, grid_.factor.z, grid_.size.z);
+}
+
+/// Takes off what a wide closing bridged before the shallow blocks.
+void BodyDepth::openBefore(const GridPlacement& fine, const std::vector<char>& known, const BodyEstimate& estimate)
+{
+  std::vector<Vec3d> places;
+  for (std::size_t n = 0; n < estimate.shallow.size(); ++n)
+  {
+    if (estimate.shallow[n])
+    {
+      const std::size_t row = n / std::size_t(grid_.size.x);
+      places.push_back(grid_.spacingMm *
+                       Vec3d(n % std::size_t(grid_.size.x), row % std::size_t(grid_.size.y), row / grid_.size.y));
+    }
+  }
+  if (places.empty())
+  {
+    return;
+  }
+  const std::size_t every = (places.size() + shallowSamples - 1) / shallowSamples;
+  const Vec3d ahead = glm::transpose(fine.direction) * Vec3d(0.0, -1.0, 0.0);
+  const BodyDepth tight(fine, known, { std::min(estimate.closingMm, closingBeforeShallowMm), estimate.wallMm });
+  std::vector<char> open(depthMm_.size(), 0);
+  parallelFor(grid_.size.z, {}, [&](int k) {
+    for (int j = 0; j < grid_.size.y; ++j)
+    {
+      for (int i = 0; i < grid_.size.x; ++i)
+      {
+        const std::size_t at = grid_.index({ i, j, k });
+        const bool isBridge = depthMm_[at] > 0.0f && !(tight.depthMm_[at] > 0.0f);
+        for (std::size_t n = 0; isBridge && n < places.size() && !open[at]; n += every)
+        {
+          const Vec3d way = grid_.spacingMm * Vec3d(i, j, k) - places[n];
+          open[at] = glm::dot(way, ahead) > aheadCosine * glm::length(way) ? 1 : 0;
+        }
+      }
+    }
+  });
+  const std::vector<float> toOpen = distanceTo(open, grid_.size, grid_.spacingMm);
+  for (std::size_t n = 0; n < depthMm_.size(); ++n)
+  {
+    depthMm_[n] = open[n] ? std::min(tight.depthMm_[n], 0.0f) : std::min(depthMm_[n], toOpen[n] - halfBlockMm);
+  }
 }
 
 std::vector<BodyDepth::Between> BodyDepth::interpolation(int fineSize, int factor, int coarseSize)

@@ -49,6 +49,9 @@ struct BodyEstimate
 {
   double closingMm; ///< gaps up to twice as wide belong to it
   double wallMm;    ///< by so much it is larger
+  /// Blocks that lie just below the skin of the front in everybody: before these, within 60 degrees of straight ahead,
+  /// the closing is 8 mm at most. Empty: none.
+  std::vector<char> shallow{};
 };
 
 /// How deep the voxels of a label map lie below the surface of a body.
@@ -67,6 +70,7 @@ public:
   void ofRow(int j, int k, std::vector<float>& depthMm) const;
 
 private:
+  void openBefore(const GridPlacement& fine, const std::vector<char>& known, const BodyEstimate& estimate);
   /// The block below a voxel's centre along an axis, and the share of the one above.
   struct Between
   {

@@ -3,9 +3,11 @@
 #include "Core/ParallelFor.h"
 #include "Labels/BodyDepth.h"
 #include "Labels/FreeLabels.h"
+#include "Labels/LabelWords.h"
 
 #include <algorithm>
 #include <atomic>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +41,33 @@ std::vector<char> labelledBlocks(const LabelVolume& volume)
   return labelled;
 }
 
+/// Where the thyroid is; empty where it has no label.
+std::vector<char> thyroidBlocks(const LabelVolume& volume)
+{
+  std::vector<char> isThyroid(65536, 0);
+  bool isThere = false;
+  for (const LabelInfo& label : volume.labels)
+  {
+    const std::vector<std::string> words = wordsOfName(label.name);
+    const auto has = [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); };
+    isThyroid[std::size_t(label.id)] = has("thyroid") && !has("cartilage") ? 1 : 0;
+    isThere = isThere || isThyroid[std::size_t(label.id)];
+  }
+  if (!isThere)
+  {
+    return {};
+  }
+  const CoarseGrid grid(volume.placement);
+  const Vec3i n = volume.placement.size;
+  std::vector<char> blocks;
+  blocks.reserve(grid.count());
+  forBlocks(grid, [&](const Vec3i& block) {
+    const Vec3i v = glm::min(block * grid.factor + grid.factor / 2, n - 1);
+    blocks.push_back(isThyroid[volume.voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x]]);
+  });
+  return blocks;
+}
+
 } // namespace
 
 BodyFill fillBody(LabelVolume& volume, const BodyFillSettings& settings, const Progress& progress)
@@ -54,7 +83,8 @@ BodyFill fillBody(LabelVolume& volume, const BodyFillSettings& settings, const P
   fill.skinId = ids[0];
   fill.softTissueId = ids[1];
 
-  const BodyDepth depth(volume.placement, labelledBlocks(volume), { settings.closingMm, settings.wallMm });
+  const BodyDepth depth(volume.placement, labelledBlocks(volume),
+                        { settings.closingMm, settings.wallMm, thyroidBlocks(volume) });
   report(progress, 0.5);
 
   const Vec3i n = volume.placement.size;

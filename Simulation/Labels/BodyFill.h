@@ -40,10 +40,11 @@ struct BodyFill
 /// Other labels and the 0 outside stay.
 ///
 /// The map does not show where the skin is: the body is estimated as the labels closed by a ball of `closingMm` and
-/// grown by `wallMm`, without parts smaller than a twentieth of the largest, holes filled in each axial slice. Beyond
-/// the volume's border the outermost labels go on, so a cropped scan gets no skin along the cut. Works on a grid of
-/// about 3 mm, interpolated. Throws Error for a setting out of range, a map without any label but 0, or without two
-/// free ids.
+/// grown by `wallMm`, without parts smaller than a twentieth of the largest, holes filled in each axial slice. A
+/// thyroid lies close to the skin: within 60 degrees of straight before one the closing is 8 mm at most, or it would
+/// bridge chin and chest. Beyond the volume's border the outermost labels go on, so a cropped scan gets no skin along
+/// the cut. Works on a grid of about 3 mm, interpolated. Throws Error for a setting out of range, a map without any
+/// label but 0, or without two free ids.
 BodyFill fillBody(LabelVolume& volume, const BodyFillSettings& settings = {}, const Progress& progress = {});
 
 } // namespace sono

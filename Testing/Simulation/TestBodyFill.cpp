@@ -184,6 +184,44 @@ TEST(BodyFill, ACroppedScanHasNoSkinAlongTheCut)
   EXPECT_EQ(skinAlongCut, 0u);
 }
 
+/// A chin and a chest 80 mm apart stand out 60 mm further than the neck between them, which the closing of 50 mm alone
+/// would bridge.
+TEST(BodyFill, TheSkinIsCloseToAThyroid)
+{
+  const auto tissueBeforeIt = [](const char* name) {
+    LabelVolume volume;
+    volume.placement.size = { 50, 70, 70 };
+    volume.placement.spacingMm = Vec3d(3.0);
+    volume.placement.originMm = Vec3d(-73.5, -150.0, -103.5);
+    for (int n = 0; n < 50 * 70 * 70; ++n)
+    {
+      const Vec3d p = volume.placement.worldFromIndex(Vec3d(n % 50, n / 50 % 70, n / 3500));
+      const bool isIn = std::abs(p.x) < 50.0;
+      const bool isChinOrChest = isIn && std::abs(p.z) > 40.0 && p.y > -80.0 && p.y < 40.0;
+      const bool isNeck = isIn && std::abs(p.x) < 40.0 && p.y > 0.0 && p.y < 40.0;
+      const bool isThyroid = std::abs(p.x) < 30.0 && std::abs(p.z) < 15.0 && p.y > -20.0 && p.y <= 0.0;
+      volume.voxels.push_back(isChinOrChest ? 1 : isNeck ? 2 : isThyroid ? 3 : 0);
+    }
+    volume.collectLabels();
+    volume.labels.back().name = name;
+    const BodyFill fill = fillBody(volume);
+    int skin = 0;
+    int tissue = 0;
+    for (int j = 0; j < 43; ++j) // to the thyroid's front
+    {
+      const int id = volume.voxels[std::size_t((35 * 70 + j) * 50 + 25)];
+      tissue += id != 0 ? 1 : 0;
+      skin += id == fill.skinId ? 1 : 0;
+    }
+    EXPECT_GE(skin, 1) << name;
+    return 3.0 * tissue;
+  };
+  EXPECT_GT(tissueBeforeIt("label_3"), 40.0);
+  EXPECT_GT(tissueBeforeIt("thyroid_cartilage"), 40.0);
+  EXPECT_NEAR(tissueBeforeIt("thyroid_gland"), 10.0, 4.0);
+  EXPECT_NEAR(tissueBeforeIt("Thyroid (left)"), 10.0, 4.0);
+}
+
 TEST(BodyFill, RefusesWhatItCannotFill)
 {
   LabelVolume empty;
