@@ -5,6 +5,7 @@
 #include "Labels/AssignTissues.h"
 #include "Labels/BodyEnd.h"
 #include "Labels/BodyFill.h"
+#include "Labels/HeartByShape.h"
 #include "Labels/LabelCode.h"
 #include "Labels/ReadLabelMap.h"
 #include "Labels/TissueTable.h"
@@ -152,11 +153,12 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
 void vtkSonoSceneBuilder::AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume)
 {
   const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
+  const std::string heart = sono::guessHeart(volume);
   const std::vector<std::string> unmapped = sono::assignTissues(volume, map, table, this->FallbackTissue);
   const std::string guesses = warningOfGuesses(volume.labels);
   if (!guesses.empty())
   {
-    this->Warn(guesses);
+    this->Warn(heart + (heart.empty() ? "" : " ") + guesses);
   }
   const sono::BodyEnd end = this->FillBody == FILL_AUTO ? sono::bodyEnd(volume, unmapped) : sono::BodyEnd::Skin;
   const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);

@@ -1,6 +1,7 @@
 #include "Probe/WindowTarget.h"
 
 #include "Core/Error.h"
+#include "Labels/LabelCode.h"
 #include "Labels/LabelWords.h"
 
 #include <algorithm>
@@ -49,6 +50,10 @@ const Organ organs[] = {
   { "carotid", "carotid", "", linear },
   { "jugular vein", "jugular", "", linear },
 };
+
+const Organ* const heartOrgan = &organs[0];
+const Organ* const liverOrgan = &organs[1];
+const Organ* const kidneyOrgan = &organs[2];
 
 /// As LabelWords.h has them; r and l are sides, and the gall bladder is no bladder.
 Words wordsOf(const std::string& name)
@@ -113,12 +118,32 @@ std::vector<int> labelsThat(const Scene& scene, const Wanted& wanted)
 }
 
 /// An organ of one side, or of both where none is named.
-std::vector<int> labelsOf(const Scene& scene, const Organ& organ, const Words& sides)
+std::vector<int> namedLabelsOf(const Scene& scene, const Organ& organ, const Words& sides)
 {
   return labelsThat(scene, [&](const LabelInfo& label) {
     const Words words = wordsOf(label.name);
     return isOf(organ, words) && hasAll(words, sides);
   });
+}
+
+/// The same, of a heart or a liver that no name tells by the tissues: of a heart with the chambers that guessHeart
+/// finds.
+std::vector<int> labelsOf(const Scene& scene, const Organ& organ, const Words& sides)
+{
+  std::vector<int> labels = namedLabelsOf(scene, organ, sides);
+  const char* tissue = &organ == heartOrgan ? "myocardium" : &organ == liverOrgan ? "liver" : nullptr;
+  if (!labels.empty() || !sides.empty() || !tissue)
+  {
+    return labels;
+  }
+  labels = labelsThat(scene, [&](const LabelInfo& label) { return label.tissue == tissue; });
+  if (&organ == heartOrgan && !labels.empty())
+  {
+    return labelsThat(scene, [&](const LabelInfo& label) {
+      return label.tissue == tissue || (label.tissue == "blood" && saysNothing(label.name));
+    });
+  }
+  return labels;
 }
 
 WindowTarget targetOf(const std::string& name, std::vector<int> labels, const std::string& preset)
@@ -178,13 +203,6 @@ OrganInBox organInBox(const Scene& scene, const std::vector<int>& labels)
   return { std::accumulate(sections[0].begin(), sections[0].end(), std::int64_t(0)), isCut };
 }
 
-/// The labels of an organ by their names, or else by their tissue.
-std::vector<int> labelsOrTissueOf(const Scene& scene, const Organ& organ, const char* tissue)
-{
-  const std::vector<int> named = labelsOf(scene, organ, {});
-  return named.empty() ? labelsThat(scene, [&](const LabelInfo& label) { return label.tissue == tissue; }) : named;
-}
-
 /// Whether the liver is the better first picture of the two: where the heart goes on beyond the box and the liver does
 /// not, or where next to nothing of the heart is in it.
 bool showsLiverRather(const Scene& scene, const std::vector<int>& heart, const std::vector<int>& liver)
@@ -198,18 +216,35 @@ bool showsLiverRather(const Scene& scene, const std::vector<int>& heart, const s
   return !ofLiver.isCut || 10 * ofHeart.voxels < ofLiver.voxels;
 }
 
-/// The heart, or the liver where there is no heart or the liver is the better picture, or else the body.
+/// A kidney where there is more of it than of a liver that is cut.
+WindowTarget liverOrKidney(const Scene& scene, const std::vector<int>& liver)
+{
+  const WindowTarget whole = targetOf(liverOrgan->name, liver, liverOrgan->preset);
+  const OrganInBox ofLiver = organInBox(scene, liver);
+  for (const char* side : { "right", "left" })
+  {
+    const std::vector<int> kidney = ofLiver.isCut ? labelsOf(scene, *kidneyOrgan, { side }) : std::vector<int>();
+    if (!kidney.empty() && organInBox(scene, kidney).voxels > ofLiver.voxels)
+    {
+      return targetOf(side + std::string(" ") + kidneyOrgan->name, kidney, kidneyOrgan->preset);
+    }
+  }
+  return whole;
+}
+
+/// The heart, or the liver where there is no heart or the liver is the better picture, or a kidney instead of the tip
+/// of a liver, or else the body.
 WindowTarget defaultTarget(const Scene& scene)
 {
-  const std::vector<int> heart = labelsOrTissueOf(scene, organs[0], "myocardium");
-  const std::vector<int> liver = labelsOrTissueOf(scene, organs[1], "liver");
+  const std::vector<int> heart = labelsOf(scene, *heartOrgan, {});
+  const std::vector<int> liver = labelsOf(scene, *liverOrgan, {});
   if (!liver.empty() && (heart.empty() || showsLiverRather(scene, heart, liver)))
   {
-    return targetOf(organs[1].name, liver, organs[1].preset);
+    return liverOrKidney(scene, liver);
   }
   if (!heart.empty())
   {
-    return targetOf(organs[0].name, heart, organs[0].preset);
+    return targetOf(heartOrgan->name, heart, heartOrgan->preset);
   }
   const auto all = labelsThat(scene, [](const LabelInfo&) { return true; });
   if (all.empty())

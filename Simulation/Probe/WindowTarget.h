@@ -21,9 +21,10 @@ struct WindowTarget
 };
 
 /// The target of a name: an organ ("heart", "right kidney", "carotid"), or any label by words of its name, in any
-/// order and number ("kidney right", "Left rib 6"). An empty name: the heart, where there is none the liver, where
-/// there is none either all tissue but the outside one. Throws Error, with the names that there are, where nothing has
-/// that name, and when there is nothing but what is outside.
+/// order and number ("kidney right", "Left rib 6"). A heart or liver that no name tells is found by its tissue. An
+/// empty name: the heart, where there is none the liver, instead of the tip of one a kidney, where there is none of
+/// them all tissue but the outside one. Throws Error, with the names that there are, where nothing has that name, and
+/// when there is nothing but what is outside.
 WindowTarget windowTarget(const Scene& scene, const std::string& name);
 
 /// A point and what is around it.

@@ -233,6 +233,41 @@ TEST(AcousticWindow, TheTargetByItselfIsWhole)
   EXPECT_EQ(target(183.0, true), "liver");
 }
 
+/// Of a liver that is cut less than of a kidney: some slices below it.
+TEST(AcousticWindow, AKidneyInsteadOfALiversTip)
+{
+  const auto target = [](double liverMm) {
+    LabelVolume volume;
+    volume.placement.size = Vec3i(40);
+    volume.placement.spacingMm = Vec3d(4.0);
+    for (int n = 0; n < 40 * 40 * 40; ++n)
+    {
+      const Vec3d p = 4.0 * Vec3d(n % 40, n / 40 % 40, n / 1600);
+      const bool isLiver = glm::distance(p, Vec3d(50.0, 80.0, liverMm)) < 40.0;
+      const bool isKidney = glm::distance(p, Vec3d(120.0, 80.0, 60.0)) < 25.0;
+      volume.voxels.push_back(isLiver ? 1 : isKidney ? 2 : 0);
+    }
+    volume.collectLabels();
+    const char* names[] = { "background", "liver", "kidney_right" };
+    const char* tissues[] = { "air", "liver", "soft_tissue" };
+    for (LabelInfo& label : volume.labels)
+    {
+      label.name = names[label.id];
+      label.tissue = tissues[label.id];
+    }
+    TissueTable table;
+    for (const Tissue& tissue : { air, soft, liver })
+    {
+      table.add(tissue);
+    }
+    const Scene scene(std::move(volume), table, "air");
+    return windowTarget(scene, "").name;
+  };
+  EXPECT_EQ(target(100.0), "liver");
+  EXPECT_EQ(target(160.0), "liver"); // half of it
+  EXPECT_EQ(target(185.0), "right kidney");
+}
+
 std::unique_ptr<Scene> thoraxScene()
 {
   LabelVolume volume = makeThoraxPhantom(2.0);
