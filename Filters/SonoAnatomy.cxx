@@ -13,6 +13,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <utility>
@@ -38,10 +39,11 @@ constexpr float first = 1.0f; // priority
 
 } // namespace
 
-Anatomy::Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd)
+Anatomy::Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd, bool warns)
   : owner_(owner)
   , builder_(builder)
   , progressEnd_(progressEnd)
+  , warns_(warns)
 {
   keepQuiet(builder);
   vtkNew<ProgressEar> ear;
@@ -106,9 +108,9 @@ void Anatomy::update()
 {
   const bool isMade = builder_->GetExecutive()->Update() != 0;
   warnings_ = takeWarnings(builder_);
-  for (const std::string& sentence : warnings_)
+  if (warns_)
   {
-    warn(owner_, sentence);
+    std::for_each(warnings_.begin(), warnings_.end(), [this](const std::string& sentence) { warn(owner_, sentence); });
   }
   if (!isMade)
   {

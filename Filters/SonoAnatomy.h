@@ -13,13 +13,15 @@ class vtkSonoSceneBuilder;
 
 namespace sono {
 
-/// The anatomy of a filter that takes a label image or a scene: a scene builder inside, whose progress, warnings and
-/// failures are told as the filter's own. It runs when the image or its settings have changed.
+/// The anatomy of a filter that takes a label image or a scene: a scene builder inside, whose progress, failures and
+/// perhaps warnings are told as the filter's own. It runs when the image or its settings have changed.
 class Anatomy
 {
 public:
   /// `progressEnd`: where the builder's progress ends in that of the whole, which has the builder's text meanwhile.
-  Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd);
+  /// `warns`: whether the owner says what there is to say of the anatomy; not where it only helps another filter that
+  /// will.
+  Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd, bool warns = true);
   ~Anatomy();
   Anatomy(const Anatomy&) = delete;
   Anatomy& operator=(const Anatomy&) = delete;
@@ -40,6 +42,7 @@ private:
   vtkAlgorithm* owner_;
   vtkSmartPointer<vtkSonoSceneBuilder> builder_;
   double progressEnd_;
+  bool warns_;
   unsigned long ear_;             ///< of the builder's progress
   std::vector<double> connected_; ///< content of the builder's input
   std::vector<std::string> warnings_;

@@ -41,10 +41,8 @@ namespace {
 constexpr const char* keptKind = "window";
 
 /// The scene of the input, or of the label image that it is.
-std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, vtkAlgorithm* owner,
-                                           std::vector<std::string>& warnings)
+std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, vtkAlgorithm* owner)
 {
-  warnings.clear();
   if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(input))
   {
     return vtkSonoSceneHandle::Get(blocks);
@@ -53,10 +51,8 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, v
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
   builder->SetProgressText(owner->GetProgressText()); // it is a part of that
-  sono::Anatomy anatomy(owner, builder, 0.5);
-  vtkMultiBlockDataSet* blocks = anatomy.blocks(input);
-  warnings = anatomy.warnings();
-  return vtkSonoSceneHandle::Get(blocks);
+  sono::Anatomy anatomy(owner, builder, 0.5, false);  // the filter that makes a picture of it will say what there is
+  return vtkSonoSceneHandle::Get(anatomy.blocks(input));
 }
 
 /// The pose that the data bring along.
@@ -278,7 +274,7 @@ catch (const sono::Error&)
 bool vtkSonoAcousticWindow::TakeKept(vtkPolyData* way)
 {
   vtkNew<vtkFieldData> own;
-  if (this->Kept.size() != 3 || !sono::addPackedArrays(this->Kept[1], own) ||
+  if (this->Kept.size() != 2 || !sono::addPackedArrays(this->Kept[1], own) ||
       !sono::addPackedArrays(this->Kept[0], way->GetFieldData()))
   {
     return false;
@@ -291,10 +287,6 @@ bool vtkSonoAcousticWindow::TakeKept(vtkPolyData* way)
   ends->GetTuple(0, &begin.x);
   ends->GetTuple(1, &end.x);
   drawWay(begin, end, way);
-  for (const std::string& sentence : sono::unpackedSentences(this->Kept[2]))
-  {
-    sono::warn(this, sentence);
-  }
   return true;
 }
 
@@ -316,14 +308,13 @@ void vtkSonoAcousticWindow::Keep(vtkPolyData* way)
   {
     own->AddArray(array);
   }
-  sono::keep(
-    sono::keptFolder(this->CacheFolder), keptKind, this->Key,
-    { sono::packedArrays(way->GetFieldData()), sono::packedArrays(own), sono::packedSentences(this->Warnings) });
+  sono::keep(sono::keptFolder(this->CacheFolder), keptKind, this->Key,
+             { sono::packedArrays(way->GetFieldData()), sono::packedArrays(own) });
 }
 
 void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
 {
-  this->Scene = sceneOf(input, this->FillBody, this, this->Warnings);
+  this->Scene = sceneOf(input, this->FillBody, this);
   const std::shared_ptr<const sono::Scene> scene = this->Scene;
   this->Targets = strings("Targets", sono::windowTargetNames(*scene));
   const bool isFree = !this->ChooseTarget && this->Target.empty();

@@ -25,6 +25,8 @@ class Scene;
  * CandidateLateral, DepthMm, SeenPercent (of the target's largest section), LossDb (mean, one way), InsidePercent (of
  * the image in the label map's box), Sentence and ProbePreset (the bundled preset for this target; empty: any).
  *
+ * Guesses and a filled body are not said here but by the filter that makes a picture or a scene of the label image.
+ *
  * A label image may bring a pose of its own along in its field data (A4CPositionMm, A4CAxial, A4CLateral, as the
  * bundled thorax does), which is then the only answer, unless a target is named.
  */
@@ -46,7 +48,7 @@ public:
   ///@{
   /**
    * What the probe looks at: an organ ("heart", "right kidney", "carotid") or any label by words of its name; empty:
-   * the heart, where there is none the liver, where there is none either the body. Default empty.
+   * the heart, where there is none the liver, instead of its tip a kidney, else the body. Default empty.
    */
   vtkSetStdStringFromCharMacro(Target);
   vtkGetCharFromStdStringMacro(Target);
@@ -137,7 +139,6 @@ private:
   vtkSmartPointer<vtkStringArray> Rows;
   vtkSmartPointer<vtkStringArray> Targets;
   std::shared_ptr<const sono::Scene> Scene; // for the picture that is made of it next
-  std::vector<std::string> Warnings;        // of the scene
   std::string Key;                          // of what is wanted; empty: it is not to be kept
   std::vector<std::string> Kept;            // what was found earlier; empty: nothing
 };

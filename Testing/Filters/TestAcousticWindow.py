@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 from chain import label_image, listen, make
-from sonovdb.vtkSonoFilters import (vtkSonoAcousticWindow, vtkSonoSceneBuilder, vtkSonoThoraxSource,
+from sonovdb.vtkSonoFilters import (vtkSonoAcousticWindow, vtkSonoLabelTable, vtkSonoSceneBuilder, vtkSonoThoraxSource,
                                     vtkSonoUltrasound)
 from vtkmodules.vtkCommonCore import vtkIntArray, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -160,6 +160,35 @@ class TestWhatTheAnatomySays(unittest.TestCase):
         names, heard = self.build(organ())  # labels 2 and 3, without names
         self.assertIn("skin", names)
         self.assertTrue(any("bath of soft tissue, 40 mm" in sentence for sentence in heard), heard)
+
+    def test_shapes_of_a_heart_without_names(self):
+        image = organ()
+        image.SetSpacing(3, 3, 3)
+        scene = make(vtkSonoSceneBuilder, BuildSurfaces=False)
+        scene.SetInputData(image)
+        heard = listen(scene, "WarningEvent")
+        table = vtkSonoLabelTable()
+        table.SetInputConnection(scene.GetOutputPort())
+        table.Update()
+        rows = table.GetLabelRows()
+        tissues = {row[1]: row[5:] for row in (rows.GetValue(i).split("\t") for i in range(1, rows.GetNumberOfValues()))}
+        self.assertEqual(tissues["label_2"], ["blood", "yes"])
+        self.assertEqual(tissues["label_3"], ["myocardium", "yes"])
+        self.assertIn("label_3 lies around a chamber", heard[0])
+        self.assertIn("guesses, to be changed in View > Ultrasound Tissues: label_2 (blood)", heard[0])
+        window = vtkSonoAcousticWindow()
+        window.SetInputData(image)
+        window.Update()
+        self.assertIn("the heart's largest section", window.GetRows().GetValue(0))
+
+    def test_a_search_leaves_it_to_the_picture(self):
+        """Who looks for a window makes a picture next, and would read each sentence twice."""
+        image = named(organ(), liver=2, rib_left_5=3)
+        window = vtkSonoAcousticWindow()
+        window.SetInputData(image)
+        heard = listen(window, "WarningEvent")
+        window.Update()
+        self.assertEqual(heard, [])
 
     def test_a_heart_of_one_label_has_no_chambers(self):
         _, heard = self.build(named(organ(), aorta=2, heart=3))
