@@ -159,10 +159,8 @@ int vtkSonoScanDetail::RequestData(vtkInformation*, vtkInformationVector** input
     sono::AddedScan added =
       sono::addScan(volume, scanFromImage(vtkImageData::GetData(input[1]), converted), map, table,
                     sono::settingsIn<sono::ScanDetailSettings>(*this->Parameters), sono::partOf(progress, 0.1, 0.95));
-    if (!added.notice.empty())
-    {
-      sono::warn(this, added.notice);
-    }
+    std::for_each(added.notices.begin(), added.notices.end(),
+                  [this](const std::string& sentence) { sono::warn(this, sentence); });
     vtkImageData* image = vtkImageData::GetData(output);
     sono::imageFromLabelVolume(std::move(volume), image);
     std::uint8_t least = 255;

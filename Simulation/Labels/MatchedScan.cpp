@@ -20,7 +20,9 @@ constexpr float largestValue = 32767.0f;
 constexpr float airAtMost = -200.0f; // HU: a scan that has less shows air as a CT does
 constexpr float leastOfAir = 0.02f;  // what air is below 0 in a CT, of its largest value: metal has up to 32767 HU
 constexpr float beyondHu = 1e5f;     // padding may have -32768, less 1024
-constexpr double leastShare = 0.5;   // of the labelled voxels that must lie within the scan
+constexpr float belowAir = -1500.0f; // HU: of a CT only padding, and noise in a few voxels
+constexpr double mostBelowAir = 0.05;
+constexpr double leastShare = 0.5; // of the labelled voxels that must lie within the scan
 
 bool sameGrid(const GridPlacement& a, const GridPlacement& b)
 {
@@ -31,16 +33,30 @@ bool sameGrid(const GridPlacement& a, const GridPlacement& b)
          glm::distance(a.worldFromIndex({ last.x, 0.0, 0.0 }), b.worldFromIndex({ last.x, 0.0, 0.0 })) < within;
 }
 
+/// Whether values are those of a CT.
+bool areHounsfieldUnits(const IntensityView& scan, const IntensityRange& range)
+{
+  if (range.low >= airAtMost || range.high > largestValue)
+  {
+    return false;
+  }
+  const auto isBelow = [&](float value) { return value < belowAir && value > range.low; };
+  const auto below =
+    range.low < belowAir ? std::count_if(scan.values, scan.values + scan.count, isBelow) : std::ptrdiff_t(0);
+  return double(below) <= mostBelowAir * double(scan.count);
+}
+
 /// From the scan's values to those that are kept.
 struct ValueScale
 {
   bool isCt;
   float factor;
+  std::string notice; ///< as of MatchedScan
 
   explicit ValueScale(const IntensityView& scan)
   {
     const IntensityRange range = rangeOf(scan.values, scan.count);
-    isCt = scan.modality.empty() ? range.low < airAtMost && range.high <= largestValue : scan.modality == "CT";
+    isCt = scan.modality.empty() ? areHounsfieldUnits(scan, range) : scan.modality == "CT";
     const float most = std::max(std::fabs(range.low), std::fabs(range.high));
     const bool hasAir = scan.modality.empty() && range.low < airAtMost && range.low < -leastOfAir * range.high;
     if ((isCt || hasAir) && most > beyondHu)
@@ -50,6 +66,15 @@ struct ValueScale
            << ", where a CT has Hounsfield units (air -1000, water 0, bone 1000) and an MR hardly anything below 0; "
               "divide them by what they were multiplied with, or choose the scan as the scanner has it.";
       throw Error(text.str());
+    }
+    if (scan.modality.empty() && !isCt)
+    {
+      std::ostringstream text;
+      text << "The scan does not say whether it is a CT or an MR, and is taken for an MR, since its values go from "
+           << range.low << " to " << range.high
+           << "; to count as a CT, which also shows what lies outside of the labels, it needs Hounsfield units (air "
+              "-1000, water 0, bone 1000).";
+      notice = text.str();
     }
     factor = isCt || !(most > 0.0f) ? 1.0f : largestValue / most;
   }
@@ -184,6 +209,7 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, cons
   const std::size_t slice = std::size_t(n.x) * n.y;
   MatchedScan matched;
   matched.isCt = scale.isCt;
+  matched.notice = scale.notice;
   matched.values.resize(labels.voxels.size());
   if (sameGrid(grid, scan.placement))
   {

@@ -5,6 +5,7 @@
 #include "Labels/ReadIntensities.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace sono {
@@ -17,14 +18,15 @@ struct MatchedScan
   std::vector<std::int16_t> values; ///< one a voxel of the label map, i fastest: of a CT, Hounsfield units
   bool isCt = false;
   double reachedShare = 1.0; ///< of the labelled voxels (those but 0), how many lie within the scan
+  std::string notice; ///< what a scan that does not say it was taken for, and why, if not for a CT; empty: nothing
 };
 
 /// Interpolates a scan, linearly between the centres of its voxels, where a label map has its own. It is a CT where its
-/// modality says so or, where that is not known, where its values are those of one: some below -200, none above 32767.
-/// An MR is scaled so that its largest value becomes 32767.
-/// Throws Error where both name a frame of reference and not the same one; for values that are neither Hounsfield units
-/// nor an MR's; where less than half of the labelled voxels lie within the scan, with how much does and where the two
-/// lie; and Aborted.
+/// modality says so or, where that is not known, where its values are those of one: some below -200, none above 32767,
+/// and of those above the lowest, which may be padding, at most a twentieth below -1500. Else it is an MR, which is
+/// scaled so that its largest value becomes 32767. Throws Error where both name a frame of reference and not the same
+/// one; for values that are neither Hounsfield units nor an MR's; where less than half of the labelled voxels lie
+/// within the scan, with how much does and where the two lie; and Aborted.
 MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, const Progress& progress = {});
 
 /// What a scan has in the voxels of a label.

@@ -27,11 +27,16 @@ AddedScan addScan(LabelVolume& volume, const IntensityView& scan, const LabelTis
   requireSamePatient(volume, matched, means);
   AddedScan added;
   added.isCt = matched.isCt;
+  if (!matched.notice.empty())
+  {
+    added.notices.push_back(matched.notice);
+  }
   if (matched.reachedShare < reachesAll)
   {
-    added.notice = "The scan ends before the labels: " + std::to_string(std::lround(100.0 * matched.reachedShare)) +
-                   " % of the labelled voxels lie in it, the others stay as the labels alone have them; if files of a "
-                   "DICOM series are missing, copy the whole series.";
+    added.notices.push_back(
+      "The scan ends before the labels: " + std::to_string(std::lround(100.0 * matched.reachedShare)) +
+      " % of the labelled voxels lie in it, the others stay as the labels alone have them; if files of a "
+      "DICOM series are missing, copy the whole series.");
   }
   if (matched.isCt && settings.fillFromCt)
   {

@@ -15,7 +15,7 @@ struct AddedScan
   bool isCt = false;
   std::vector<std::string> names;   ///< of the labels that label 0 became
   std::vector<std::uint8_t> detail; ///< see scanDetail
-  std::string notice;               ///< a sentence on what the scan does not reach; empty: nothing
+  std::vector<std::string> notices; ///< sentences on what the scan was taken for and does not reach
 };
 
 /// Matches a scan to a label map (matchScan), refuses one of another patient (requireSamePatient), names what a CT

@@ -16,11 +16,29 @@ namespace sono {
 namespace {
 
 constexpr double mostDb = 10.0;
-constexpr double contrastHu = 90.0;   // of blood: without a contrast agent it has 30 to 60
-constexpr double perDeviation = 10.0; // HU that count as one of an MR's
+constexpr double contrastHu = 90.0; // of blood: without a contrast agent it has 30 to 60
+constexpr double leastOfMean = 0.5; // that an MR's values count as spread, however even they are
 
 /// Of the levels 10^(L/10), in whole units so that their sum does not depend on its order.
 constexpr double powerUnit = 1048576.0;
+
+/// Of an MR's values, which have no unit, what counts as 100 HU of a CT: their standard deviation over all labels.
+/// That of a label alone would turn an even organ's noise up and a structured one's structure down.
+double spreadOf(const std::vector<ScanOfLabel>& means)
+{
+  double voxels = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const ScanOfLabel& label : means)
+  {
+    voxels += double(label.voxels);
+    sum += double(label.voxels) * label.mean;
+    squares += double(label.voxels) * (label.deviation * label.deviation + label.mean * label.mean);
+  }
+  const double mean = voxels > 0.0 ? sum / voxels : 0.0;
+  const double variance = voxels > 0.0 ? std::max(0.0, squares / voxels - mean * mean) : 0.0;
+  return std::max(std::sqrt(variance), leastOfMean * std::abs(mean));
+}
 
 /// dB a unit of the scan, of each label.
 std::vector<float> slopes(const LabelVolume& labels, const MatchedScan& scan, const std::vector<ScanOfLabel>& means,
@@ -29,14 +47,11 @@ std::vector<float> slopes(const LabelVolume& labels, const MatchedScan& scan, co
   const bool falls =
     settings.direction == DetailDirection::Falls || (settings.direction == DetailDirection::Automatic && scan.isCt &&
                                                      meanOfTissue(labels, means, "blood") > contrastHu);
+  const double unit = scan.isCt ? 100.0 : spreadOf(means);
+  const double slope = unit > 0.0 ? (falls ? -1.0 : 1.0) * settings.detailDbPer100Hu / unit : 0.0;
   std::vector<float> result;
   for (std::size_t l = 0; l < means.size(); ++l)
   {
-    double slope = (falls ? -0.01 : 0.01) * settings.detailDbPer100Hu;
-    if (!scan.isCt)
-    {
-      slope = means[l].deviation > 0.0 ? slope * perDeviation / means[l].deviation : 0.0;
-    }
     result.push_back(labels.labels[l].tissue == outsideTissue ? 0.0f : float(slope));
   }
   return result;

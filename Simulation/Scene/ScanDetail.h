@@ -28,10 +28,11 @@ struct ScanDetailSettings
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
-    visitor(self.detailDbPer100Hu,
-            Parameter{ "detailDbPer100Hu", "Detail (dB per 100 HU)", between(0, 200),
-                       "How much the backscatter within a label follows a CT, dB per 100 HU, 0 to 200; of an MR, a "
-                       "tenth of it per standard deviation of the label." });
+    visitor(
+      self.detailDbPer100Hu,
+      Parameter{ "detailDbPer100Hu", "Detail (dB per 100 HU)", between(0, 200),
+                 "How much the backscatter within a label follows a CT, dB per 100 HU, 0 to 200; of an MR, dB per "
+                 "standard deviation of all its values or half their mean, whichever is more." });
     visitor(self.direction,
             Parameter{ "detailDirection",
                        "Detail Direction",

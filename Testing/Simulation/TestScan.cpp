@@ -266,6 +266,43 @@ TEST(ScanDetail, FollowsTheScanAndKeepsEachTissuesMean)
   }
 }
 
+/// Whatever the scale: in a kidney of two halves, 300 and 500, as much as they differ, and in a liver that is even but
+/// for noise next to nothing.
+TEST(ScanDetail, OfAnMrFollowsStructureNotNoise)
+{
+  const GridPlacement grid = gridOf({ 60, 40, 30 }, Vec3d(1.0), Vec3d(0.0));
+  const LabelVolume labels =
+    labelled(grid, { { "outside", "air" }, { "liver", "liver" }, { "kidney", "kidney" } }, [](const Vec3d& p) {
+      return p.x < 20.0 ? 0 : p.x < 40.0 ? 1 : 2;
+    });
+  for (const double scale : { 1e-3, 1.0, 1e4 })
+  {
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0.0, 20.0);
+    const MatchedScan mr =
+      matchScan(labels, scanned(grid, [&](const Vec3d& p) {
+                  const double kidney = p.y > 20.0 ? 500.0 : 300.0;
+                  return scale * std::max(0.0, (p.x < 20.0 ? 5.0 : p.x < 40.0 ? 300.0 : kidney) + noise(random));
+                }));
+    EXPECT_FALSE(mr.isCt);
+    const std::vector<std::uint8_t> codes = scanDetail(labels, mr, scanOfLabels(labels, mr), "air", {});
+    double step = 0.0;
+    double squares = 0.0;
+    for (std::size_t at = 0; at < codes.size(); ++at)
+    {
+      const double db = 20.0 * std::log10(double(detailFactor(codes[at])));
+      const int y = int(at / 60) % 40;
+      squares += labels.voxels[at] == 1 ? db * db / (20.0 * 40.0 * 30.0) : 0.0;
+      step += labels.voxels[at] == 2 && std::abs(y - 20) > 3 ? (y > 20 ? db / 16.0 : -db / 17.0) / (20.0 * 30.0) : 0.0;
+    }
+    // A third of the values is 5, one 300, of one a half 300 and a half 500.
+    const double mean = (5.0 + 300.0 + 400.0) / 3.0;
+    const double deviation = std::sqrt((25.0 + 9e4 + 0.5 * (9e4 + 25e4)) / 3.0 - mean * mean);
+    EXPECT_NEAR(step, 15.0 * 200.0 / deviation, 0.6) << scale;
+    EXPECT_LT(std::sqrt(squares), 0.5) << scale;
+  }
+}
+
 TEST(ScanDetail, IsWhatOneEchoesMore)
 {
   // Half of a box is 9 dB weaker. Its echoes are.
@@ -333,17 +370,47 @@ TEST(AddScan, SaysWhatTheScanDoesNotReach)
   const auto map = LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv");
   const auto table = TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
   LabelVolume whole = labels;
-  EXPECT_EQ(addScan(whole, scanned(grid, torsoHu), map, table, {}).notice, "");
+  EXPECT_TRUE(addScan(whole, scanned(grid, torsoHu), map, table, {}).notices.empty());
   GridPlacement half = grid; // its upper eleven slices, as a series that was copied in part
   half.size.z = 11;
   half.originMm.z += 18.0;
   LabelVolume cut = labels;
   const AddedScan added = addScan(cut, scanned(half, torsoHu), map, table, {});
-  expectContains(added.notice, " % of the labelled voxels lie in it");
-  expectContains(added.notice, "DICOM series");
+  ASSERT_EQ(added.notices.size(), 1u);
+  expectContains(added.notices[0], " % of the labelled voxels lie in it");
+  expectContains(added.notices[0], "DICOM series");
   const auto last = std::size_t(grid.size.x) * grid.size.y * 9; // below that slice
   EXPECT_TRUE(std::all_of(added.detail.begin(), added.detail.begin() + std::ptrdiff_t(last),
                           [](std::uint8_t code) { return code == detailNone; }));
+}
+
+/// Ten times too large, with metal or without, and its modality not said.
+TEST(AddScan, SaysWhatAScanWithoutModalityIsTakenFor)
+{
+  const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
+  const auto map = LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv");
+  const auto table = TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  const auto said = [&](const auto& value, const char* modality) {
+    LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "" } }, isLiver);
+    IntensityVolume scan = scanned(grid, value);
+    scan.modality = modality;
+    const AddedScan added = addScan(labels, scan, map, table, {});
+    EXPECT_EQ(added.isCt, added.notices.empty() && scan.modality != "MR");
+    EXPECT_LE(added.notices.size(), 1u);
+    return added.notices.empty() ? std::string() : added.notices[0];
+  };
+  const auto tenTimes = [](const Vec3d& p) { return 10.0 * torsoHu(p); };
+  const auto withMetal = [](const Vec3d& p) { return glm::length(p) < 4.0 ? 4e4 : 10.0 * torsoHu(p); };
+  expectContains(said(tenTimes, ""), "from -10000 to 7000");
+  expectContains(said(withMetal, ""), "from -10000 to 40000");
+  expectContains(said(withMetal, ""), "taken for an MR");
+  expectContains(said(withMetal, ""), "needs Hounsfield units");
+  EXPECT_EQ(said(torsoHu, ""), "");
+  EXPECT_EQ(said(torsoHu, "CT"), "");
+  EXPECT_EQ(said([](const Vec3d& p) { return p.x < -50.0 ? -3024.0 : torsoHu(p); }, ""), ""); // padding
+  const auto mr = [](const Vec3d& p) { return 500.0 + 3.0 * p.x; };
+  expectContains(said(mr, ""), "taken for an MR");
+  EXPECT_EQ(said(mr, "MR"), "");
 }
 
 TEST(AddScan, LeavesTheGuessToAnMr)
@@ -359,7 +426,12 @@ TEST(AddScan, LeavesTheGuessToAnMr)
   EXPECT_TRUE(added.names.empty());
   EXPECT_EQ(labels.voxels, before);
   EXPECT_EQ(added.detail.size(), before.size());
-  EXPECT_GT(std::set<std::uint8_t>(added.detail.begin(), added.detail.end()).size(), 20u);
+  // Through the liver's middle the level rises with the values, 15 dB for half of their mean, 497.
+  const auto codeAt = [&](double x) {
+    const Vec3i v(glm::round(grid.indexFromWorld({ x, 26.0, 0.0 })));
+    return int(added.detail[(std::size_t(v.z) * 60 + std::size_t(v.y)) * 60 + std::size_t(v.x)]);
+  };
+  EXPECT_NEAR((codeAt(-8.0) - codeAt(-22.0)) * detailStepDb, 15.0 * 3.0 * 14.0 / (0.5 * 497.0), 0.3);
   ScanDetailSettings wrong;
   wrong.detailDbPer100Hu = 1000.0;
   expectContains(errorOf([&] { addScan(labels, scanned(grid, torsoHu), map, table, wrong); }), "detail");
