@@ -39,11 +39,12 @@ constexpr float first = 1.0f; // priority
 
 } // namespace
 
-Anatomy::Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd, bool warns)
+Anatomy::Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd,
+                 std::function<void(const std::string&)> say)
   : owner_(owner)
   , builder_(builder)
   , progressEnd_(progressEnd)
-  , warns_(warns)
+  , say_(std::move(say))
 {
   keepQuiet(builder);
   vtkNew<ProgressEar> ear;
@@ -108,9 +109,9 @@ void Anatomy::update()
 {
   const bool isMade = builder_->GetExecutive()->Update() != 0;
   warnings_ = takeWarnings(builder_);
-  if (warns_)
+  if (say_)
   {
-    std::for_each(warnings_.begin(), warnings_.end(), [this](const std::string& sentence) { warn(owner_, sentence); });
+    std::for_each(warnings_.begin(), warnings_.end(), say_);
   }
   if (!isMade)
   {

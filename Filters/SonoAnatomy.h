@@ -3,6 +3,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ class Anatomy
 {
 public:
   /// `progressEnd`: where the builder's progress ends in that of the whole, which has the builder's text meanwhile.
-  /// `warns`: whether the owner says what there is to say of the anatomy; not where it only helps another filter that
-  /// will.
-  Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd, bool warns = true);
+  /// `say`: hears what there is to say of the anatomy each time that it is built; none where another filter will say
+  /// it.
+  Anatomy(vtkAlgorithm* owner, vtkSonoSceneBuilder* builder, double progressEnd,
+          std::function<void(const std::string&)> say);
   ~Anatomy();
   Anatomy(const Anatomy&) = delete;
   Anatomy& operator=(const Anatomy&) = delete;
@@ -42,7 +44,7 @@ private:
   vtkAlgorithm* owner_;
   vtkSmartPointer<vtkSonoSceneBuilder> builder_;
   double progressEnd_;
-  bool warns_;
+  std::function<void(const std::string&)> say_;
   unsigned long ear_;             ///< of the builder's progress
   std::vector<double> connected_; ///< content of the builder's input
   std::vector<std::string> warnings_;

@@ -82,6 +82,7 @@ bool UltrasoundStages::findKept(int port)
   if (key.empty() || key != key_)
   {
     kept_.clear();
+    said_.clear();
     key_ = std::move(key);
   }
   left_.erase(port);
@@ -127,9 +128,19 @@ bool UltrasoundStages::takeKept(vtkInformationVector* output)
   placement.flat(field_.pose).place(flat);
   for (const std::string& sentence : unpackedSentences(kept_[2]))
   {
-    warn(owner_, sentence);
+    say(sentence);
   }
   return true;
+}
+
+/// What there is to say of the anatomy and the probe's place: not again when they are looked at after their kept
+/// picture was shown.
+void UltrasoundStages::say(const std::string& sentence)
+{
+  if (key_.empty() || said_.insert(sentence).second)
+  {
+    warn(owner_, sentence);
+  }
 }
 
 /// The picture that was just made.

@@ -78,7 +78,8 @@ UltrasoundStages::~UltrasoundStages() = default;
 
 void UltrasoundStages::listenToBuilder()
 {
-  anatomy_ = std::make_unique<Anatomy>(owner_, scene, anatomyEnd);
+  anatomy_ =
+    std::make_unique<Anatomy>(owner_, scene, anatomyEnd, [this](const std::string& sentence) { say(sentence); });
 }
 
 std::vector<vtkAlgorithm*> UltrasoundStages::withSettings() const
@@ -202,7 +203,7 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
     contactWarning_ = sentence;
     if (!sentence.empty())
     {
-      warn(owner_, sentence);
+      say(sentence);
     }
   };
   TracedResult traced;

@@ -102,6 +102,7 @@ private:
   void makeImage(const ImageInput& image, std::optional<double> time, vtkDataArray* errors, vtkImageData* world,
                  vtkImageData* flat);
   std::string keptKey();
+  void say(const std::string& sentence);
   bool takeKept(vtkInformationVector* output);
   void keep(vtkFieldData* anatomy);
   void makeErrorMap(const ImageInput& image, const TracedResult& traced);
@@ -131,6 +132,7 @@ private:
   std::string contactWarning_;    ///< of what was traced
   std::string key_;               ///< of the picture that is wanted; empty: it is not to be kept
   std::vector<std::string> kept_; ///< of that key; empty: nothing
+  std::set<std::string> said_;    ///< of the anatomy of that key
   std::set<int> left_;            ///< ports that were left empty
   ImageResult errorMap_;
   vtkSmartPointer<vtkPointData> errorArrays_;

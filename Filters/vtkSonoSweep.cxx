@@ -71,6 +71,12 @@ sono::ProbeField resting(sono::ProbeField probe)
   return probe;
 }
 
+std::unique_ptr<sono::Anatomy> anatomyOf(vtkSonoSweep* sweep, vtkSonoSceneBuilder* builder)
+{
+  return std::make_unique<sono::Anatomy>(sweep, builder, anatomyEnd,
+                                         [sweep](const std::string& sentence) { sono::warn(sweep, sentence); });
+}
+
 } // namespace
 
 vtkSonoSweep::vtkSonoSweep()
@@ -78,7 +84,7 @@ vtkSonoSweep::vtkSonoSweep()
   , RayTracer(vtkSmartPointer<vtkSonoRayTracer>::New())
   , ImageFormation(vtkSmartPointer<vtkSonoImageFormation>::New())
   , BMode(vtkSmartPointer<vtkSonoBMode>::New())
-  , Anatomy(new sono::Anatomy(this, this->SceneBuilder, anatomyEnd))
+  , Anatomy(anatomyOf(this, this->SceneBuilder))
   , Simulator(new sono::Simulator)
 {
   this->SetNumberOfInputPorts(3);
@@ -136,7 +142,7 @@ void vtkSonoSweep::SetSceneBuilder(vtkSonoSceneBuilder* stage)
   {
     this->SceneBuilder = stage;
     this->HideSurfaces();
-    this->Anatomy = std::make_unique<sono::Anatomy>(this, stage, anatomyEnd);
+    this->Anatomy = anatomyOf(this, stage);
     this->Modified();
   }
 }

@@ -123,12 +123,15 @@ class Kept(unittest.TestCase):
         self.assertFalse(moved.was_read())
 
     def test_label_map_and_other_outputs_are_there_after_a_kept_picture(self):
+        self.write_names({**self.names, max(self.names): "thing"})  # a guess
         made = self.run_of()
         made.picture()
         run = self.run_of()
         run.picture()
         run.ultrasound.Update(1)  # B-mode lines
         self.assertTrue(run.was_read())
+        self.assertNotEqual(made.warnings, [])
+        self.assertEqual(run.warnings, made.warnings)  # not said again
         self.assertGreater(vtk_to_numpy(run.ultrasound.GetOutputDataObject(1).GetPointData().GetScalars()).max(), 0)
         run = self.run_of()
         run.picture()
