@@ -13,6 +13,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
+static_assert(NestedScatterers::cellCount <= SplatBatch::most, "a brick is added to a batch at once");
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
 {
