@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstring>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -166,7 +167,7 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
 
 } // namespace
 
-vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
+vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function<void(vtkSMViewProxy*)>& drawNow)
 {
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = ultrasound->GetSessionProxyManager();
@@ -185,10 +186,12 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
   layout->AssignView(upper, flat);
   layout->AssignView(upper + 1, chart);
 
-  const auto line = filterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine", controller, manager);
+  // What a kept picture suffices for comes first: whoever asks for other outputs waits for the simulation.
   const auto scale = filterOf(ultrasound, vtkSonoUltrasound::PROBE, "SonoFlatScale", controller, manager);
-  fillSolidView(solid, ultrasound, controller);
   fillFlatView(flat, ultrasound, scale, controller);
+  drawNow(flat);
+  const auto line = filterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine", controller, manager);
+  fillSolidView(solid, ultrasound, controller);
   const std::initializer_list<double> yellow{ 1.0, 0.85, 0.2 };
   showPlainly(line, 1, yellow, 1.0, flat, controller);
   showPlainly(line, 2, yellow, 2.0, solid, controller);

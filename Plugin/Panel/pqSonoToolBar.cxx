@@ -17,6 +17,8 @@
 #include "pqView.h"
 
 #include <QAction>
+#include <QCoreApplication>
+#include <QEventLoop>
 
 #include <cstring>
 
@@ -36,6 +38,19 @@ bool isLabelMapOrScene(pqOutputPort* port)
   }
   vtkPVDataInformation* data = port->getDataInformation();
   return data->GetDataSetType() == VTK_IMAGE_DATA || data->GetCompositeDataSetType() == VTK_MULTIBLOCK_DATA_SET;
+}
+
+/// Onto the screen, without waiting for the end of what a click does: the view's place in its window, its picture, and
+/// that into the window. A person's clicks and keys wait, and timers, some of which draw other views.
+void drawNow(vtkSMViewProxy* view)
+{
+  const auto settle = [] {
+    QCoreApplication::processEvents(QEventLoop::ExcludeUserInputEvents | QEventLoop::ExcludeSocketNotifiers |
+                                    QEventLoop::X11ExcludeTimers);
+  };
+  settle();
+  view->StillRender();
+  settle();
 }
 
 } // namespace
@@ -81,7 +96,7 @@ void pqSonoToolBar::simulate()
 void pqSonoToolBar::showLayout()
 {
   pqPipelineSource* source = pqActiveObjects::instance().activeSource();
-  vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
+  vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()), drawNow);
   pqActiveObjects::instance().setActiveSource(source);
   // Where the probe can be seen and dragged.
   pqActiveObjects::instance().setActiveView(

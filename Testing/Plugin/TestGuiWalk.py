@@ -1,5 +1,6 @@
-"""From a folder of masks to the picture with the events of a real mouse, each click counted. Needs Xvfb and
-python3-xlib; run by ctest -L gui."""
+"""From a folder of masks to the picture with the events of a real mouse, each click counted, and what is on
+the screen when. Needs Xvfb and python3-xlib; run by ctest -L gui."""
+import json
 import pathlib
 import sys
 import tempfile
@@ -7,7 +8,7 @@ import threading
 import time
 import unittest
 
-from guicase import GuiCase, read_screen, save_screen
+from guicase import PLAYBACKS, GuiCase, read_screen, save_screen
 from person import Person
 
 # The thorax as a segmentation tool leaves it: a mask a structure, neither skin nor what lies between the organs.
@@ -76,12 +77,40 @@ class TestGuiWalk(GuiCase):
         self.assertGreater(greys[0], 40)
         self.assertEqual(person.clicks, 5)
 
+    def test_kept_picture_is_on_the_screen_before_the_rest_is_made(self):
+        """In a second session with the same file. What is left is the same as in the first."""
+        seen, states = [], []
+        with tempfile.TemporaryDirectory() as folder:
+            self.label_map(folder)
+            for _ in range(2):
+                person = Person(self, folder)
+
+                def look(person=person):
+                    person.await_file("outputs.json")
+                    seen.append((json.loads((person.folder / "outputs.json").read_text()),
+                                 self.await_picture(person, 50)))
+                    save_screen(pathlib.Path.cwd() / "kept.png", self.frame_buffer, WINDOW, "100%")
+                    (person.folder / "looked").touch()
+
+                looking = threading.Thread(target=look)
+                looking.start()
+                self.assertEqual(self.play("kept.xml", folder, f"--script={PLAYBACKS / 'kept.py'}"), [])
+                person.ended.set()
+                looking.join()
+                states.append((person.folder / "kept.pvsm").read_text())
+                for name in ("outputs.json", "looked"):
+                    (person.folder / name).unlink()
+        outputs, greys = seen[1]
+        self.assertEqual(outputs, ["flat image"])
+        self.assertGreater(greys, 40)
+        self.assertEqual(states[0], states[1])
+
     @staticmethod
-    def await_picture(person):
+    def await_picture(person, looks=600):
         """How many different greys the flat view has, once there are many: speckle."""
         left, top, columns, rows = FLAT_VIEW
         greys = set()
-        for _ in range(600):
+        for _ in range(looks):
             width, _, pixels = read_screen(person.frame_buffer)
             for y in range(top, top + rows, 2):
                 line = pixels[3 * (width * y + left):3 * (width * y + left + columns)]
