@@ -50,8 +50,8 @@ std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, v
   vtkNew<vtkSonoSceneBuilder> builder;
   builder->SetFillBody(fillBody);
   builder->BuildSurfacesOff();
-  builder->SetProgressText(owner->GetProgressText()); // it is a part of that
-  sono::Anatomy anatomy(owner, builder, 0.5, nullptr);  // the filter that makes a picture of it will say what there is
+  builder->SetProgressText(owner->GetProgressText());  // it is a part of that
+  sono::Anatomy anatomy(owner, builder, 0.5, nullptr); // the filter that makes a picture of it will say what there is
   return vtkSonoSceneHandle::Get(anatomy.blocks(input));
 }
 
