@@ -23,14 +23,21 @@
 namespace sono {
 namespace {
 
+constexpr const char* radialBinName = "RadialBinMm"; // of the depth offsets
+
+/// Where an array of traced lines is kept: in the field data it goes on to the stages behind.
+vtkFieldData* placeOf(TracedAxis axis, vtkImageData* lines)
+{
+  return axis == TracedAxis::Bins ? lines->GetPointData() : lines->GetFieldData();
+}
+
 /// The arrays that traced lines are, by the names of the point data and of the field data.
 std::vector<vtkAbstractArray*> tracedArrays(vtkImageData* lines)
 {
   std::vector<vtkAbstractArray*> arrays;
   TracedLines layout;
   TracedLines::visitArrays(layout, [&](const auto&, const char* name, TracedAxis axis) {
-    vtkFieldData* from = axis == TracedAxis::Bins ? lines->GetPointData() : lines->GetFieldData();
-    arrays.push_back(from->GetAbstractArray(name));
+    arrays.push_back(placeOf(axis, lines)->GetAbstractArray(name));
   });
   return arrays;
 }
@@ -55,9 +62,9 @@ Result found(const std::vector<vtkAbstractArray*>& arrays, vtkImageData* image)
 void addTraced(const TracedResult& traced, vtkImageData* lines)
 {
   TracedLines::visitArrays(traced.host(), [&](const auto& values, const char* name, TracedAxis axis) {
-    vtkFieldData* to = axis == TracedAxis::Bins ? lines->GetPointData() : lines->GetFieldData();
-    to->AddArray(lineArray(name, values));
+    placeOf(axis, lines)->AddArray(lineArray(name, values));
   });
+  writeNumber(radialBinName, traced.layout().binMm, lines->GetFieldData());
   lines->GetPointData()->SetActiveScalars("Intensity");
 }
 
@@ -140,21 +147,45 @@ TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoS
   traced.binCount = layout.sampleCount;
   traced.binMm = layout.sampleMm;
   TracedLines::visitArrays(traced, [&](auto& values, const char* name, TracedAxis axis) {
-    vtkFieldData* from = axis == TracedAxis::Bins ? lines->GetPointData() : lines->GetFieldData();
+    vtkFieldData* from = placeOf(axis, lines);
     if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<float>>)
     {
-      values = lineValues(name, from, count);
+      if (axis == TracedAxis::Bins)
+      {
+        values = lineValues(name, from, count);
+      }
     }
     else
     {
       values = complexLineValues(name, from);
     }
   });
+  traced.depthOffsetMm = depthOffsetsOf(lines, layout.lineCount).depthOffsetMm;
   traced.echoCount = static_cast<int>(traced.boundaryEcho.size() / layout.lineCount);
   traced.echoSampleMm = echoSampleMm;
-  // Paths bring boundaries in that model alone.
-  traced.model = traced.echoCount > 0 ? InterfaceModel::Amadou2024 : InterfaceModel::Acoustic;
+  // In that model alone paths bring boundaries, and range is depth.
+  traced.model =
+    traced.echoCount > 0 && traced.depthOffsetMm.empty() ? InterfaceModel::Amadou2024 : InterfaceModel::Acoustic;
   return TracedResult(std::move(traced));
+}
+
+TracedLines depthOffsetsOf(vtkImageData* lines, int lineCount)
+{
+  TracedLines traced;
+  traced.lineCount = lineCount;
+  TracedLines::visitArrays(traced, [&](auto& values, const char* name, TracedAxis axis) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<float>>)
+    {
+      vtkDataArray* array = lines->GetFieldData()->GetArray(name);
+      if (axis == TracedAxis::RangeBins && array && array->GetNumberOfTuples() > 0)
+      {
+        traced.binMm = readNumber(radialBinName, lines->GetFieldData());
+        traced.binCount = static_cast<int>(array->GetNumberOfTuples() / lineCount);
+        values = lineValues(name, lines->GetFieldData(), std::size_t(lineCount) * std::size_t(traced.binCount));
+      }
+    }
+  });
+  return traced;
 }
 
 TracedResult tracedHandleOf(vtkImageData* lines)

@@ -302,7 +302,8 @@ void UltrasoundStages::makeImage(const ImageInput& image, std::optional<double> 
   // All else before the picture, which may have to be waited for.
   placeImage(made, image.pose, world);
   placeFlat(made, image.pose, world, flat);
-  const ScanPicture picture = simulator_.picture(made, image.pose, true);
+  const ScanPicture picture =
+    simulator_.picture(made, image.settings.geometry, image.pose, simulator_.traced(image, {}));
   if (!pictureArrays_ || picture.grey.data != picture_.grey.data)
   {
     pictureArrays_ = pictureArrays(picture);

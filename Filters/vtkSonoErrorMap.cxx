@@ -72,6 +72,7 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
       values.binMm = layout.sampleMm;
       values.intensity = sono::lineValues("Intensity", lines->GetPointData(), count);
       values.standardError = sono::lineValues("StandardError", lines->GetPointData(), count);
+      values.depthOffsetMm = sono::depthOffsetsOf(lines, layout.lineCount).depthOffsetMm;
       traced = sono::TracedResult(std::move(values));
     }
     const sono::ImageResult map = sono::Simulator().errorMap(

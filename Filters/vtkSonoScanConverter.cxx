@@ -140,12 +140,16 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     }
     sono::placeImage(image, probe.pose, world);
     sono::placeFlat(image, probe.pose, world, flat);
-    sono::ScanPicture picture = this->Simulator->picture(image, probe.pose, scene && !connected);
-    if (connected)
+    sono::ScanPicture picture = this->Simulator->picture(image);
+    if (const auto labels = connected ? connected
+                            : scene   ? std::shared_ptr<const sono::LabelVolume>(scene, &scene->volume())
+                                      : nullptr)
     {
+      const sono::TracedLines traced = sono::depthOffsetsOf(lines, layout.lineCount);
+      const sono::DepthOffsets offsets{ &traced.depthOffsetMm, traced.binCount, traced.binMm };
       picture.labels = sono::SharedSpan<std::uint16_t>(
-        image.isVolume() ? sono::sliceLabels(*connected, probe.pose, image.volume())
-                         : sono::sliceLabels(*connected, probe.pose, image.plane().host()));
+        image.isVolume() ? sono::sliceLabels(*labels, probe.geometry, probe.pose, image.volume(), offsets)
+                         : sono::sliceLabels(*labels, probe.geometry, probe.pose, image.plane().host(), offsets));
     }
     const auto arrays = sono::pictureArrays(picture);
     world->GetPointData()->ShallowCopy(arrays);

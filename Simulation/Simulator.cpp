@@ -121,18 +121,10 @@ struct ImageFrom
   }
 };
 
-struct PictureFrom
+DepthOffsets offsetsOf(const TracedLines& traced)
 {
-  ImageResult image;
-  ProbePose pose;
-  bool withLabels;
-
-  bool same(const PictureFrom& o) const
-  {
-    // Without labels a picture lies nowhere.
-    return image == o.image && withLabels == o.withLabels && (!withLabels || sono::same(pose, o.pose));
-  }
-};
+  return { &traced.depthOffsetMm, traced.binCount, traced.binMm };
+}
 
 struct ErrorFrom
 {
@@ -161,6 +153,7 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
   FetchedTrace fetched = DeviceImager::instance().fetch(device);
   auto values = fetched.bins.begin();
   TracedLines::visitBins(lines, [&](std::vector<float>& array, const char*) { array = std::move(*values++); });
+  lines.depthOffsetMm = std::move(*values);
   lines.boundaryEcho = std::move(fetched.boundaryEcho);
   lines.segments = fetched.segments;
 }
@@ -205,8 +198,33 @@ Image unknown(Image layout, std::size_t count)
 
 } // namespace
 
+/// Where labels are looked up.
+struct Simulator::LabelsWanted
+{
+  ScanGeometry geometry;
+  ProbePose pose;
+  TracedResult traced;
+
+  bool same(const LabelsWanted& o) const
+  {
+    return traced == o.traced && sono::same(geometry, o.geometry) && sono::same(pose, o.pose);
+  }
+};
+
 struct Simulator::Last
 {
+  struct PictureFrom
+  {
+    ImageResult image;
+    std::optional<LabelsWanted> labels;
+
+    bool same(const PictureFrom& o) const
+    {
+      // Without labels a picture lies nowhere.
+      return image == o.image && labels.has_value() == o.labels.has_value() && (!labels || labels->same(*o.labels));
+    }
+  };
+
   LastResult<FieldFrom, std::shared_ptr<const ArrayField>> arrayField;
   LastResult<TraceFrom, TracedResult> traced;
   LastResult<EchoJobFrom, std::shared_ptr<const EchoJob>> echoJob;
@@ -357,34 +375,58 @@ ImageResult Simulator::scanConvert(const ScanGeometry& geometry, const BModeResu
   });
 }
 
-ScanPicture Simulator::picture(const ImageResult& image, const ProbePose& pose, bool withLabels)
+ScanPicture Simulator::picture(const ImageResult& image)
 {
-  return last_->picture.get({ image, pose, withLabels }, [&] {
-    const auto onHost = [&](const auto& made) {
-      ScanPicture picture{ SharedSpan<std::uint8_t>(greyBytes(made.value, made.mask)),
-                           SharedSpan<std::uint8_t>(made.mask),
-                           {} };
-      if (withLabels)
-      {
-        picture.labels = SharedSpan<std::uint16_t>(sliceLabels(needScene().volume(), pose, made));
-      }
-      return picture;
-    };
-    if (image.isVolume())
+  return last_->picture.get({ image, std::nullopt }, [&] { return makePicture(image, nullptr); });
+}
+
+ScanPicture Simulator::picture(const ImageResult& image, const ScanGeometry& geometry, const ProbePose& pose,
+                               const TracedResult& traced)
+{
+  const LabelsWanted wanted{ geometry, pose, traced };
+  return last_->picture.get({ image, wanted }, [&] { return makePicture(image, &wanted); });
+}
+
+ScanPicture Simulator::makePicture(const ImageResult& image, const LabelsWanted* wanted)
+{
+  const auto onHost = [&](const auto& made) {
+    ScanPicture picture{ SharedSpan<std::uint8_t>(greyBytes(made.value, made.mask)),
+                         SharedSpan<std::uint8_t>(made.mask),
+                         {} };
+    if (wanted)
     {
-      return onHost(image.volume());
+      picture.labels =
+        SharedSpan<std::uint16_t>(sliceLabels(needScene().volume(), wanted->geometry, wanted->pose, made,
+                                              wanted->traced ? offsetsOf(wanted->traced.host()) : DepthOffsets{}));
     }
-    const auto& picture = image.plane().onDevice();
-    if (!picture)
+    return picture;
+  };
+  if (image.isVolume())
+  {
+    return onHost(image.volume());
+  }
+  const auto& picture = image.plane().onDevice();
+  if (!picture)
+  {
+    return onHost(image.plane().host());
+  }
+  DeviceImager& imager = DeviceImager::instance();
+  std::shared_ptr<const DeviceLabelSlice> labels;
+  if (wanted)
+  {
+    const TracedResult& traced = wanted->traced;
+    const auto& onDevice = traced ? traced.onDevice() : nullptr;
+    LabelJob job = makeLabelJob(needScene(), &wanted->pose, 1, image.plane().layout());
+    if (traced && traced.layout().model == InterfaceModel::Acoustic)
     {
-      return onHost(image.plane().host());
+      const TracedLines& layout = traced.layout();
+      job.offsets = planeScan(wanted->geometry, layout.binCount, layout.binMm, image.plane().layout().pixelMm);
+      job.offsetMm = onDevice ? nullptr : &traced.host().depthOffsetMm;
     }
-    DeviceImager& imager = DeviceImager::instance();
-    const auto labels =
-      withLabels ? imager.slice(makeLabelJob(needScene(), &pose, 1, image.plane().layout()), *picture) : nullptr;
-    const PictureCopy copy = imager.wait(imager.beginDownload(picture, labels));
-    return ScanPicture{ copy.bytes, copy.mask, copy.labels };
-  });
+    labels = imager.slice(job, *picture, onDevice.get());
+  }
+  const PictureCopy copy = imager.wait(imager.beginDownload(picture, labels));
+  return ScanPicture{ copy.bytes, copy.mask, copy.labels };
 }
 
 ImageResult Simulator::errorMap(const ScanGeometry& geometry, const TracedResult& traced, bool interactive,
@@ -405,11 +447,9 @@ ImageResult Simulator::errorMap(const ScanGeometry& geometry, const TracedResult
     const TracedLines& lines = traced.host();
     if (isVolume)
     {
-      return ImageResult(
-        errorVolume(geometry, lines.intensity, lines.standardError, lines.binCount, lines.binMm, pixelMm, progress));
+      return ImageResult(errorVolume(geometry, lines, pixelMm, progress));
     }
-    return ImageResult(
-      PlaneResult(errorPlane(geometry, lines.intensity, lines.standardError, lines.binCount, lines.binMm, pixelMm)));
+    return ImageResult(PlaneResult(errorPlane(geometry, lines, pixelMm)));
   });
 }
 

@@ -69,8 +69,12 @@ public:
   /// `bmode` holds all lines of the geometry.
   ImageResult scanConvert(const ScanGeometry& geometry, const BModeResult& bmode, double pixelMm,
                           const Progress& progress = {});
-  /// The image's bytes, and the scene's own labels in it if wanted.
-  ScanPicture picture(const ImageResult& image, const ProbePose& pose, bool withLabels);
+  /// The image's bytes alone.
+  ScanPicture picture(const ImageResult& image);
+  /// With the scene's own labels of what is shown at each pixel, see sliceLabels. `traced` are the geometry's lines; it
+  /// may be no result: each depth is then shown where it lies.
+  ScanPicture picture(const ImageResult& image, const ScanGeometry& geometry, const ProbePose& pose,
+                      const TracedResult& traced);
   /// The Monte-Carlo error in the image, percent; see errorPlane. Nothing is known, and the mask is empty, where the
   /// lines are those of a moving probe.
   ImageResult errorMap(const ScanGeometry& geometry, const TracedResult& traced, bool interactive, double pixelMm,
@@ -102,6 +106,8 @@ public:
 private:
   /// With the computed beam where it is asked for.
   EchoSettings withBeam(EchoSettings settings, const Progress& progress = {});
+  struct LabelsWanted;
+  ScanPicture makePicture(const ImageResult& image, const LabelsWanted* wanted);
 
   struct Last;
   const Scene& needScene() const;

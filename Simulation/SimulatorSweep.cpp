@@ -53,8 +53,9 @@ void sweepOnCpu(const std::shared_ptr<const Scene>& scene, const std::vector<Pro
     ScanPicture picture;
     try
     {
-      picture = each.picture(each.image(input, partOf(progress, done, done + 1.0 / double(poses.size()))), input.pose,
-                             withLabels);
+      const ImageResult image = each.image(input, partOf(progress, done, done + 1.0 / double(poses.size())));
+      picture =
+        withLabels ? each.picture(image, settings.geometry, input.pose, each.traced(input)) : each.picture(image);
     }
     catch (const Error& error)
     {
@@ -74,6 +75,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   const RfLines rfOfOne = rfLayout(perImage, settings.echo);
   const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
   const PlaneScan scan = planeScan(settings.geometry, rfOfOne.sampleCount, rfOfOne.sampleMm, settings.pixelMm);
+  const PlaneScan offsets = planeScan(settings.geometry, tracedOfOne.binCount, tracedOfOne.binMm, settings.pixelMm);
   std::shared_ptr<const TraceJob> traceJob;
   {
     const TraceSetup setup(scene, lines, settings.tracing, targets, partOf(progress, 0.0, 0.3));
@@ -113,8 +115,16 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     }
     const auto rf = imager.formRf(echoJob, { 0, range.count }, traced.get(), false);
     const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
-    const auto labels =
-      withLabels ? imager.slice(makeLabelJob(scene, poses.data() + first, count, layout), *picture) : nullptr;
+    std::shared_ptr<const DeviceLabelSlice> labels;
+    if (withLabels)
+    {
+      LabelJob job = makeLabelJob(scene, poses.data() + first, count, layout);
+      if (settings.tracing.rangeIsTime())
+      {
+        job.offsets = offsets;
+      }
+      labels = imager.slice(job, *picture, traced.get());
+    }
     auto next = imager.beginDownload(picture, labels);
     if (download)
     {

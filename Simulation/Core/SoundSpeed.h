@@ -2,7 +2,11 @@
 
 namespace sono {
 
-/// Speed of sound that turns depth into time, as a scanner assumes it, mm per microsecond.
+/// Speed of sound that turns time into range, as a scanner assumes it, mm per microsecond.
 constexpr double assumedSoundSpeedMmPerUs = 1.54;
+
+/// What an image shows may lie so much deeper than where it is shown: soft tissue that is faster than assumed fills the
+/// way. Bone is faster still, but little is heard through it.
+constexpr double deepestPerRange = 1.04;
 
 } // namespace sono

@@ -41,7 +41,8 @@ TracedOnDevice DeviceEcho::given(int first) const
   TracedOnDevice traced = given_;
   traced.intensity = given_.intensity ? given_.intensity + std::size_t(first) * given_.binCount : nullptr;
   traced.attenuation = given_.attenuation ? given_.attenuation + std::size_t(first) * given_.binCount : nullptr;
-  traced.echo = given_.echo ? given_.echo + std::size_t(first) * sumCount_ : nullptr;
+  traced.depthOffset = given_.depthOffset ? given_.depthOffset + std::size_t(first) * given_.binCount : nullptr;
+  traced.echo = given_.echo ? given_.echo + std::size_t(first) * rangeCount_ : nullptr;
   return traced;
 }
 
@@ -175,7 +176,7 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
   iq_.resize(wantsIq ? lines * sampleCount_ : 0);
   envelope_.resize(lines * sampleCount_);
   const bool sinks = downshift_ && traced.intensity && traced.attenuation;
-  turns_.resize(sinks ? lines * sumCount_ : 0);
+  turns_.resize(sinks ? lines * rangeCount_ : 0);
   const FinishLaunch launch{ sums ? sum_.data() : nullptr,
                              nested_ ? nestedSum_.data() : nullptr,
                              1.0f / nestedScale_,
@@ -189,7 +190,10 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
                              pulse_.data(),
                              half_,
                              sumCount_,
+                             rangeCount_,
                              sampleCount_,
+                             float(sampleMm_),
+                             float(carrierRadPerSample_),
                              double(float(sampleMm_)) / double(traced.binMm),
                              wantsIq ? iq_.data() : nullptr,
                              envelope_.data() };

@@ -15,12 +15,13 @@ struct TracedOnDevice
 {
   const float* intensity = nullptr;   ///< lines x bins; null: 1 everywhere
   const float* attenuation = nullptr; ///< lines x bins: B, Np of amplitude per MHz; null: not known
+  const float* depthOffset = nullptr; ///< lines x bins: TracedLines::depthOffsetMm; null: range is depth
   int binCount = 0;
-  float binMm = 0.0f;
+  float binMm = 1.0f;
   const EchoSum* echoSums = nullptr; ///< lines x echoCount x (re, im), on the RF's samples
   int echoCount = 0;
   float echoPerUnit = 0.0f;
-  const float2* echo = nullptr; ///< or lines x sumCount amplitudes
+  const float2* echo = nullptr; ///< or lines x rangeCount amplitudes
 };
 
 /// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them. They lie in a
@@ -94,6 +95,7 @@ private:
 
   int sampleCount_ = 0;
   int sumCount_ = 0;
+  int rangeCount_ = 0;
   int half_ = 0;
   double sampleMm_ = 0.0;
   LineGrid grid_{};
@@ -167,13 +169,13 @@ private:
   float largestPoint_ = 0.0f;
   float pointScale_ = 1.0f;
 
-  DeviceArray<float> givenIntensity_, givenAttenuation_;
+  DeviceArray<float> givenIntensity_, givenAttenuation_, givenDepthOffset_;
   DeviceArray<float2> givenEcho_;
   TracedOnDevice given_;
 
   DeviceArray<float2> sum_;   ///< lines x sumCount, without nested scatterers
   ZeroedSums<int> nestedSum_; ///< lines x sumCount x (re, im), in units of 1 / nestedScale_
-  DeviceArray<float> turns_;  ///< lines x sumCount: of the downshift's phase
+  DeviceArray<float> turns_;  ///< lines x rangeCount: of the downshift's phase
   DeviceArray<float2> iq_;
   DeviceArray<float> envelope_;
 };

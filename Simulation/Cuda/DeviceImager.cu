@@ -261,6 +261,7 @@ std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<co
     made->lineCount = lines.count;
     made->view.intensity = made->arrays.bins[intensityArray].data();
     made->view.attenuation = made->arrays.bins[attenuationArray].data();
+    made->view.depthOffset = job->rangeIsTime ? made->arrays.bins[depthOffsetArray].data() : nullptr;
     made->view.binCount = job->binCount;
     made->view.binMm = job->binMm;
     made->view.echoSums = made->arrays.echo.data();
@@ -329,12 +330,14 @@ std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan& scan
   });
 }
 
-std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob& job, const DevicePicture& picture)
+std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob& job, const DevicePicture& picture,
+                                                            const DeviceTraced* traced)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
     const auto made = std::make_shared<DeviceLabelSlice>();
+    const float* offsetMm = traced ? traced->view.depthOffset : nullptr;
     made->labels =
-      w.labels->slice(job, picture.scan.width, picture.scan.height, picture.mask->data(), stream, w.traffic);
+      w.labels->slice(job, picture.scan.width, picture.scan.height, picture.mask->data(), offsetMm, stream, w.traffic);
     return std::shared_ptr<const DeviceLabelSlice>(made);
   });
 }

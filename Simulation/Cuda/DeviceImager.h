@@ -31,7 +31,7 @@ struct LineRange
 /// What fetch() brings of traced lines; see TracedLines.
 struct FetchedTrace
 {
-  std::vector<std::vector<float>> bins; ///< in the order of TracedLines::visitBins
+  std::vector<std::vector<float>> bins; ///< in the order of BinArray
   std::vector<std::complex<float>> boundaryEcho;
   std::uint64_t segments = 0;
 };
@@ -86,7 +86,8 @@ public:
   std::shared_ptr<const DeviceGrey> compress(const std::shared_ptr<const BModeJob>& job, const DeviceRf& rf,
                                              int images);
   std::shared_ptr<const DevicePicture> convert(const PlaneScan& scan, std::shared_ptr<const DeviceGrey> grey);
-  std::shared_ptr<const DeviceLabelSlice> slice(const LabelJob& job, const DevicePicture& picture);
+  std::shared_ptr<const DeviceLabelSlice> slice(const LabelJob& job, const DevicePicture& picture,
+                                                const DeviceTraced* traced);
 
   FetchedTrace fetch(const DeviceTraced& traced);
   std::vector<std::complex<float>> fetchIq(const DeviceRf& rf);

@@ -65,6 +65,10 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
   {
     startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
   }
+  if (launch.depthOffset)
+  {
+    timeLines<<<lines, flightThreads, (launch.binCount + 1) * sizeof(float), stream>>>(launch);
+  }
   kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
   const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
@@ -108,6 +112,7 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
   binCount_ = job.binCount;
   binMm_ = job.binMm;
   frequencyMHz_ = job.frequencyMHz;
+  rangeIsTime_ = job.rangeIsTime;
   echoCount_ = job.echoCount;
   echoSampleMm_ = job.echoSampleMm;
   radPerMm_ = job.radPerMm;
@@ -140,6 +145,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   {
     array.resize(lineCount * bins);
   }
+  arrays_[depthOffsetArray].resize(rangeIsTime_ ? lineCount * bins : 0);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echoRest_.resize(manyPaths ? echo_.size() : 0);
   segments_.resize(1);
@@ -183,8 +189,9 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      echoSampleMm_,
                      radPerMm_,
                      echoScale_,
-                     {} };
-      for (std::size_t array = 0; array < binArrayCount; ++array)
+                     {},
+                     rangeIsTime_ ? arrays_[depthOffsetArray].data() + skip * bins : nullptr };
+      for (std::size_t array = 0; array < pathArrayCount; ++array)
       {
         launch.arrays[array] = arrays_[array].data() + skip * bins;
       }

@@ -61,6 +61,7 @@ private:
   int binCount_ = 0;
   float binMm_ = 0.0f;
   double frequencyMHz_ = 1.0;
+  bool rangeIsTime_ = false;
   int echoCount_ = 0;
   float echoSampleMm_ = 0.0f;
   float radPerMm_ = 0.0f;

@@ -45,6 +45,7 @@ struct TraceJob
   int binCount = 0;
   float binMm = 0.0f;
   double frequencyMHz = 1.0;
+  bool rangeIsTime = false;
   int echoCount = 0; ///< 0: boundaries do not echo
   float echoSampleMm = 0.0f;
   float radPerMm = 0.0f; ///< 2 k of the boundary echoes' phases
@@ -168,9 +169,10 @@ struct GivenTrace
 {
   std::vector<float> intensity;           ///< lines x bins
   std::vector<float> attenuationNpPerMHz; ///< the same; empty: not known
+  std::vector<float> depthOffsetMm;       ///< the same; empty: range is depth
   int binCount = 0;
   float binMm = 0.0f;
-  std::vector<std::complex<float>> boundaryEcho; ///< lines x sumCount, on the RF's samples; empty: none
+  std::vector<std::complex<float>> boundaryEcho; ///< lines x rangeCount, on the RF's samples; empty: none
 };
 
 /// Image formation as a device needs it.
@@ -178,7 +180,8 @@ struct EchoJob
 {
   int lineCount = 0;
   int sampleCount = 0;
-  int sumCount = 0; ///< samples of the sum before the pulse: half a pulse more
+  int sumCount = 0;   ///< samples of the sum by depth, see LineFinisher
+  int rangeCount = 0; ///< samples by range before the pulse: half a pulse more
   double sampleMm = 0.0;
   double radPerMm = 0.0;
   std::vector<float> pulseRe;         ///< envelope, from its end to its start
@@ -220,6 +223,8 @@ struct LabelJob
   std::uint64_t sceneId = 0;          ///< the voxels are kept on the device while it is the same
   Vec3i size{ 0 };
   std::vector<LabelRow> rows;
+  std::optional<PlaneScan> offsets;             ///< of the depth offsets; nothing: what is shown lies at its pixel
+  const std::vector<float>* offsetMm = nullptr; ///< those, where they do not lie on the device
 };
 
 } // namespace sono

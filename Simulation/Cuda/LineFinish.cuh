@@ -2,8 +2,9 @@
 
 #include "Cuda/DeviceEcho.cuh"
 #include "Kernel/Downshift.h"
+#include "Kernel/TimeOfFlight.h"
 
-// From a line's scatterer sum to its IQ and envelope, as LineFinisher on the CPU.
+// From a line's scatterer sum, by depth, to its IQ and envelope, by range, as LineFinisher on the CPU.
 
 namespace sono {
 
@@ -17,12 +18,15 @@ struct FinishLaunch
   TracedOnDevice traced;
   const float* level; // of boundaries at each sample, or null
   Downshift downshift;
-  const float* turns; // lines x sumCount, of the downshift's phase; null: the frequency stays
+  const float* turns; // lines x rangeCount, of the downshift's phase; null: the frequency stays
   const float2* carrier;
   const float* pulse; // re, then im where it is complex
   int half;
-  int sumCount;
+  int sumCount;   // samples by depth
+  int rangeCount; // samples by range before the pulse
   int sampleCount;
+  float sampleMm;
+  float radPerSample;
   double binsPerSample; // of the tracer
   float2* iq;           // null: not wanted
   float* envelope;
@@ -76,10 +80,18 @@ __device__ inline float valueAt(const float* bins, const BinPlace& p)
   return value + (bins[p.bin + p.step] - value) * p.share;
 }
 
-/// B of a line at a sample, as far as it lowers the frequency.
-__device__ inline float exponentAt(const FinishLaunch& launch, const float* bins, int s)
+__device__ inline RangeMap rangeMap(const FinishLaunch& launch, int line)
 {
-  return shiftingExponent(launch.downshift, valueAt(bins, binPlace(launch, s)));
+  const TracedOnDevice& traced = launch.traced;
+  return { traced.depthOffset ? traced.depthOffset + std::size_t(line) * traced.binCount : nullptr, traced.binCount,
+           1.0f / traced.binMm };
+}
+
+/// B of a line at a sample of range, as far as it lowers the frequency.
+__device__ inline float exponentAt(const FinishLaunch& launch, const RangeMap& map, const float* bins, int s)
+{
+  const int d = depthSample(map, launch.sampleMm, s, launch.sumCount);
+  return shiftingExponent(launch.downshift, valueAt(bins, binPlace(launch, d)));
 }
 
 constexpr int turnThreads = 1024;
@@ -91,14 +103,15 @@ __global__ void __launch_bounds__(turnThreads) sumTurns(FinishLaunch launch, flo
   __shared__ double sums[turnThreads];
   const int line = blockIdx.x;
   const float* bins = launch.traced.attenuation + std::size_t(line) * launch.traced.binCount;
-  const int each = (launch.sumCount + turnThreads - 1) / turnThreads;
-  const int first = min(int(threadIdx.x) * each, launch.sumCount);
-  const int last = min(first + each, launch.sumCount);
+  const RangeMap map = rangeMap(launch, line);
+  const int each = (launch.rangeCount + turnThreads - 1) / turnThreads;
+  const int first = min(int(threadIdx.x) * each, launch.rangeCount);
+  const int last = min(first + each, launch.rangeCount);
   const auto forTurns = [&](const auto& visit) { // from each sample to the next
-    float here = first < last ? exponentAt(launch, bins, first) : 0.0f;
+    float here = first < last ? exponentAt(launch, map, bins, first) : 0.0f;
     for (int s = first; s < last; ++s)
     {
-      const float next = s + 1 < launch.sumCount ? exponentAt(launch, bins, s + 1) : here;
+      const float next = s + 1 < launch.rangeCount ? exponentAt(launch, map, bins, s + 1) : here;
       visit(s, double(downshiftTurns(launch.downshift, 0.5f * (here + next))));
       here = next;
     }
@@ -116,21 +129,16 @@ __global__ void __launch_bounds__(turnThreads) sumTurns(FinishLaunch launch, flo
   }
   double sum = sums[threadIdx.x] - own;
   forTurns([&](int s, double step) {
-    turns[std::size_t(line) * launch.sumCount + s] = float(sum - floor(sum + 0.5));
+    turns[std::size_t(line) * launch.rangeCount + s] = float(sum - floor(sum + 0.5));
     sum += step;
   });
 }
 
-/// The sum at a sample: times the intensity, plus the boundary echoes, demodulated; where the frequency sinks, as
-/// strong as it then is and turned by the phase.
-__device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
+/// The sum at a sample of depth: scatterers times the intensity, and surfaces.
+__device__ inline float2 summedAt(const FinishLaunch& launch, int line, int d)
 {
-  if (s < 0 || s >= launch.sumCount)
-  {
-    return { 0.0f, 0.0f };
-  }
   float2 v{ 0.0f, 0.0f };
-  const std::size_t at = std::size_t(line) * launch.sumCount + s;
+  const std::size_t at = std::size_t(line) * launch.sumCount + d;
   if (launch.sum)
   {
     v = launch.sum[at];
@@ -143,7 +151,7 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   const TracedOnDevice& traced = launch.traced;
   if (traced.intensity)
   {
-    const float intensity = valueAt(traced.intensity + std::size_t(line) * traced.binCount, binPlace(launch, s));
+    const float intensity = valueAt(traced.intensity + std::size_t(line) * traced.binCount, binPlace(launch, d));
     v.x *= intensity;
     v.y *= intensity;
   }
@@ -152,6 +160,40 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
     v.x += float((long long)(launch.surfaces[2 * at])) * launch.surfacePerUnit;
     v.y += float((long long)(launch.surfaces[2 * at + 1])) * launch.surfacePerUnit;
   }
+  return v;
+}
+
+/// What of the depths behind a sample of range, up to the next, is shown there, demodulated: of each what is `near`,
+/// or else what is left for the next.
+__device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeMap& map, int line, int s, bool near)
+{
+  float2 v{ 0.0f, 0.0f };
+  const RangeStep step = rangeStep(map, launch.sampleMm, s);
+  const float2 c = launch.carrier[s];
+  for (int d = step.first; d < min(step.end, launch.sumCount); ++d)
+  {
+    const float2 sum = summedAt(launch, line, d);
+    const float share = step.shareOf(d);
+    const ShownSample shown = shownSample(sum.x, sum.y, share * launch.radPerSample, c.x, c.y);
+    const float part = near ? 1.0f - share : share;
+    v.x += part * shown.re;
+    v.y += part * shown.im;
+  }
+  return v;
+}
+
+/// What is shown at a sample of range, and the boundary echoes, demodulated; where the frequency sinks, as strong as it
+/// then is and turned by the phase.
+__device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
+{
+  if (s < 0 || s >= launch.rangeCount)
+  {
+    return { 0.0f, 0.0f };
+  }
+  const RangeMap map = rangeMap(launch, line);
+  const TracedOnDevice& traced = launch.traced;
+  const std::size_t at = std::size_t(line) * launch.rangeCount + s;
+  float2 v = map.offsetMm ? float2{ 0.0f, 0.0f } : summedAt(launch, line, s);
   const float level = launch.level ? launch.level[s] : 1.0f;
   if (traced.echoSums && s < traced.echoCount)
   {
@@ -166,10 +208,16 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   }
   const float2 c = launch.carrier[s];
   v = { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
+  if (map.offsetMm)
+  {
+    const float2 near = shownBehind(launch, map, line, s, true);
+    const float2 far = s > 0 ? shownBehind(launch, map, line, s - 1, false) : float2{ 0.0f, 0.0f };
+    v = { v.x + near.x + far.x, v.y + near.y + far.y };
+  }
   if (launch.turns)
   {
     const float* bins = traced.attenuation + std::size_t(line) * traced.binCount;
-    const float gain = downshiftGain(launch.downshift, exponentAt(launch, bins, s));
+    const float gain = downshiftGain(launch.downshift, exponentAt(launch, map, bins, s));
     const DownshiftAt turned = downshiftRotation(launch.turns[at]);
     v = { gain * (v.x * turned.re - v.y * turned.im), gain * (v.x * turned.im + v.y * turned.re) };
   }
@@ -245,7 +293,7 @@ __global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch laun
         float2 iq{ sumRe[j], sumIm[j] };
         if (launch.turns)
         {
-          const DownshiftAt turned = downshiftRotation(launch.turns[std::size_t(line) * launch.sumCount + s]);
+          const DownshiftAt turned = downshiftRotation(launch.turns[std::size_t(line) * launch.rangeCount + s]);
           iq = { iq.x * turned.re + iq.y * turned.im, iq.y * turned.re - iq.x * turned.im };
         }
         launch.iq[at] = iq;

@@ -308,6 +308,7 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.binCount = settings.binCount();
   job.binMm = float(settings.radialBinMm);
   job.frequencyMHz = setup.frequencyMHz;
+  job.rangeIsTime = settings.rangeIsTime();
   job.echoCount = settings.echoCount();
   job.echoSampleMm = float(settings.echoSampleMm);
   job.radPerMm = float(4.0 * 3.14159265358979323846 * settings.frequencyMHz / assumedSoundSpeedMmPerUs);
@@ -320,6 +321,7 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   job.lineCount = int(setup.lines.size());
   job.sampleCount = setup.settings.sampleCount();
   job.sumCount = setup.finisher.sumCount();
+  job.rangeCount = setup.finisher.rangeCount();
   job.sampleMm = setup.settings.sampleMm();
   job.radPerMm = setup.finisher.radPerMm();
   job.pulseRe = setup.finisher.pulse().re();
@@ -335,7 +337,7 @@ EchoJob makeEchoJob(const EchoSetup& setup)
   }
   if (setup.level)
   {
-    for (int s = 0; s < job.sumCount; ++s)
+    for (int s = 0; s < job.rangeCount; ++s)
     {
       job.boundaryLevel.push_back(float(setup.level->at(s * job.sampleMm)));
     }
@@ -368,13 +370,14 @@ EchoJob makeEchoJob(const EchoSetup& setup)
     GivenTrace given;
     given.intensity = traced.intensity;
     given.attenuationNpPerMHz = traced.attenuationNpPerMHz;
+    given.depthOffsetMm = traced.depthOffsetMm;
     given.binCount = traced.binCount;
     given.binMm = float(traced.binMm);
     for (int l = 0; l < job.lineCount && traced.echoCount > 0; ++l)
     {
       LineSum sum = setup.finisher.emptySum();
       setup.finisher.addBoundaryEchoes(l, sum);
-      for (int s = 0; s < job.sumCount; ++s)
+      for (int s = 0; s < job.rangeCount; ++s)
       {
         given.boundaryEcho.emplace_back(sum.iq[2 * std::size_t(s)], sum.iq[2 * std::size_t(s) + 1]);
       }

@@ -2,6 +2,7 @@
 
 #include "Cuda/DeviceTracer.cuh"
 #include "Cuda/WarpDeposit.cuh"
+#include "Kernel/TimeOfFlight.h"
 #include "Trace/PathBatches.h"
 
 #include <cuda_runtime.h>
@@ -49,7 +50,8 @@ struct TraceLaunch
   float echoSampleMm;
   float radPerMm;
   float echoScale;
-  float* arrays[binArrayCount];
+  float* arrays[pathArrayCount];
+  float* depthOffset; // lines x bins; null: range is depth
 
   __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
 };
@@ -335,9 +337,68 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   const BinArrays bin =
     finishBin(shared, hasPaths ? launch.batches : 0, meanOf, binSumsOf(launch.view.model), launch.frequencyMHz);
 #pragma unroll
-  for (int array = 0; array < binArrayCount; ++array)
+  for (int array = 0; array < pathArrayCount; ++array)
   {
     launch.arrays[array][at] = bin.of[array];
+  }
+}
+
+constexpr int flightThreads = 256;
+
+/// A block finds where a line's axis leads by time (Trace/Trace.cpp does the same): each thread adds up the bins next
+/// to each other, then where each range lies is looked up among the sums.
+template<class Targets>
+__global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> launch)
+{
+  extern __shared__ float rangeMm[]; // at the ends of bins
+  __shared__ double sums[flightThreads];
+  __shared__ TargetSpans spans;
+  const TraceLine& line = launch.lines[blockIdx.x];
+  if (threadIdx.x == 0)
+  {
+    spans = targetSpans(launch.view, launch.space, line);
+  }
+  __syncthreads();
+  const int steps = flightSteps(launch.binMm);
+  const float stepMm = launch.binMm / float(steps);
+  const int each = (launch.binCount + flightThreads - 1) / flightThreads;
+  const int first = min(int(threadIdx.x) * each, launch.binCount);
+  const int last = min(first + each, launch.binCount);
+  double own = 0.0;
+  for (int b = first; b < last; ++b)
+  {
+    float sum = 0.0f;
+    for (int s = 0; s < steps; ++s)
+    {
+      sum += rangePerDepth(launch.view, launch.space, line, spans, (float(b * steps + s) + 0.5f) * stepMm);
+    }
+    own += double(sum * stepMm);
+    rangeMm[b + 1] = float(own);
+  }
+  sums[threadIdx.x] = own;
+  __syncthreads();
+  for (int step = 1; step < flightThreads; step *= 2)
+  {
+    const double before = int(threadIdx.x) >= step ? sums[threadIdx.x - step] : 0.0;
+    __syncthreads();
+    sums[threadIdx.x] += before;
+    __syncthreads();
+  }
+  const double before = sums[threadIdx.x] - own;
+  for (int b = first; b < last; ++b)
+  {
+    rangeMm[b + 1] = float(before + double(rangeMm[b + 1]));
+  }
+  if (threadIdx.x == 0)
+  {
+    rangeMm[0] = 0.0f;
+  }
+  __syncthreads();
+  for (int b = threadIdx.x; b < launch.binCount; b += flightThreads)
+  {
+    const float wanted = float(b) * launch.binMm;
+    launch.depthOffset[std::size_t(blockIdx.x) * launch.binCount + b] =
+      depthOfRange(rangeMm, launch.binCount, launch.binMm, wanted) - wanted;
   }
 }
 

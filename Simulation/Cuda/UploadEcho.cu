@@ -295,13 +295,13 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
 void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
 {
   const double radPerSample = job.radPerMm * job.sampleMm;
-  if (carrier_.size() == std::size_t(job.sumCount) && carrierRadPerSample_ == radPerSample)
+  if (carrier_.size() == std::size_t(job.rangeCount) && carrierRadPerSample_ == radPerSample)
   {
     return;
   }
   std::vector<float2> carrier;
-  carrier.reserve(std::size_t(job.sumCount));
-  for (int s = 0; s < job.sumCount; ++s)
+  carrier.reserve(std::size_t(job.rangeCount));
+  for (int s = 0; s < job.rangeCount; ++s)
   {
     const double phase = job.radPerMm * s * job.sampleMm;
     carrier.push_back({ float(std::cos(phase)), float(-std::sin(phase)) });
@@ -315,6 +315,7 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
 {
   sampleCount_ = job.sampleCount;
   sumCount_ = job.sumCount;
+  rangeCount_ = job.rangeCount;
   half_ = int(job.pulseRe.size() / 2);
   sampleMm_ = job.sampleMm;
   grid_ = makeLineGrid(float(job.sampleMm), job.radPerMm, job.sumCount);
@@ -394,6 +395,11 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
     {
       givenAttenuation_.upload(job.given->attenuationNpPerMHz, stream, traffic);
       given_.attenuation = givenAttenuation_.data();
+    }
+    if (!job.given->depthOffsetMm.empty())
+    {
+      givenDepthOffset_.upload(job.given->depthOffsetMm, stream, traffic);
+      given_.depthOffset = givenDepthOffset_.data();
     }
     given_.binCount = job.given->binCount;
     given_.binMm = job.given->binMm;

@@ -48,7 +48,7 @@ std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan&, std
   return nullptr;
 }
 
-std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob&, const DevicePicture&)
+std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob&, const DevicePicture&, const DeviceTraced*)
 {
   return nullptr;
 }

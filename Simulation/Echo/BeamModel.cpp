@@ -134,7 +134,8 @@ void BeamModel::tabulateReach()
 {
   BeamReachTable table;
   table.stepMm = reachStepMm;
-  const int steps = int(std::ceil(settings_.depthMm / double(reachStepMm))) + 8; // half a pulse deeper, and more
+  const int steps =
+    int(std::ceil(settings_.depthMm * deepestPerRange / double(reachStepMm))) + 8; // half a pulse deeper, and more
   for (int n = 0; n < steps; ++n)
   {
     Vec2f widest(0.0f);

@@ -52,6 +52,7 @@ void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& 
   if (traced.binCount < 1 || !(traced.binMm > 0.0) ||
       traced.intensity.size() != lines.size() * std::size_t(traced.binCount) || traced.echoCount < 0 ||
       !(traced.attenuationNpPerMHz.empty() || traced.attenuationNpPerMHz.size() == traced.intensity.size()) ||
+      !(traced.depthOffsetMm.empty() || traced.depthOffsetMm.size() == traced.intensity.size()) ||
       (traced.echoCount > 0 && !(traced.echoSampleMm > 0.0)) ||
       traced.boundaryEcho.size() != lines.size() * std::size_t(traced.echoCount))
   {
@@ -82,7 +83,7 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   , model(sources.traced ? sources.traced->model : sources.model)
   , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
   , beams(settings, model)
-  , finisher(settings, sources.traced, level ? &*level : nullptr)
+  , finisher(settings, model, sources.traced, level ? &*level : nullptr)
 {
   const bool isAcoustic = model == InterfaceModel::Acoustic;
   if (sources.scene && isAcoustic)

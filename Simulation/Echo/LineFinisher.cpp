@@ -14,7 +14,8 @@ constexpr float darkIntensity = 1e-8f; // -160 dB
 
 } // namespace
 
-LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* traced, const FieldLevel* level)
+LineFinisher::LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced,
+                           const FieldLevel* level)
   : traced_(traced)
   , samples_(settings.sampleCount())
   , sampleMm_(settings.sampleMm())
@@ -26,14 +27,19 @@ LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* trac
     const double phase = radPerMm_ * s * sampleMm_;
     carrierRe_.push_back(float(std::cos(phase)));
     carrierIm_.push_back(float(-std::sin(phase)));
-    if (traced)
-    {
-      // Linear between the centres of the tracer's bins.
-      const double position = std::clamp(s * sampleMm_ / traced->binMm - 0.5, 0.0, double(traced->binCount - 1));
-      const int bin = std::min(int(position), std::max(0, traced->binCount - 2));
-      bin_.push_back(bin);
-      binShare_.push_back(float(position - bin));
-    }
+  }
+  sumCount_ = carrierRe_.size();
+  if (model == InterfaceModel::Acoustic)
+  {
+    sumCount_ = std::size_t(std::ceil(double(sumCount_) * deepestPerRange));
+  }
+  for (std::size_t s = 0; traced && s < sumCount_; ++s)
+  {
+    // Linear between the centres of the tracer's bins.
+    const double position = std::clamp(double(s) * sampleMm_ / traced->binMm - 0.5, 0.0, double(traced->binCount - 1));
+    const int bin = std::min(int(position), std::max(0, traced->binCount - 2));
+    bin_.push_back(bin);
+    binShare_.push_back(float(position - bin));
   }
   if (traced && traced->model == InterfaceModel::Acoustic && !traced->attenuationNpPerMHz.empty())
   {
@@ -47,12 +53,12 @@ LineFinisher::LineFinisher(const EchoSettings& settings, const TracedLines* trac
 
 LineSum LineFinisher::emptySum() const
 {
-  return { std::vector<float>(2 * carrierRe_.size(), 0.0f), float(sampleMm_), radPerMm_ };
+  return { std::vector<float>(2 * sumCount_, 0.0f), float(sampleMm_), radPerMm_ };
 }
 
 float LineFinisher::reachMm(int line) const
 {
-  const double deepest = (samples_ + pulse_.half()) * sampleMm_;
+  const double deepest = double(sumCount_) * sampleMm_;
   if (!traced_)
   {
     return float(deepest);
@@ -90,18 +96,69 @@ bool LineFinisher::sinks(int line) const
   return std::any_of(first, first + traced_->binCount, [](float b) { return b > 0.0f; });
 }
 
-/// B at each sample, as far as it lowers the frequency.
+RangeMap LineFinisher::rangeMap(int line) const
+{
+  if (!traced_ || traced_->depthOffsetMm.empty())
+  {
+    return {};
+  }
+  return { traced_->depthOffsetMm.data() + std::size_t(line) * std::size_t(traced_->binCount), traced_->binCount,
+           float(1.0 / traced_->binMm) };
+}
+
+/// B at each sample of range, as far as it lowers the frequency.
 std::vector<float> LineFinisher::exponents(int line) const
 {
   const float* bins = traced_->attenuationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
   const int step = traced_->binCount > 1 ? 1 : 0;
-  std::vector<float> result(bin_.size());
-  for (std::size_t s = 0; s < bin_.size(); ++s)
+  const RangeMap map = rangeMap(line);
+  std::vector<float> result(carrierRe_.size());
+  for (std::size_t s = 0; s < result.size(); ++s)
   {
-    const float* bin = bins + bin_[s];
-    result[s] = shiftingExponent(*downshift_, bin[0] + (bin[step] - bin[0]) * binShare_[s]);
+    const std::size_t d = std::size_t(depthSample(map, float(sampleMm_), int(s), int(sumCount_)));
+    const float* bin = bins + bin_[d];
+    result[s] = shiftingExponent(*downshift_, bin[0] + (bin[step] - bin[0]) * binShare_[d]);
   }
   return result;
+}
+
+/// In baseband the phases no longer depend on the sample: the pulse is its envelope. Where range is time, what lies
+/// between the depths of two samples of range goes to both, with the phase of where it is shown.
+void LineFinisher::demodulate(int line, const LineSum& sum, float* re, float* im) const
+{
+  const RangeMap map = rangeMap(line);
+  if (!map.offsetMm)
+  {
+    for (std::size_t s = 0; s < carrierRe_.size(); ++s)
+    {
+      const float a = sum.iq[2 * s];
+      const float b = sum.iq[2 * s + 1];
+      re[s] = a * carrierRe_[s] - b * carrierIm_[s];
+      im[s] = a * carrierIm_[s] + b * carrierRe_[s];
+    }
+    return;
+  }
+  const float sampleMm = float(sampleMm_);
+  const float radPerSample = float(radPerMm_ * sampleMm_);
+  for (int s = 0; s < int(carrierRe_.size()); ++s)
+  {
+    const RangeStep step = rangeStep(map, sampleMm, s);
+    const int last = std::min(step.end, int(sumCount_));
+    for (int d = step.first; d < last; ++d)
+    {
+      const float share = step.shareOf(d);
+      const ShownSample shown =
+        shownSample(sum.iq[2 * std::size_t(d)], sum.iq[2 * std::size_t(d) + 1], share * radPerSample,
+                    carrierRe_[std::size_t(s)], carrierIm_[std::size_t(s)]);
+      re[s] += (1.0f - share) * shown.re;
+      im[s] += (1.0f - share) * shown.im;
+      if (s + 1 < int(carrierRe_.size()))
+      {
+        re[s + 1] += share * shown.re;
+        im[s + 1] += share * shown.im;
+      }
+    }
+  }
 }
 
 /// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
@@ -156,17 +213,10 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   {
     std::transform(sum.iq.begin(), sum.iq.end(), surfaces->iq.begin(), sum.iq.begin(), std::plus<float>());
   }
-  // In baseband the phases no longer depend on the sample: the pulse is its envelope. Nothing lies above the first.
-  const std::size_t half = std::size_t(pulse_.half());
+  const std::size_t half = std::size_t(pulse_.half()); // nothing lies above the first sample
   std::vector<float> re(half + carrierRe_.size(), 0.0f);
   std::vector<float> im(half + carrierRe_.size(), 0.0f);
-  for (std::size_t s = 0; s < carrierRe_.size(); ++s)
-  {
-    const float a = sum.iq[2 * s];
-    const float b = sum.iq[2 * s + 1];
-    re[half + s] = a * carrierRe_[s] - b * carrierIm_[s];
-    im[half + s] = a * carrierIm_[s] + b * carrierRe_[s];
-  }
+  demodulate(line, sum, re.data() + half, im.data() + half);
   if (!sinks(line))
   {
     pulse_.convolve(re.data(), im.data(), samples_, iq);

@@ -6,6 +6,7 @@
 #include "Echo/Pulse.h"
 #include "Kernel/Downshift.h"
 #include "Kernel/SurfaceEcho.h"
+#include "Kernel/TimeOfFlight.h"
 
 #include <complex>
 #include <optional>
@@ -13,18 +14,20 @@
 
 namespace sono {
 
-/// Turns a line's scatterer sum into IQ: times the traced intensity, plus the traced boundary echoes (times the level
-/// of the field at their depth, where there is one), convolved with the pulse, whose frequency sinks where the traced
-/// lines attenuate (not in Amadou2024, and not for a pulse from a file). The sum goes half a pulse deeper than the
-/// line, since what lies there still echoes into it.
+/// Turns a line's scatterer sum, by depth, into IQ, by range: times the traced intensity, moved to the range at which a
+/// depth is shown, plus the traced boundary echoes (times the level of the field at their depth, where there is one),
+/// convolved with the pulse, whose frequency sinks where the traced lines attenuate (not in Amadou2024, and not for a
+/// pulse from a file). What is summed by range goes half a pulse deeper than the line, since what lies there still
+/// echoes into it; what is summed by depth as much deeper again as sound may be faster than assumed.
 class LineFinisher
 {
 public:
   /// `traced` may be null (intensity 1, no boundaries); it must outlive this. `level` is that of the settings' field,
   /// null for a Gaussian beam. Throws Error when the sampling cannot carry the pulse.
-  LineFinisher(const EchoSettings& settings, const TracedLines* traced, const FieldLevel* level);
+  LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced, const FieldLevel* level);
 
-  int sumCount() const { return int(carrierRe_.size()); }
+  int sumCount() const { return int(sumCount_); }           ///< samples by depth
+  int rangeCount() const { return int(carrierRe_.size()); } ///< samples by range
   double radPerMm() const { return radPerMm_; }
   const PulseKernel& pulse() const { return pulse_; }
   LineSum emptySum() const;
@@ -40,6 +43,8 @@ public:
 
 private:
   void applyIntensity(int line, LineSum& sum) const;
+  RangeMap rangeMap(int line) const;
+  void demodulate(int line, const LineSum& sum, float* re, float* im) const;
   bool sinks(int line) const;
   std::vector<float> exponents(int line) const;
 
@@ -49,9 +54,10 @@ private:
   double radPerMm_;
   PulseKernel pulse_;
   std::vector<float> boundaryLevel_; // at each sample of the traced echoes; empty: 1
-  std::vector<float> carrierRe_;     // of the demodulation, for each sample of a sum
+  std::size_t sumCount_;
+  std::vector<float> carrierRe_; // of the demodulation, for each sample of range
   std::vector<float> carrierIm_;
-  std::vector<int> bin_; // of the traced intensity before each sample, and the share of the one behind it
+  std::vector<int> bin_; // of the traced intensity before each sample of depth, and the share of the one behind it
   std::vector<float> binShare_;
   std::optional<Downshift> downshift_; // nothing where the frequency stays
 };

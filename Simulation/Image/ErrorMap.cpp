@@ -1,35 +1,41 @@
 #include "Image/ErrorMap.h"
 
+#include "Kernel/TimeOfFlight.h"
+
 #include <algorithm>
 
 namespace sono {
 
 namespace {
 
-/// Percent of the intensity, by line and bin.
-std::vector<float> errorPercent(const std::vector<float>& intensity, const std::vector<float>& standardError)
+float errorPercent(float intensity, float standardError)
 {
-  std::vector<float> percent(intensity.size());
-  for (std::size_t i = 0; i < percent.size(); ++i)
-  {
-    percent[i] = intensity[i] > 0.0f ? std::min(100.0f, 100.0f * standardError[i] / intensity[i]) : 100.0f;
-  }
-  return percent;
+  return intensity > 0.0f ? std::min(100.0f, 100.0f * standardError / intensity) : 100.0f;
 }
 
-/// Scan conversion takes the first sample to lie at depth 0, but a bin's value stands for its middle. So the bins are
-/// sampled twice as finely: the odd samples are the bins, the even ones lie between two.
-std::vector<float> betweenBins(const std::vector<float>& bins, int binCount)
+/// Percent of the intensity, by line and range, at multiples of half a bin: a bin's value stands for its middle.
+std::vector<float> errorsByRange(const TracedLines& traced)
 {
-  std::vector<float> samples(2 * bins.size());
-  for (std::size_t first = 0; first < bins.size(); first += std::size_t(binCount))
+  const std::size_t bins = std::size_t(traced.binCount);
+  const float binMm = float(traced.binMm);
+  std::vector<float> percent(traced.intensity.size());
+  std::transform(traced.intensity.begin(), traced.intensity.end(), traced.standardError.begin(), percent.begin(),
+                 errorPercent);
+  std::vector<float> samples(2 * percent.size());
+  for (std::size_t line = 0; line < std::size_t(traced.lineCount); ++line)
   {
-    const float* from = bins.data() + first;
-    float* to = samples.data() + 2 * first;
-    for (int bin = 0; bin < binCount; ++bin)
+    const float* from = percent.data() + line * bins;
+    float* to = samples.data() + 2 * line * bins;
+    const RangeMap map{ traced.depthOffsetMm.empty() ? nullptr : traced.depthOffsetMm.data() + line * bins,
+                        traced.binCount, 1.0f / binMm };
+    for (std::size_t s = 0; s < 2 * bins; ++s)
     {
-      to[2 * bin] = 0.5f * (from[std::max(0, bin - 1)] + from[bin]);
-      to[2 * bin + 1] = from[bin];
+      const float rangeMm = 0.5f * binMm * float(s);
+      const float depthMm = map.offsetMm ? map.depthOf(rangeMm) : rangeMm;
+      const float position = std::clamp(depthMm / binMm - 0.5f, 0.0f, float(traced.binCount - 1));
+      const std::size_t bin = std::size_t(position);
+      const std::size_t next = std::min(bin + 1, bins - 1);
+      to[s] = from[bin] + (position - float(bin)) * (from[next] - from[bin]);
     }
   }
   return samples;
@@ -37,19 +43,15 @@ std::vector<float> betweenBins(const std::vector<float>& bins, int binCount)
 
 } // namespace
 
-PlaneImage errorPlane(const ScanGeometry& geometry, const std::vector<float>& intensity,
-                      const std::vector<float>& standardError, int binCount, double binMm, double pixelMm)
+PlaneImage errorPlane(const ScanGeometry& geometry, const TracedLines& traced, double pixelMm)
 {
-  return scanConvert(geometry, betweenBins(errorPercent(intensity, standardError), binCount), 2 * binCount, binMm / 2.0,
-                     pixelMm);
+  return scanConvert(geometry, errorsByRange(traced), 2 * traced.binCount, traced.binMm / 2.0, pixelMm);
 }
 
-VolumeImage errorVolume(const ScanGeometry& geometry, const std::vector<float>& intensity,
-                        const std::vector<float>& standardError, int binCount, double binMm, double voxelMm,
+VolumeImage errorVolume(const ScanGeometry& geometry, const TracedLines& traced, double voxelMm,
                         const Progress& progress)
 {
-  return scanConvertVolume(geometry, betweenBins(errorPercent(intensity, standardError), binCount), 2 * binCount,
-                           binMm / 2.0, voxelMm, progress);
+  return scanConvertVolume(geometry, errorsByRange(traced), 2 * traced.binCount, traced.binMm / 2.0, voxelMm, progress);
 }
 
 } // namespace sono

@@ -6,57 +6,92 @@ namespace sono {
 
 namespace {
 
-/// Rows along the lateral axis, numbered over elevation and depth; minMm is (lateral, elevational, axial).
-std::vector<LabelRow> rowsOf(const LabelVolume& labels, const ProbePose& pose, const Vec3i& size, const Vec3d& minMm,
-                             double stepMm)
+/// The voxel index of a place in the probe's frame, (lateral, elevational, axial) mm.
+class IndexInLabels
 {
-  const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
-  const auto indexAt = [&](const Vec3d& p) {
-    return labels.placement.indexFromWorld(pose.positionMm + p.x * pose.lateral + p.y * elevation + p.z * pose.axial);
-  };
-  std::vector<LabelRow> rows(std::size_t(size.y) * std::size_t(size.z));
-  for (int row = 0; row < size.y * size.z; ++row)
+public:
+  IndexInLabels(const LabelVolume& labels, const ProbePose& pose)
+    : labels_(labels)
+    , pose_(pose)
+    , elevation_(glm::cross(pose.axial, pose.lateral))
   {
-    const Vec3d first = minMm + stepMm * Vec3d(0.0, row % size.y, row / size.y);
-    const Vec3d start = indexAt(first);
-    rows[std::size_t(row)] = { start, indexAt(first + Vec3d(stepMm, 0.0, 0.0)) - start };
+  }
+  Vec3d at(const Vec3d& p) const
+  {
+    return labels_.placement.indexFromWorld(pose_.positionMm + p.x * pose_.lateral + p.y * elevation_ +
+                                            p.z * pose_.axial);
+  }
+
+private:
+  const LabelVolume& labels_;
+  const ProbePose& pose_;
+  Vec3d elevation_;
+};
+
+} // namespace
+
+std::vector<LabelRow> labelRows(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout)
+{
+  const IndexInLabels index(labels, pose);
+  std::vector<LabelRow> rows(std::size_t(layout.height));
+  for (int row = 0; row < layout.height; ++row)
+  {
+    const Vec3d first(layout.lateralMinMm, 0.0, layout.axialMinMm + layout.pixelMm * row);
+    const Vec3d start = index.at(first);
+    rows[std::size_t(row)] = { start, index.at(first + Vec3d(layout.pixelMm, 0.0, 0.0)) - start,
+                               index.at(first + Vec3d(0.0, 0.0, 1.0)) - start };
   }
   return rows;
 }
 
-std::vector<std::uint16_t> slice(const LabelVolume& labels, const std::vector<LabelRow>& rows, int width,
-                                 const std::vector<std::uint8_t>& mask)
+std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
+                                       const PlaneImage& image, const DepthOffsets& offsets)
 {
-  std::vector<std::uint16_t> out(mask.size(), 0);
-  parallelFor(int(rows.size()), {}, [&](int row) {
-    const std::size_t at = std::size_t(row) * std::size_t(width);
-    for (int n = 0; n < width; ++n)
+  const std::vector<LabelRow> rows = labelRows(labels, pose, image);
+  const PlaneScan scan =
+    offsets.any() ? planeScan(geometry, offsets.binCount, offsets.binMm, image.pixelMm) : PlaneScan{};
+  std::vector<std::uint16_t> out(image.mask.size(), 0);
+  parallelFor(image.height, {}, [&](int j) {
+    const std::size_t at = std::size_t(j) * std::size_t(image.width);
+    for (int i = 0; i < image.width; ++i)
     {
-      if (mask[at + std::size_t(n)])
+      if (image.mask[at + std::size_t(i)])
       {
-        out[at + std::size_t(n)] = labelAt(rows[std::size_t(row)], n, labels.voxels.data(), labels.placement.size);
+        const LabelShift shift = offsets.any() ? labelShift(scan, offsets.mm->data(), scan.lateralMm(i),
+                                                            scan.beams.axialFromCentre(scan.axialMm(j)))
+                                               : LabelShift{};
+        out[at + std::size_t(i)] = labelAt(rows[std::size_t(j)], i, shift, labels.voxels.data(), labels.placement.size);
       }
     }
   });
   return out;
 }
 
-} // namespace
-
-std::vector<LabelRow> labelRows(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout)
+std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
+                                       const VolumeImage& image, const DepthOffsets& offsets)
 {
-  return rowsOf(labels, pose, { layout.width, 1, layout.height }, { layout.lateralMinMm, 0.0, layout.axialMinMm },
-                layout.pixelMm);
-}
-
-std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& image)
-{
-  return slice(labels, labelRows(labels, pose, image), image.width, image.mask);
-}
-
-std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ProbePose& pose, const VolumeImage& image)
-{
-  return slice(labels, rowsOf(labels, pose, image.size, image.minMm, image.voxelMm), image.size.x, image.mask);
+  const IndexInLabels index(labels, pose);
+  const VolumeImage shift = offsets.any()
+                              ? scanConvertVolume(geometry, *offsets.mm, offsets.binCount, offsets.binMm, image.voxelMm)
+                              : VolumeImage{};
+  std::vector<std::uint16_t> out(image.mask.size(), 0);
+  parallelFor(image.size.y * image.size.z, {}, [&](int row) {
+    const std::size_t at = std::size_t(row) * std::size_t(image.size.x);
+    for (int i = 0; i < image.size.x; ++i)
+    {
+      if (image.mask[at + std::size_t(i)])
+      {
+        Vec3d place = image.minMm + image.voxelMm * Vec3d(i, row % image.size.y, row / image.size.y);
+        const double fromApex = glm::length(place);
+        if (offsets.any() && fromApex > 0.0)
+        {
+          place *= 1.0 + double(shift.value[at + std::size_t(i)]) / fromApex;
+        }
+        out[at + std::size_t(i)] = labelAtIndex(index.at(place), labels.voxels.data(), labels.placement.size);
+      }
+    }
+  });
+  return out;
 }
 
 } // namespace sono

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/HostDevice.h"
+#include "Kernel/PlaneScan.h"
 #include "Kernel/Vec.h"
 
 #include <cmath>
@@ -14,30 +14,60 @@ struct LabelRow
 {
   Vec3d start;
   Vec3d step;
+  Vec3d perAxialMm; ///< what a millimetre along the probe's axis adds to the index
+};
+
+/// How far from its pixel lies what is shown there.
+struct LabelShift
+{
+  double pixels = 0.0; ///< along the row
+  double axialMm = 0.0;
 };
 
 /// start + n step, rounded twice on every device, so that all pick the same voxel.
-SONO_HD inline double alongRow(double start, double step, int n)
+SONO_HD inline double alongRow(double start, double step, double n)
 {
 #if defined(__CUDA_ARCH__)
-  return __dadd_rn(start, __dmul_rn(double(n), step));
+  return __dadd_rn(start, __dmul_rn(n, step));
 #else
-  return start + double(n) * step;
+  return start + n * step;
 #endif
 }
 
 /// The label of the nearest voxel, i fastest; 0 outside of the grid.
-SONO_HD inline std::uint16_t labelAt(const LabelRow& row, int n, const std::uint16_t* voxels, const Vec3i& size)
+SONO_HD inline std::uint16_t labelAtIndex(const Vec3d& index, const std::uint16_t* voxels, const Vec3i& size)
 {
-  const double x = floor(alongRow(row.start.x, row.step.x, n) + 0.5);
-  const double y = floor(alongRow(row.start.y, row.step.y, n) + 0.5);
-  const double z = floor(alongRow(row.start.z, row.step.z, n) + 0.5);
+  const double x = floor(index.x + 0.5);
+  const double y = floor(index.y + 0.5);
+  const double z = floor(index.z + 0.5);
   if (!(x >= 0.0 && x < size.x && y >= 0.0 && y < size.y && z >= 0.0 && z < size.z))
   {
     return 0;
   }
   const std::size_t plane = std::size_t(z) * std::size_t(size.y) + std::size_t(y);
   return voxels[plane * std::size_t(size.x) + std::size_t(x)];
+}
+
+SONO_HD inline std::uint16_t labelAt(const LabelRow& row, int n, const LabelShift& shift, const std::uint16_t* voxels,
+                                     const Vec3i& size)
+{
+  Vec3d index;
+  for (int a = 0; a < 3; ++a)
+  {
+    index[a] = alongRow(row.start[a], row.step[a], double(n) + shift.pixels);
+    index[a] = alongRow(index[a], row.perAxialMm[a], shift.axialMm);
+  }
+  return labelAtIndex(index, voxels, size);
+}
+
+/// How far from a pixel, `x` as PlaneBeams::axialFromCentre, lies what is shown there.
+SONO_HD inline LabelShift labelShift(const PlaneScan& scan, const float* offsetMm, float lateralMm, float x)
+{
+  float lateral;
+  float axial;
+  scan.beams.directionAt(lateralMm, x, lateral, axial);
+  const float mm = scan.levelAt(offsetMm, lateralMm, x);
+  return { double(mm * lateral) / scan.pixelMm, double(mm * axial) };
 }
 
 } // namespace sono

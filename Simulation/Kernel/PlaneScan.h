@@ -54,6 +54,13 @@ struct PlaneBeams
     const float turned = fastAtan2(depthMm * sine, notZero(faceRadiusMm + depthMm * cosine));
     line = lineOfFan(lateralMm, notZero(x)) - turned * linesPerUnit;
   }
+  /// Unit direction of the unsteered line through a place.
+  SONO_HD void directionAt(float lateralMm, float x, float& lateral, float& axial) const
+  {
+    const float length = sqrtf(lateralMm * lateralMm + x * x);
+    lateral = parallel || length == 0.0f ? 0.0f : lateralMm / length;
+    axial = parallel || length == 0.0f ? 1.0f : x / length;
+  }
   bool operator==(const PlaneBeams& other) const
   {
     return parallel == other.parallel && faceRadiusMm == other.faceRadiusMm && centreAxialMm == other.centreAxialMm &&
@@ -136,6 +143,21 @@ struct PlaneScan
   SONO_HD std::size_t valueCount() const
   {
     return std::size_t(fanCount) * std::size_t(lineCount) * std::size_t(sampleCount);
+  }
+
+  /// Of a place, `x` as axialFromCentre: 0 where it is not scanned.
+  SONO_HD float levelAt(const float* values, float lateral, float x) const
+  {
+    float level = 0.0f;
+    if (fanCount > 1)
+    {
+      compound(values, lateral, x, level);
+      return level;
+    }
+    float line;
+    float depth;
+    beams.beamAt(lateral, x, line, depth);
+    return area.contains(line, depth) ? samples(values).at(line, depth * samplesPerMm) : 0.0f;
   }
 
   /// Of a place within the area: the mean over the fans that see it, in `level`, where `values` is not null. Whether

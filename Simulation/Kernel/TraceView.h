@@ -14,6 +14,7 @@ struct TraceMedium
 {
   float impedance = 1.5f;  ///< MRayl
   float speed = 1540.0f;   ///< m/s
+  float rangePerMm = 1.0f; ///< c0 / c: what a millimetre counts where range is time; 1 where it is not
   float decayPerMm = 0.0f; ///< k: intensity falls by exp(-k l)
   float tau = 1.0f;
   float gamma = 0.0f;

@@ -4,6 +4,7 @@
 #include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Kernel/NanoSpace.h"
+#include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
 #include "Trace/Deposit.h"
 #include "Trace/TraceSetup.h"
@@ -26,9 +27,44 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
   {
     const auto meanOf = [&](int batch) { return batches[std::size_t(batch)][b]; };
     const BinArrays bin = finishBin(shared[b], int(batches.size()), meanOf, binSumsOf(out.model), frequencyMHz);
-    const float* value = bin.of;
     const std::size_t at = std::size_t(line) * std::size_t(out.binCount) + b;
-    TracedLines::visitBins(out, [&](std::vector<float>& values, const char*) { values[at] = *value++; });
+    out.intensity[at] = bin.of[intensityArray];
+    out.standardError[at] = bin.of[standardErrorArray];
+    out.attenuationNpPerMHz[at] = bin.of[attenuationArray];
+  }
+}
+
+/// Where the line's axis leads, by time.
+template<class Space>
+void findDepthOffsets(const Space& space, const TraceSetup& setup, int line, TracedLines& out)
+{
+  if (out.depthOffsetMm.empty())
+  {
+    return;
+  }
+  const TraceView& view = setup.view;
+  const TraceLine& axis = setup.lines[std::size_t(line)];
+  const float binMm = float(out.binMm);
+  const int steps = flightSteps(binMm);
+  const float stepMm = binMm / float(steps);
+  const TargetSpans spans = targetSpans(view, space, axis);
+  std::vector<float> rangeMm(std::size_t(out.binCount) + 1, 0.0f);
+  double range = 0.0;
+  for (int b = 0; b < out.binCount; ++b)
+  {
+    float sum = 0.0f;
+    for (int s = 0; s < steps; ++s)
+    {
+      sum += rangePerDepth(view, space, axis, spans, (float(b * steps + s) + 0.5f) * stepMm);
+    }
+    range += double(sum * stepMm);
+    rangeMm[std::size_t(b) + 1] = float(range);
+  }
+  float* offset = out.depthOffsetMm.data() + std::size_t(line) * std::size_t(out.binCount);
+  for (int b = 0; b < out.binCount; ++b)
+  {
+    const float wanted = float(b) * binMm;
+    offset[b] = depthOfRange(rangeMm.data(), out.binCount, binMm, wanted) - wanted;
   }
 }
 
@@ -37,6 +73,7 @@ template<class Space>
 inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
                         LineTally& tally, TracedLines& out)
 {
+  findDepthOffsets(space, setup, index, out);
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
@@ -137,8 +174,12 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   const Progress tracing = partOf(progress, 0.3, 1.0);
   TracedLines out = tracedLayout(int(lines.size()), settings, targets);
   TracedLines::visitArrays(out, [&out](auto& values, const char*, TracedAxis axis) {
-    values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::Bins ? out.binCount : out.echoCount), {});
+    values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::EchoSamples ? out.echoCount : out.binCount), {});
   });
+  if (!settings.rangeIsTime())
+  {
+    out.depthOffsetMm.clear();
+  }
 
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
     return LineTally(out.binCount, out.binMm, binSumsOf(settings.model), out.echoCount, out.echoSampleMm,

@@ -16,7 +16,8 @@ namespace sono {
 /// Where the values of a traced array lie along a line.
 enum class TracedAxis
 {
-  Bins,
+  Bins,      ///< of depth
+  RangeBins, ///< as many, by range; none where range is depth
   EchoSamples
 };
 
@@ -29,20 +30,24 @@ struct TracedLines
   InterfaceModel model = InterfaceModel::Acoustic; ///< what it was traced with; boundaries echo in Amadou2024 alone
   int lineCount = 0;
   int binCount = 0;
-  double binMm = 0.0;               ///< bin b covers [b, b+1) * binMm
+  double binMm = 0.0;               ///< bin b covers [b, b+1) * binMm of depth
   std::vector<float> intensity;     ///< lineCount x binCount
   std::vector<float> standardError; ///< lineCount x binCount
   /// lineCount x binCount: the two-way exponent of the amplitude per MHz, B in exp(-B f), mean over the paths weighted
   /// as the intensity is; 0 where nothing arrives, and in Amadou2024, whose pulse keeps its frequency. Empty: not
   /// known.
   std::vector<float> attenuationNpPerMHz;
+  /// lineCount x binCount: depth less range in mm, of what lies on the line's axis and is shown at the range b binMm,
+  /// straight in between (Data/docs/physics.md 13.1). Empty: range is depth, as in Amadou2024.
+  std::vector<float> depthOffsetMm;
   int echoCount = 0;                                         ///< 0 for Acoustic
   double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho;             ///< lineCount x echoCount
   std::uint64_t segments = 0;                                ///< path segments traced
   std::shared_ptr<const std::vector<TargetSurface>> targets; ///< that it was traced with; null: none
 
-  /// The arrays of bins with the names that they have in a pipeline, in the order of BinArray (Trace/TracedBin.h).
+  /// The arrays of bins that paths leave, with the names that they have in a pipeline, in the order of BinArray
+  /// (Trace/TracedBin.h).
   template<class Self, class Visitor>
   static void visitBins(Self& self, Visitor&& visitor)
   {
@@ -55,6 +60,7 @@ struct TracedLines
   static void visitArrays(Self& self, Visitor&& visitor)
   {
     visitBins(self, [&](auto& values, const char* name) { visitor(values, name, TracedAxis::Bins); });
+    visitor(self.depthOffsetMm, "DepthOffsetMm", TracedAxis::RangeBins);
     visitor(self.boundaryEcho, "BoundaryEcho", TracedAxis::EchoSamples);
   }
 };

@@ -26,7 +26,7 @@ bool TraceSettings::startApart() const
 
 int TraceSettings::binCount() const
 {
-  return int(std::ceil(depthMm / radialBinMm - 1e-9));
+  return int(std::ceil(pathDepthMm() / radialBinMm - 1e-9));
 }
 
 int TraceSettings::echoCount() const

@@ -2,6 +2,7 @@
 
 #include "Core/Device.h"
 #include "Core/Parameters.h"
+#include "Core/SoundSpeed.h"
 #include "Kernel/Interface.h"
 #include "Probe/ScanGeometry.h"
 
@@ -105,7 +106,12 @@ struct TraceSettings
   /// Whether each path starts at a place of its own on the aperture and aims at the focus (Data/docs/physics.md 3.1):
   /// otherwise, and always in Amadou2024 and without chance, all start at the line's origin, along its axis.
   bool startApart() const;
-  /// Samples of the intensity and of the boundary echoes along a line.
+  /// Whether what an echo's time says is its range, with the speed of every tissue on the way: otherwise, in
+  /// Amadou2024, its depth along the line.
+  bool rangeIsTime() const { return model == InterfaceModel::Acoustic; }
+  /// How deep paths are followed, mm: what is shown within the depth may lie deeper.
+  double pathDepthMm() const { return rangeIsTime() ? depthMm * deepestPerRange : depthMm; }
+  /// Samples of the intensity, to the paths' depth, and of the boundary echoes, to the image's, along a line.
   int binCount() const;
   int echoCount() const; ///< 0 for Acoustic, whose surfaces echo by themselves
 };

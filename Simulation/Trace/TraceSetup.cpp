@@ -1,6 +1,7 @@
 #include "Trace/TraceSetup.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/SoundSpeed.h"
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TracePath.h"
 #include "Probe/BeamAperture.h"
@@ -13,11 +14,13 @@ namespace sono {
 
 namespace {
 
-TraceMedium makeMedium(const Tissue& tissue, double frequencyMHz)
+TraceMedium makeMedium(const Tissue& tissue, const TraceSettings& settings)
 {
+  const double frequencyMHz = settings.frequencyMHz;
   TraceMedium m;
   m.impedance = float(tissue.impedanceMRayl);
   m.speed = float(tissue.soundSpeedMPerS);
+  m.rangePerMm = settings.rangeIsTime() ? float(1000.0 * assumedSoundSpeedMmPerUs / tissue.soundSpeedMPerS) : 1.0f;
   // Intensity falls by 10^(-a f l / 10), l in cm.
   m.decayPerMm = float(tissue.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0);
   m.tau = float(tissue.tau);
@@ -87,7 +90,7 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.perElevationFocus = float(spread.perElevationFocus);
   view.maxCollisions = settings.maxCollisions;
   view.coherenceMm = float(settings.coherenceMm);
-  view.depthMm = float(settings.depthMm);
+  view.depthMm = float(settings.pathDepthMm());
   // The deterministic path has nothing to play with.
   view.rouletteIntensity = settings.deterministic ? 0.0f : float(std::pow(10.0, settings.rouletteDb / 20.0));
   view.seed = settings.seed;
@@ -98,7 +101,7 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
 
 VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
 {
-  const double depthMm = settings.depthMm;
+  const double depthMm = settings.pathDepthMm();
   const StartSpread spread = startSpread(settings);
   const double tilt =
     std::atan(std::hypot(spread.lateralMm * spread.perTransmitFocus, spread.elevationalMm * spread.perElevationFocus));
@@ -167,12 +170,12 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   targets = std::make_unique<TargetScene>(localTriangles(targetSurfaces, toLocal, cornerWorldMm));
   for (const Tissue& tissue : scene.tissues())
   {
-    media.push_back(makeMedium(tissue, settings.frequencyMHz));
+    media.push_back(makeMedium(tissue, settings));
   }
   for (const TargetSurface& target : targetSurfaces)
   {
     TissueTable().add(target.tissue); // checks the ranges
-    media.push_back(makeMedium(target.tissue, settings.frequencyMHz));
+    media.push_back(makeMedium(target.tissue, settings));
   }
   if (settings.march == March::NanoVDB)
   {

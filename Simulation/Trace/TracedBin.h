@@ -45,18 +45,20 @@ SONO_HD inline float binFactor(int sum, const BeamSegment& g, float x, float per
   }
 }
 
-/// The values of a bin, in the order of TracedLines::visitBins.
+/// The values of a bin, in the order of TracedLines::visitBins: what paths leave, and what the line's axis says.
 enum BinArray
 {
   intensityArray,
   standardErrorArray,
   attenuationArray,
+  pathArrayCount,
+  depthOffsetArray = pathArrayCount,
   binArrayCount
 };
 
 struct BinArrays
 {
-  float of[binArrayCount];
+  float of[pathArrayCount];
 };
 
 /// Of the first `sums` sums (binSumsOf): of what all paths of a line leave and, for each of the batches, the mean of

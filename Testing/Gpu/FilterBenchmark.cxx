@@ -119,7 +119,7 @@ void measure(sono::Device device)
   {
     const double bareMs = wallMs([&] {
       input.settings.tracing.seed = input.settings.echo.seed = std::uint64_t(10 + i);
-      picture = simulator.picture(simulator.image(input), input.pose, true);
+      picture = simulator.picture(simulator.image(input), input.settings.geometry, input.pose, simulator.traced(input));
     });
     const double throughMs = wallMs([&] {
       ultrasound->GetRayTracer()->SetPathSeed(10 + i);

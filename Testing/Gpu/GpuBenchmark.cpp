@@ -151,7 +151,7 @@ void measureImage(Simulator& simulator, const Ceilings& ceilings)
   DeviceTimes before{};
   const auto image = [&] {
     ++input.settings.tracing.seed;
-    simulator.picture(simulator.image(input), input.pose, false);
+    simulator.picture(simulator.image(input));
   };
   for (int i = 0; i < repeats; ++i)
   {
@@ -177,7 +177,7 @@ void measureImage(Simulator& simulator, const Ceilings& ceilings)
         medianWallMs(repeats,
                      [&] {
                        input.settings.bmode.gainDb += 0.01;
-                       simulator.picture(simulator.image(input), input.pose, false);
+                       simulator.picture(simulator.image(input));
                      }),
         "ms");
   print("gpu_image_uploaded_kb", double(last.uploadedBytes - before.uploadedBytes) * 1e-3, "kB");

@@ -222,7 +222,7 @@ TEST(GpuAcoustic, ASweepShowsTargets)
   };
   Simulator alone(borrowed(scene.get()));
   const ImageInput input{ pose, s, targets, nullptr };
-  const ScanPicture picture = alone.picture(alone.image(input), pose, false);
+  const ScanPicture picture = alone.picture(alone.image(input));
   const std::vector<std::uint8_t> swept = pictures(targets);
   ASSERT_EQ(swept.size(), picture.grey.size);
   int differing = 0;

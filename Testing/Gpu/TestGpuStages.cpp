@@ -218,7 +218,8 @@ TEST(GpuStages, WholeImagesAndSweeps)
       EXPECT_EQ(pictures.firstPose + n, seen);
       Simulator alone(borrowed(&thorax()));
       const ImageInput input{ poses[std::size_t(seen)], s, {}, nullptr };
-      const ScanPicture picture = alone.picture(alone.image(input), input.pose, true);
+      const ScanPicture picture =
+        alone.picture(alone.image(input), input.settings.geometry, input.pose, alone.traced(input));
       const std::size_t first = std::size_t(n) * picture.grey.size;
       int differing = 0;
       for (std::size_t p = 0; p < picture.grey.size; ++p)
@@ -241,14 +242,16 @@ TEST(GpuStages, APictureIsItsLevelsInBytesAndHasTheCpusLabels)
   input.settings.setDevice(Device::Cuda);
   Simulator simulator(borrowed(&thorax()));
   const ImageResult image = simulator.image(input);
-  const ScanPicture picture = simulator.picture(image, input.pose, true);
+  const ScanPicture picture = simulator.picture(image, input.settings.geometry, input.pose, simulator.traced(input));
+  const TracedLines& traced = simulator.traced(input).host();
   const PlaneImage& levels = image.plane().host(); // which WholeImagesAndSweeps holds against the CPU's
   const auto same = [](const auto& span, const auto& expected) {
     return std::vector<std::decay_t<decltype(expected[0])>>(span.begin(), span.end()) == expected;
   };
   EXPECT_TRUE(same(picture.mask, levels.mask));
   EXPECT_TRUE(same(picture.grey, greyBytes(levels.value, levels.mask)));
-  EXPECT_TRUE(same(picture.labels, sliceLabels(thorax().volume(), input.pose, levels)));
+  EXPECT_TRUE(same(picture.labels, sliceLabels(thorax().volume(), input.settings.geometry, input.pose, levels,
+                                               { &traced.depthOffsetMm, traced.binCount, traced.binMm })));
 }
 
 TEST(GpuStages, HandlesStayWhatTheyWere)

@@ -66,7 +66,7 @@ TEST(LabelSlice, EveryPixelCarriesTheVoxelItLiesIn)
     geometry.depthMm = 60.0;
     geometry.radiusMm = 10.0;
     const PlaneImage image = scanConvert(geometry, std::vector<float>(128, 1.0f), 1, 60.0, 0.43);
-    const auto labels = sliceLabels(volume, pose, image);
+    const auto labels = sliceLabels(volume, geometry, pose, image);
     ASSERT_EQ(labels.size(), image.value.size());
     std::set<std::uint16_t> seen;
     for (std::size_t n = 0; n < labels.size(); ++n)
@@ -93,7 +93,7 @@ TEST(LabelSlice, LinesPassThroughTheLabelsOfTheirPixels)
   geometry.radiusMm = 2.0;
   geometry.depthMm = 20.0;
   const PlaneImage image = scanConvert(geometry, std::vector<float>(128, 1.0f), 1, 20.0, 0.05);
-  const auto labels = sliceLabels(volume, pose, image);
+  const auto labels = sliceLabels(volume, geometry, pose, image);
   int agreeing = 0;
   int all = 0;
   for (const ScanLine& line : makeScanLines(geometry, pose))
@@ -122,7 +122,7 @@ TEST(LabelSlice, MatrixVolumes)
   geometry.elevationLineCount = 6;
   geometry.depthMm = 40.0;
   const VolumeImage image = scanConvertVolume(geometry, std::vector<float>(48, 1.0f), 1, 40.0, 1.1);
-  const auto labels = sliceLabels(volume, pose, image);
+  const auto labels = sliceLabels(volume, geometry, pose, image);
   ASSERT_EQ(labels.size(), image.value.size());
   const Vec3d elevation = glm::cross(pose.axial, pose.lateral);
   std::size_t n = 0;

@@ -103,8 +103,9 @@ TEST(Simulator, GivesWhatTheStagesGiveToTheBit)
   EXPECT_EQ(handles.image.plane().host().value, image.value);
   EXPECT_EQ(handles.image.plane().host().mask, image.mask);
 
-  const ScanPicture picture = simulator.picture(handles.image, input.pose, true);
-  const auto labels = sliceLabels(busyScene()->volume(), input.pose, image);
+  const ScanPicture picture = simulator.picture(handles.image, input.settings.geometry, input.pose, handles.traced);
+  const auto labels = sliceLabels(busyScene()->volume(), s.geometry, input.pose, image,
+                                  { &traced.depthOffsetMm, traced.binCount, traced.binMm });
   EXPECT_EQ(std::vector<std::uint16_t>(picture.labels.begin(), picture.labels.end()), labels);
   EXPECT_EQ(std::vector<std::uint8_t>(picture.mask.begin(), picture.mask.end()), image.mask);
   ASSERT_EQ(picture.grey.size, image.value.size());
@@ -120,8 +121,8 @@ TEST(Simulator, TheSameSettingsGiveTheSameHandles)
   Simulator simulator(busyScene());
   const Handles first = ask(simulator, smallInput());
   EXPECT_EQ(changed(first, ask(simulator, smallInput())), "");
-  const ScanPicture one = simulator.picture(first.image, {}, false);
-  EXPECT_EQ(simulator.picture(first.image, {}, false).grey.data, one.grey.data);
+  const ScanPicture one = simulator.picture(first.image);
+  EXPECT_EQ(simulator.picture(first.image).grey.data, one.grey.data);
 }
 
 TEST(Simulator, AChangeRunsTheStagesThatItConcerns)
@@ -216,11 +217,11 @@ TEST(Simulator, HandlesOutliveWhatIsMadeNext)
   ImageInput input = smallInput();
   const Handles first = ask(simulator, input);
   const std::vector<float> value = first.image.plane().host().value;
-  const ScanPicture picture = simulator.picture(first.image, input.pose, false);
+  const ScanPicture picture = simulator.picture(first.image);
   const std::vector<std::uint8_t> grey(picture.grey.begin(), picture.grey.end());
   input.settings.tracing.seed = 2;
   const Handles second = ask(simulator, input);
-  simulator.picture(second.image, input.pose, false);
+  simulator.picture(second.image);
   EXPECT_NE(second.image.plane().host().value, value);
   EXPECT_EQ(first.image.plane().host().value, value);
   EXPECT_EQ(std::vector<std::uint8_t>(picture.grey.begin(), picture.grey.end()), grey);
@@ -287,7 +288,7 @@ TEST(Simulator, ASweepGivesThePicturesOfItsPoses)
         Simulator alone(busyScene());
         ImageInput one = input;
         one.pose = poses[std::size_t(seen)];
-        const ScanPicture picture = alone.picture(alone.image(one), one.pose, true);
+        const ScanPicture picture = alone.picture(alone.image(one), one.settings.geometry, one.pose, alone.traced(one));
         const std::size_t first = std::size_t(n) * picture.grey.size;
         EXPECT_TRUE(std::equal(picture.grey.begin(), picture.grey.end(), pictures.grey + first)) << seen;
         EXPECT_TRUE(std::equal(picture.labels.begin(), picture.labels.end(), pictures.labels + first)) << seen;
@@ -411,7 +412,7 @@ TEST(Simulator, SweepsWithTheComputedBeamAsItImages)
   input.settings.echo.beam = BeamForm::Computed;
   input.settings.matchStages();
   Simulator simulator(busyScene());
-  const ScanPicture alone = simulator.picture(simulator.image(input), input.pose, false);
+  const ScanPicture alone = simulator.picture(simulator.image(input));
   std::vector<std::uint8_t> swept;
   simulator.sweep({ input.pose }, input.settings, false,
                   [&](const SweptPictures& p) { swept.assign(p.grey, p.grey + alone.grey.size); });

@@ -204,7 +204,7 @@ void drawParameters(Output& output, const HeartView& base, const std::string& na
     const PlaneImage plane = scanConvert(base.geometry, grey.grey, grey.sampleCount, grey.sampleMm, pixelMm);
     if (panels.empty())
     {
-      panels.push_back(pictureOfLabels(volume, pose, plane));
+      panels.push_back(pictureOfLabels(volume, base.geometry, pose, plane));
     }
     panels.push_back(pictureOf(plane));
     const auto against = [&](const std::string& label, double fromMm) {
@@ -273,7 +273,7 @@ Picture pictureOfView(const ObjectView& view, bool labels)
   const BModeLines grey =
     makeBMode(view.rf.envelope(), view.rf.lineCount, view.rf.sampleCount, view.rf.sampleMm, view.imaging.bmode);
   const PlaneImage plane = scanConvert(view.imaging.geometry, grey.grey, grey.sampleCount, grey.sampleMm, 0.5);
-  return labels ? pictureOfLabels(view.scene->volume(), ProbePose{}, plane) : pictureOf(plane);
+  return labels ? pictureOfLabels(view.scene->volume(), view.imaging.geometry, ProbePose{}, plane) : pictureOf(plane);
 }
 
 void drawArtefacts(Output& output)

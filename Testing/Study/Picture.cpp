@@ -61,9 +61,10 @@ Picture pictureOf(const PlaneImage& grey)
   return picture;
 }
 
-Picture pictureOfLabels(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout)
+Picture pictureOfLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
+                        const PlaneImage& layout)
 {
-  const std::vector<std::uint16_t> ids = sliceLabels(labels, pose, layout);
+  const std::vector<std::uint16_t> ids = sliceLabels(labels, geometry, pose, layout);
   Picture picture = blank(layout.width, layout.height);
   for (std::size_t i = 0; i < ids.size(); ++i)
   {

@@ -22,7 +22,8 @@ struct Picture
 Picture pictureOf(const PlaneImage& grey);
 
 /// The labels of the probe's plane in their colours, or in a palette of our own where the map has none.
-Picture pictureOfLabels(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout);
+Picture pictureOfLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
+                        const PlaneImage& layout);
 
 /// Pictures of one size in rows.
 Picture montage(const std::vector<Picture>& panels, int columns);

@@ -65,7 +65,8 @@ bool imageThorax()
   input.settings.matchStages();
   input.settings.setDevice(sono::Device::Cpu);
   const sono::ImageResult image = simulator.image(input);
-  return linesFade(simulator.traced(input).host()) && isPicture(simulator.picture(image, input.pose, true));
+  return linesFade(simulator.traced(input).host()) &&
+         isPicture(simulator.picture(image, input.settings.geometry, input.pose, simulator.traced(input)));
 }
 
 } // namespace

@@ -1,0 +1,182 @@
+#pragma once
+
+#include "Kernel/LineStart.h"
+
+// A scanner knows time alone: what lies at depth z of a line is shown at the range
+//
+//   r(z) = integral from 0 to z of c0 / c dz                      (Data/docs/physics.md 13.1)
+//
+// with c0 the speed that the scanner assumes. The integral runs along the line's axis, straight on, by the midpoint
+// rule on steps much shorter than a bin: no step waits for the one before, and what rounds a boundary to a step moves
+// what lies behind it by less than 0.003 mm.
+
+namespace sono {
+
+constexpr float longestFlightStepMm = 0.08f;
+
+/// Steps of a bin.
+SONO_HD inline int flightSteps(float binMm)
+{
+  const int steps = int(ceilf(binMm / longestFlightStepMm));
+  return steps > 1 ? steps : 1;
+}
+
+/// Where a line's axis runs inside targets, which count instead of the cells there.
+struct TargetSpans
+{
+  static constexpr int most = 8;
+  int count;
+  float fromMm[most];
+  float toMm[most];
+  int medium[most];
+};
+
+template<class Space>
+SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space, const TraceLine& line)
+{
+  TargetSpans spans;
+  spans.count = 0;
+  if (!space.targets.any())
+  {
+    return spans;
+  }
+  float from = 0.0f;
+  while (spans.count < TargetSpans::most && from < view.depthMm)
+  {
+    const Vec3f start = line.origin + line.axis * from;
+    const TargetHit entered = space.targets.nearest(start, line.axis, view.depthMm - from, false);
+    const TargetHit left = space.targets.nearest(start, line.axis, 3e38f, true);
+    const bool inside = left.target >= 0 && (entered.target < 0 || left.t < entered.t);
+    if (!inside && entered.target < 0)
+    {
+      break;
+    }
+    const float in = inside ? 0.0f : entered.t;
+    const TargetHit out = inside ? left : space.targets.nearest(start + line.axis * in, line.axis, 3e38f, true);
+    if (out.target < 0)
+    {
+      break;
+    }
+    spans.fromMm[spans.count] = from + in;
+    spans.toMm[spans.count] = from + in + out.t;
+    spans.medium[spans.count] = view.firstTargetMedium + out.target;
+    ++spans.count;
+    from += in + out.t + 1e-3f;
+  }
+  return spans;
+}
+
+/// The tissue at a depth of the axis; the outside tissue also where there are no cells.
+template<class Space>
+SONO_HD inline int tissueOnAxis(const TraceView& view, const Space& space, const TraceLine& line, float depthMm)
+{
+  const Vec3f position = line.origin + line.axis * depthMm;
+  const Vec3i cell = space.cellAt(position);
+  return space.contains(cell) ? space.tissueAt(cell) : view.outsideTissue;
+}
+
+/// c0 / c at a depth of the axis. Coupling in front of the body is taken for what the scanner assumes, and so is what
+/// lies outside of the body behind it, from which nothing comes.
+template<class Space>
+SONO_HD inline float rangePerDepth(const TraceView& view, const Space& space, const TraceLine& line,
+                                   const TargetSpans& spans, float depthMm)
+{
+  for (int s = 0; s < spans.count; ++s)
+  {
+    if (depthMm >= spans.fromMm[s] && depthMm < spans.toMm[s])
+    {
+      return view.media[spans.medium[s]].rangePerMm;
+    }
+  }
+  const int tissue = tissueOnAxis(view, space, line, depthMm);
+  return tissue == view.outsideTissue || tissue < 0 ? 1.0f : view.media[tissue].rangePerMm;
+}
+
+/// Depth at a range, by the ranges at multiples of `binMm` of depth, [0, bins], which rise. Beyond the last the
+/// scanner's assumption holds.
+SONO_HD inline float depthOfRange(const float* rangeMm, int bins, float binMm, float wantedMm)
+{
+  if (wantedMm >= rangeMm[bins])
+  {
+    return float(bins) * binMm + (wantedMm - rangeMm[bins]);
+  }
+  int low = 0;
+  int high = bins;
+  while (high - low > 1)
+  {
+    const int middle = (low + high) / 2;
+    (rangeMm[middle] <= wantedMm ? low : high) = middle;
+  }
+  return (float(low) + (wantedMm - rangeMm[low]) / (rangeMm[low + 1] - rangeMm[low])) * binMm;
+}
+
+/// How a line's depths lie on its ranges: depth less range, mm, at multiples of a bin of range, straight in between.
+struct RangeMap
+{
+  const float* offsetMm = nullptr; ///< null: range is depth
+  int bins = 0;
+  float perBinMm = 0.0f; ///< 1 / mm
+
+  SONO_HD float depthOf(float rangeMm) const
+  {
+    const float position = rangeMm * perBinMm;
+    const int bin = int(smaller(position, float(bins - 1)));
+    const int next = bin + 1 < bins ? bin + 1 : bin;
+    const float share = smaller(position - float(bin), 1.0f);
+    return rangeMm + offsetMm[bin] + (offsetMm[next] - offsetMm[bin]) * share;
+  }
+};
+
+/// The sample of depth, whole, that is shown at a sample of range.
+SONO_HD inline int depthSample(const RangeMap& map, float sampleMm, int s, int sumCount)
+{
+  const int d = map.offsetMm ? int(map.depthOf(float(s) * sampleMm) / sampleMm + 0.5f) : s;
+  return d < 0 ? 0 : (d < sumCount ? d : sumCount - 1);
+}
+
+/// The samples of depth [first, end) that are shown between two neighbouring samples of range.
+struct RangeStep
+{
+  float from; ///< the depth of the earlier sample, in samples
+  float perSample;
+  int first;
+  int end;
+
+  /// How far towards the later one.
+  SONO_HD float shareOf(int d) const { return (float(d) - from) * perSample; }
+};
+
+SONO_HD inline RangeStep stepBetween(float from, float to)
+{
+  return { from, 1.0f / larger(to - from, 1e-6f), int(ceilf(from)), int(ceilf(to)) };
+}
+
+SONO_HD inline float depthInSamples(const RangeMap& map, float sampleMm, int s)
+{
+  return map.depthOf(float(s) * sampleMm) / sampleMm;
+}
+
+/// From sample s on.
+SONO_HD inline RangeStep rangeStep(const RangeMap& map, float sampleMm, int s)
+{
+  return stepBetween(depthInSamples(map, sampleMm, s), depthInSamples(map, sampleMm, s + 1));
+}
+
+/// A demodulated sample of depth where it is shown: `rad` behind a sample of range whose carrier this is.
+struct ShownSample
+{
+  float re;
+  float im;
+};
+
+SONO_HD inline ShownSample shownSample(float a, float b, float rad, float carrierRe, float carrierIm)
+{
+  float sine;
+  float cosine;
+  sinCos(rad, sine, cosine);
+  const float re = carrierRe * cosine + carrierIm * sine;
+  const float im = carrierIm * cosine - carrierRe * sine;
+  return { a * re - b * im, a * im + b * re };
+}
+
+} // namespace sono

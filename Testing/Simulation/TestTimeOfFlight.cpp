@@ -1,0 +1,244 @@
+#include "TargetScenes.h"
+#include "TestScenes.h"
+
+#include "Echo/FormRf.h"
+#include "Image/ErrorMap.h"
+#include "Image/LabelSlice.h"
+#include "Kernel/TimeOfFlight.h"
+#include "Trace/Trace.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+// Range is time: Data/docs/physics.md 13.1.
+
+using namespace sono;
+using namespace sono::test;
+
+namespace {
+
+constexpr double assumedSpeed = 1540.0;
+
+struct Layer
+{
+  double endMm;
+  double impedance;
+  double speed;
+  double attenuation;
+};
+
+/// Boundaries of shared/PHYSICS.md 13 at 20, 32 and 50 mm.
+const std::vector<Layer> stack{ { 20.0, 1.50, 1480.0, 0.3 },
+                                { 32.0, 1.90, 1650.0, 0.8 },
+                                { 50.0, 1.30, 1450.0, 0.6 },
+                                { 90.0, 2.40, 1800.0, 1.0 } };
+
+/// Layers across z.
+std::unique_ptr<Scene> layeredScene(const std::vector<Layer>& layers)
+{
+  std::vector<Tissue> tissues;
+  for (std::size_t i = 0; i < layers.size(); ++i)
+  {
+    tissues.push_back(
+      makeTissue("layer" + std::to_string(i), layers[i].impedance, layers[i].speed, layers[i].attenuation));
+  }
+  const auto layerAt = [&](const Vec3d& p) {
+    std::size_t layer = 0;
+    while (layer + 1 < layers.size() && p.z > layers[layer].endMm)
+    {
+      ++layer;
+    }
+    return int(layer);
+  };
+  return makeScene({ 40, 40, int(std::lround(2.0 * layers.back().endMm)) }, Vec3d(0.5), tissues, layerAt);
+}
+
+/// Where a depth is shown, in closed form.
+double shownAt(const std::vector<Layer>& layers, double depthMm)
+{
+  double range = 0.0;
+  double from = 0.0;
+  for (const Layer& layer : layers)
+  {
+    range += (std::min(depthMm, layer.endMm) - from) * assumedSpeed / layer.speed;
+    from = layer.endMm;
+    if (depthMm <= layer.endMm)
+    {
+      break;
+    }
+  }
+  return range;
+}
+
+TraceSettings tracing()
+{
+  TraceSettings s;
+  s.device = Device::Cpu;
+  s.depthMm = 70.0;
+  s.pathsPerLine = 16;
+  s.frequencyMHz = 2.5;
+  return s;
+}
+
+EchoSettings echoes(const TraceSettings& tracing)
+{
+  EchoSettings s;
+  s.device = Device::Cpu;
+  s.depthMm = tracing.depthMm;
+  s.centreFrequencyMHz = tracing.frequencyMHz;
+  return s;
+}
+
+RangeMap mapOf(const TracedLines& traced)
+{
+  return { traced.depthOffsetMm.data(), traced.binCount, float(1.0 / traced.binMm) };
+}
+
+/// The range of the largest envelope within `around` mm of a place, by a parabola through its neighbours.
+double peakNear(const RfLines& rf, double rangeMm, double around)
+{
+  const std::vector<float> envelope = rf.envelope();
+  const auto first = std::size_t((rangeMm - around) / rf.sampleMm);
+  const auto last = std::size_t((rangeMm + around) / rf.sampleMm);
+  const std::size_t peak =
+    std::size_t(std::max_element(envelope.begin() + std::ptrdiff_t(first), envelope.begin() + std::ptrdiff_t(last)) -
+                envelope.begin());
+  const double a = envelope[peak - 1];
+  const double b = envelope[peak];
+  const double c = envelope[peak + 1];
+  return (double(peak) + 0.5 * (a - c) / (a - 2.0 * b + c)) * rf.sampleMm;
+}
+
+} // namespace
+
+TEST(TimeOfFlight, DepthsLieWhereTheirTimeSays)
+{
+  const auto scene = layeredScene(stack);
+  const TracedLines traced = trace(*scene, { makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }) }, tracing());
+  ASSERT_EQ(traced.depthOffsetMm.size(), traced.intensity.size());
+  const RangeMap map = mapOf(traced);
+  for (double depthMm = 0.5; depthMm < 66.0; depthMm += 0.37)
+  {
+    EXPECT_NEAR(map.depthOf(float(shownAt(stack, depthMm))), depthMm, 0.012) << depthMm;
+  }
+}
+
+TEST(TimeOfFlight, ObliqueLinesAsLongInEachLayerAsTheyAre)
+{
+  const auto scene = layeredScene(stack);
+  const double cosine = std::cos(0.3);
+  const TracedLines traced = trace(*scene, { makeLine({ 1.0, 10.0, 0.0 }, { std::sin(0.3), 0.0, cosine }) }, tracing());
+  const RangeMap map = mapOf(traced);
+  for (double z = 1.0; z < 55.0; z += 1.3)
+  {
+    EXPECT_NEAR(map.depthOf(float(shownAt(stack, z) / cosine)), z / cosine, 0.02) << z;
+  }
+}
+
+TEST(TimeOfFlight, BoundariesEchoWhereTheirTimeSays)
+{
+  const auto scene = layeredScene(stack);
+  const std::vector<ScanLine> lines{ makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }) };
+  const TraceSettings t = tracing();
+  const TracedLines traced = trace(*scene, lines, t);
+  const RfLines rf = formRf(*scene, lines, traced, echoes(t));
+  EXPECT_NEAR(peakNear(rf, 20.81, 1.0), 20.811, 0.02);
+  EXPECT_NEAR(peakNear(rf, 32.01, 1.0), 32.011, 0.02);
+  EXPECT_NEAR(peakNear(rf, 51.13, 1.0), 51.128, 0.02);
+}
+
+TEST(TimeOfFlight, AScattererKeepsItsPhaseAndStrengthWhereItIsShown)
+{
+  // One scatterer in each layer; the speeds are told by hand, so that nothing but the moving is at work.
+  TracedLines traced;
+  traced.lineCount = 1;
+  traced.binMm = 0.25;
+  traced.binCount = 300;
+  traced.intensity.assign(300, 1.0f);
+  traced.standardError.assign(300, 0.0f);
+  for (int b = 0; b < 300; ++b)
+  {
+    const double range = b * traced.binMm;
+    traced.depthOffsetMm.push_back(float(range < 20.0 ? -0.04 * range : -0.8 + 0.06 * (range - 20.0)));
+  }
+  EchoSettings s;
+  s.device = Device::Cpu;
+  s.depthMm = 60.0;
+  s.centreFrequencyMHz = 3.0;
+  const std::vector<ScanLine> lines{ makeLine({ 0.0, 0.0, 0.0 }, { 0.0, 0.0, 1.0 }) };
+  const double k2 = 4.0 * 3.14159265358979323846 * 3.0 / 1.54;
+  for (const double range : { 7.3, 19.2, 23.4, 51.7 })
+  {
+    const double depth = range + (range < 20.0 ? -0.04 * range : -0.8 + 0.06 * (range - 20.0));
+    const PointScatterers points({ { { 0.0, 0.0, depth }, 1.0 } });
+    const RfLines rf = formRf({ nullptr, &traced, &points }, lines, s);
+    const PointScatterers there({ { { 0.0, 0.0, range }, 1.0 } });
+    const RfLines still = formRf({ nullptr, nullptr, &there }, lines, s);
+    EXPECT_NEAR(peakNear(rf, range, 1.0), range, 2e-3);
+    const auto at = std::size_t(std::lround(range / rf.sampleMm));
+    EXPECT_NEAR(std::abs(rf.iq[at]), std::abs(still.iq[at]), 0.01 * std::abs(still.iq[at])) << range;
+    EXPECT_NEAR(std::arg(rf.iq[at] * std::exp(std::complex<float>(0.0f, float(k2 * range)))), 0.0, 0.02) << range;
+  }
+}
+
+TEST(TimeOfFlight, ATargetsSpeedCounts)
+{
+  const Tissue steel = makeTissue("steel", 45.0, 5900.0, 0.0);
+  const auto scene = layeredScene({ { 80.0, 1.6, 1540.0, 0.5 } });
+  const std::vector<TargetSurface> targets{ makeBox("plate", steel, { 2.0, 2.0, 30.0 }, { 18.0, 18.0, 40.0 }) };
+  const TracedLines traced = trace(*scene, { makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }) }, tracing(), {}, targets);
+  const RangeMap map = mapOf(traced);
+  const double behind = 30.0 + 10.0 * 1540.0 / 5900.0;
+  EXPECT_NEAR(map.depthOf(20.0f), 20.0, 1e-3);
+  EXPECT_NEAR(map.depthOf(float(30.0 + 5.0 * 1540.0 / 5900.0)), 35.0, 0.3); // within a bin of a corner
+  EXPECT_NEAR(map.depthOf(float(behind + 20.0)), 60.0, 0.1);
+}
+
+TEST(TimeOfFlight, AmadousRangeIsDepth)
+{
+  const auto scene = layeredScene(stack);
+  TraceSettings t = tracing();
+  t.model = InterfaceModel::Amadou2024;
+  const TracedLines traced = trace(*scene, { makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }) }, t);
+  EXPECT_TRUE(traced.depthOffsetMm.empty());
+  EXPECT_EQ(traced.binCount, 280);
+}
+
+TEST(TimeOfFlight, LabelsFitThePictureBehindFat)
+{
+  // 30 mm of fat at 1450 m/s: what lies behind is shown 1.86 mm too deep.
+  const std::vector<Layer> fat{ { 30.0, 1.38, 1450.0, 0.4 }, { 45.0, 1.65, 1540.0, 0.5 }, { 90.0, 1.7, 1540.0, 0.5 } };
+  const auto scene = layeredScene(fat);
+  for (const ScanKind kind : { ScanKind::Linear, ScanKind::PhasedSector })
+  {
+    ScanGeometry geometry;
+    geometry.kind = kind;
+    geometry.lineCount = 33;
+    geometry.widthMm = 10.0;
+    geometry.sectorDeg = 16.0;
+    geometry.depthMm = 60.0;
+    const ProbePose pose{ { 10.0, 10.0, 0.0 }, { 0.0, 0.0, 1.0 }, { 1.0, 0.0, 0.0 } };
+    TraceSettings t = tracing();
+    t.depthMm = geometry.depthMm;
+    const TracedLines traced = trace(*scene, makeScanLines(geometry, pose), t);
+    const PlaneImage image = scanConvert(geometry, std::vector<float>(33, 1.0f), 1, geometry.depthMm, 0.1);
+    const auto labels =
+      sliceLabels(scene->volume(), geometry, pose, image, { &traced.depthOffsetMm, traced.binCount, traced.binMm });
+    const int middle = image.width / 2;
+    const auto edge = [&](std::uint16_t from) {
+      int j = image.height - 1;
+      while (labels[std::size_t(j) * std::size_t(image.width) + std::size_t(middle)] != from)
+      {
+        --j;
+      }
+      return image.axialMinMm + (j + 0.5) * image.pixelMm;
+    };
+    EXPECT_NEAR(edge(0), shownAt(fat, 30.0), 0.06);
+    EXPECT_NEAR(edge(1), shownAt(fat, 45.0), 0.06);
+    // The error of the paths moves along.
+    EXPECT_EQ(errorPlane(geometry, traced, 0.1).mask, image.mask);
+  }
+}
