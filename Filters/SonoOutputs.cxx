@@ -142,8 +142,7 @@ TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoS
     return handle;
   }
   const std::size_t count = std::size_t(layout.lineCount) * layout.sampleCount;
-  TracedLines traced;
-  traced.lineCount = layout.lineCount;
+  TracedLines traced = rangeArraysOf(lines, layout.lineCount);
   traced.binCount = layout.sampleCount;
   traced.binMm = layout.sampleMm;
   TracedLines::visitArrays(traced, [&](auto& values, const char* name, TracedAxis axis) {
@@ -160,7 +159,6 @@ TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoS
       values = complexLineValues(name, from);
     }
   });
-  traced.depthOffsetMm = depthOffsetsOf(lines, layout.lineCount).depthOffsetMm;
   traced.echoCount = static_cast<int>(traced.boundaryEcho.size() / layout.lineCount);
   traced.echoSampleMm = echoSampleMm;
   // In that model alone paths bring boundaries, and range is depth.
@@ -169,7 +167,7 @@ TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoS
   return TracedResult(std::move(traced));
 }
 
-TracedLines depthOffsetsOf(vtkImageData* lines, int lineCount)
+TracedLines rangeArraysOf(vtkImageData* lines, int lineCount)
 {
   TracedLines traced;
   traced.lineCount = lineCount;

@@ -26,9 +26,9 @@ void fillEchoes(const TracedResult& traced, vtkImageData* lines, vtkImageData* e
 /// the arrays say. Throws Error when an array is missing, and when `lines` do not hold the probe's.
 TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoSampleMm);
 
-/// Of what fillTraced has put into lines, and the stages behind them have kept, where depths are shown: the rest is
-/// empty. Throws Error where that does not fit so many lines.
-TracedLines depthOffsetsOf(vtkImageData* lines, int lineCount);
+/// Of what fillTraced has put into lines, and the stages behind them have kept, the arrays by range: the rest is empty.
+/// Throws Error where one does not fit so many lines.
+TracedLines rangeArraysOf(vtkImageData* lines, int lineCount);
 
 /// As rfOf.
 TracedResult tracedHandleOf(vtkImageData* lines);

@@ -66,13 +66,11 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     if (!traced)
     {
       const std::size_t count = std::size_t(layout.lineCount) * layout.sampleCount;
-      sono::TracedLines values;
-      values.lineCount = layout.lineCount;
+      sono::TracedLines values = sono::rangeArraysOf(lines, layout.lineCount);
       values.binCount = layout.sampleCount;
       values.binMm = layout.sampleMm;
       values.intensity = sono::lineValues("Intensity", lines->GetPointData(), count);
       values.standardError = sono::lineValues("StandardError", lines->GetPointData(), count);
-      values.depthOffsetMm = sono::depthOffsetsOf(lines, layout.lineCount).depthOffsetMm;
       traced = sono::TracedResult(std::move(values));
     }
     const sono::ImageResult map = sono::Simulator().errorMap(

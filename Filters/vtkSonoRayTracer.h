@@ -67,6 +67,8 @@ public:
   sonoParameter(Sampling, int);
   sonoParameter(PathsPerLine, int);
   sonoParameter(MaxCollisions, int);
+  sonoSwitch(Reverberation);
+  sonoParameter(FaceReflection, double);
   sonoParameter(CoherenceMm, double);
   sonoSwitch(Deterministic);
   sonoParameter(LobeMeanDeg, double);

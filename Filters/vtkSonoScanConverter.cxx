@@ -145,7 +145,7 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
                             : scene   ? std::shared_ptr<const sono::LabelVolume>(scene, &scene->volume())
                                       : nullptr)
     {
-      const sono::TracedLines traced = sono::depthOffsetsOf(lines, layout.lineCount);
+      const sono::TracedLines traced = sono::rangeArraysOf(lines, layout.lineCount);
       const sono::DepthOffsets offsets{ &traced.depthOffsetMm, traced.binCount, traced.binMm };
       picture.labels = sono::SharedSpan<std::uint16_t>(
         image.isVolume() ? sono::sliceLabels(*labels, probe.geometry, probe.pose, image.volume(), offsets)

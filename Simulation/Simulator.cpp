@@ -153,7 +153,9 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
   FetchedTrace fetched = DeviceImager::instance().fetch(device);
   auto values = fetched.bins.begin();
   TracedLines::visitBins(lines, [&](std::vector<float>& array, const char*) { array = std::move(*values++); });
-  lines.depthOffsetMm = std::move(*values);
+  lines.depthOffsetMm = std::move(*values++);
+  lines.reverberation = std::move(*values++);
+  lines.reverberationError = std::move(*values);
   lines.boundaryEcho = std::move(fetched.boundaryEcho);
   lines.segments = fetched.segments;
 }
@@ -327,7 +329,7 @@ RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResul
     }
     const auto makeJob = [&] {
       const EchoSetup setup(sources, lines, settings);
-      return std::make_shared<const EchoJob>(makeEchoJob(setup));
+      return std::make_shared<const EchoJob>(makeEchoJob(setup, int(lines.size())));
     };
     const std::shared_ptr<const EchoJob> job = takesDevices ? last_->echoJob.get(from, makeJob) : makeJob();
     report(progress, 0.5);

@@ -107,7 +107,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     const auto firstLine = lines.begin() + range.first;
     const std::vector<ScanLine> groupLines(firstLine, firstLine + range.count);
     const EchoSetup setup(sources, groupLines, settings.echo);
-    const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup));
+    const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));
     if (!bmodeJob)
     {
       bmodeJob =

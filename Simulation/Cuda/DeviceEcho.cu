@@ -42,6 +42,7 @@ TracedOnDevice DeviceEcho::given(int first) const
   traced.intensity = given_.intensity ? given_.intensity + std::size_t(first) * given_.binCount : nullptr;
   traced.attenuation = given_.attenuation ? given_.attenuation + std::size_t(first) * given_.binCount : nullptr;
   traced.depthOffset = given_.depthOffset ? given_.depthOffset + std::size_t(first) * given_.binCount : nullptr;
+  traced.reverberation = given_.reverberation ? given_.reverberation + std::size_t(first) * given_.binCount : nullptr;
   traced.echo = given_.echo ? given_.echo + std::size_t(first) * rangeCount_ : nullptr;
   return traced;
 }
@@ -184,6 +185,9 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
                              1.0f / surfaceScale_,
                              traced,
                              level_.size() > 0 ? level_.data() : nullptr,
+                             noise_,
+                             reverberationRms_.data(),
+                             linesPerImage_,
                              downshift_.value_or(Downshift{}),
                              sinks ? turns_.data() : nullptr,
                              carrier_.data(),

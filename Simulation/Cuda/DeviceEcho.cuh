@@ -13,9 +13,10 @@ namespace sono {
 /// Where the tracer's results lie on the device.
 struct TracedOnDevice
 {
-  const float* intensity = nullptr;   ///< lines x bins; null: 1 everywhere
-  const float* attenuation = nullptr; ///< lines x bins: B, Np of amplitude per MHz; null: not known
-  const float* depthOffset = nullptr; ///< lines x bins: TracedLines::depthOffsetMm; null: range is depth
+  const float* intensity = nullptr;     ///< lines x bins; null: 1 everywhere
+  const float* attenuation = nullptr;   ///< lines x bins: B, Np of amplitude per MHz; null: not known
+  const float* depthOffset = nullptr;   ///< lines x bins: TracedLines::depthOffsetMm; null: range is depth
+  const float* reverberation = nullptr; ///< lines x bins, by range; null: nothing does
   int binCount = 0;
   float binMm = 1.0f;
   const EchoSum* echoSums = nullptr; ///< lines x echoCount x (re, im), on the RF's samples
@@ -107,6 +108,9 @@ private:
   DeviceArray<float2> carrier_;
   double carrierRadPerSample_ = 0.0; ///< of that carrier
   DeviceArray<float> level_;
+  int linesPerImage_ = 1;
+  ReverberationNoise noise_;
+  DeviceArray<float> reverberationRms_;
   std::optional<Downshift> downshift_;
   BeamFieldView field_{};
   SharedVector<float> fieldSource_;
@@ -169,7 +173,7 @@ private:
   float largestPoint_ = 0.0f;
   float pointScale_ = 1.0f;
 
-  DeviceArray<float> givenIntensity_, givenAttenuation_, givenDepthOffset_;
+  DeviceArray<float> givenIntensity_, givenAttenuation_, givenDepthOffset_, givenReverberation_;
   DeviceArray<float2> givenEcho_;
   TracedOnDevice given_;
 

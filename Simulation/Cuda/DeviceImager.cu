@@ -262,6 +262,8 @@ std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<co
     made->view.intensity = made->arrays.bins[intensityArray].data();
     made->view.attenuation = made->arrays.bins[attenuationArray].data();
     made->view.depthOffset = job->rangeIsTime ? made->arrays.bins[depthOffsetArray].data() : nullptr;
+    made->view.reverberation =
+      job->rangeIsTime && job->view.reverberates ? made->arrays.bins[reverberationArray].data() : nullptr;
     made->view.binCount = job->binCount;
     made->view.binMm = job->binMm;
     made->view.echoSums = made->arrays.echo.data();

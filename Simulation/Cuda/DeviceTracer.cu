@@ -67,7 +67,7 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
   }
   if (launch.depthOffset)
   {
-    timeLines<<<lines, flightThreads, (launch.binCount + 1) * sizeof(float), stream>>>(launch);
+    timeLines<<<lines, flightThreads, 2 * (launch.binCount + 1) * sizeof(float), stream>>>(launch);
   }
   kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
   const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;
@@ -113,6 +113,7 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
   binMm_ = job.binMm;
   frequencyMHz_ = job.frequencyMHz;
   rangeIsTime_ = job.rangeIsTime;
+  reverberates_ = job.rangeIsTime && job.view.reverberates;
   echoCount_ = job.echoCount;
   echoSampleMm_ = job.echoSampleMm;
   radPerMm_ = job.radPerMm;
@@ -146,6 +147,12 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     array.resize(lineCount * bins);
   }
   arrays_[depthOffsetArray].resize(rangeIsTime_ ? lineCount * bins : 0);
+  arrays_[reverberationArray].resize(reverberates_ ? lineCount * bins : 0);
+  arrays_[reverberationErrorArray].resize(reverberates_ ? lineCount * bins : 0);
+  axisRange_.resize(rangeIsTime_ ? lineCount * (bins + 1) : 0);
+  axisAmplitude_.resize(axisRange_.size());
+  reverberation_.resize(reverberates_ ? lineCount * std::size_t(batches) * bins : 0);
+  reverberation_.clear(stream);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echoRest_.resize(manyPaths ? echo_.size() : 0);
   segments_.resize(1);
@@ -190,7 +197,12 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      radPerMm_,
                      echoScale_,
                      {},
-                     rangeIsTime_ ? arrays_[depthOffsetArray].data() + skip * bins : nullptr };
+                     rangeIsTime_ ? arrays_[depthOffsetArray].data() + skip * bins : nullptr,
+                     axisRange_.data() + (rangeIsTime_ ? skip * (bins + 1) : 0),
+                     axisAmplitude_.data() + (rangeIsTime_ ? skip * (bins + 1) : 0),
+                     reverberates_ ? reverberation_.data() + skip * std::size_t(batches) * bins : nullptr,
+                     reverberates_ ? arrays_[reverberationArray].data() + skip * bins : nullptr,
+                     reverberates_ ? arrays_[reverberationErrorArray].data() + skip * bins : nullptr };
       for (std::size_t array = 0; array < pathArrayCount; ++array)
       {
         launch.arrays[array] = arrays_[array].data() + skip * bins;

@@ -16,7 +16,7 @@ using EchoSum = unsigned long long;
 struct TracedArrays
 {
   std::array<DeviceArray<float>, binArrayCount> bins; ///< of each BinArray: lines x bins
-  DeviceArray<EchoSum> echo;                          ///< lines x echoCount x (re, im); none in Acoustic
+  DeviceArray<EchoSum> echo;                          ///< lines x echoCount x (re, im)
   DeviceArray<std::uint64_t> segments;
 };
 
@@ -51,6 +51,8 @@ private:
   DeviceArray<BinSums<float>> bins_;
   DeviceArray<BinSums<float>> shared_;
   std::array<DeviceArray<float>, binArrayCount> arrays_;
+  DeviceArray<float> axisRange_, axisAmplitude_;
+  DeviceArray<EchoSum> reverberation_;
   DeviceArray<EchoSum> echo_;
   DeviceArray<EchoSum> echoRest_;
   DeviceArray<std::uint64_t> segments_;
@@ -62,6 +64,7 @@ private:
   float binMm_ = 0.0f;
   double frequencyMHz_ = 1.0;
   bool rangeIsTime_ = false;
+  bool reverberates_ = false;
   int echoCount_ = 0;
   float echoSampleMm_ = 0.0f;
   float radPerMm_ = 0.0f;

@@ -9,6 +9,7 @@
 #include "Kernel/GreyLevel.h"
 #include "Kernel/LabelRow.h"
 #include "Kernel/PlaneScan.h"
+#include "Kernel/ReverberationNoise.h"
 #include "Kernel/Scatterer.h"
 #include "Kernel/SurfacePiece.h"
 #include "Kernel/TraceView.h"
@@ -170,6 +171,7 @@ struct GivenTrace
   std::vector<float> intensity;           ///< lines x bins
   std::vector<float> attenuationNpPerMHz; ///< the same; empty: not known
   std::vector<float> depthOffsetMm;       ///< the same; empty: range is depth
+  std::vector<float> reverberation;       ///< the same; empty: nothing does
   int binCount = 0;
   float binMm = 0.0f;
   std::vector<std::complex<float>> boundaryEcho; ///< lines x rangeCount, on the RF's samples; empty: none
@@ -188,6 +190,9 @@ struct EchoJob
   std::vector<float> pulseIm;         ///< empty where it would be zero
   std::optional<Downshift> downshift; ///< nothing where attenuation leaves the frequency alone
   std::vector<float> boundaryLevel;   ///< of each sample; empty: 1
+  int linesPerImage = 1;              ///< those of the reverberation's noise
+  ReverberationNoise noise;
+  std::vector<float> reverberationRms; ///< of each sample of range; empty: none
   BeamJob beam;
   std::vector<Beam> sceneBeams;       ///< of the lines, local mm of the scene's volume; empty without a scene
   std::optional<TissueJob> tissues;   ///< of Amadou2024

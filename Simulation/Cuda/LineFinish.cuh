@@ -2,6 +2,7 @@
 
 #include "Cuda/DeviceEcho.cuh"
 #include "Kernel/Downshift.h"
+#include "Kernel/ReverberationNoise.h"
 #include "Kernel/TimeOfFlight.h"
 
 // From a line's scatterer sum, by depth, to its IQ and envelope, by range, as LineFinisher on the CPU.
@@ -17,6 +18,9 @@ struct FinishLaunch
   float surfacePerUnit;
   TracedOnDevice traced;
   const float* level; // of boundaries at each sample, or null
+  ReverberationNoise noise;
+  const float* reverberationRms; // of each sample of range
+  int linesPerImage;
   Downshift downshift;
   const float* turns; // lines x rangeCount, of the downshift's phase; null: the frequency stays
   const float2* carrier;
@@ -213,6 +217,16 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
     const float2 near = shownBehind(launch, map, line, s, true);
     const float2 far = s > 0 ? shownBehind(launch, map, line, s - 1, false) : float2{ 0.0f, 0.0f };
     v = { v.x + near.x + far.x, v.y + near.y + far.y };
+  }
+  if (traced.reverberation)
+  {
+    const float strength = levelAtRange(traced.reverberation + std::size_t(line) * traced.binCount, traced.binCount,
+                                        float(launch.binsPerSample), s);
+    if (strength > faintestReverberation)
+    {
+      const Vec2f noise = strength * launch.reverberationRms[s] * launch.noise.at(line % launch.linesPerImage, s);
+      v = { v.x + noise.x, v.y + noise.y };
+    }
   }
   if (launch.turns)
   {

@@ -315,9 +315,12 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   return job;
 }
 
-EchoJob makeEchoJob(const EchoSetup& setup)
+EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage)
 {
   EchoJob job;
+  job.linesPerImage = linesPerImage;
+  job.noise = setup.finisher.reverberation().noise;
+  job.reverberationRms = setup.finisher.reverberation().rms;
   job.lineCount = int(setup.lines.size());
   job.sampleCount = setup.settings.sampleCount();
   job.sumCount = setup.finisher.sumCount();
@@ -371,12 +374,12 @@ EchoJob makeEchoJob(const EchoSetup& setup)
     given.intensity = traced.intensity;
     given.attenuationNpPerMHz = traced.attenuationNpPerMHz;
     given.depthOffsetMm = traced.depthOffsetMm;
+    given.reverberation = traced.reverberation;
     given.binCount = traced.binCount;
     given.binMm = float(traced.binMm);
     for (int l = 0; l < job.lineCount && traced.echoCount > 0; ++l)
     {
-      LineSum sum = setup.finisher.emptySum();
-      setup.finisher.addBoundaryEchoes(l, sum);
+      const LineSum sum = setup.finisher.boundaryEchoes(l);
       for (int s = 0; s < job.rangeCount; ++s)
       {
         given.boundaryEcho.emplace_back(sum.iq[2 * std::size_t(s)], sum.iq[2 * std::size_t(s) + 1]);

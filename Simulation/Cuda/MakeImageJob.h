@@ -20,7 +20,7 @@ struct EchoSetup;
 TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, int linesPerImage);
 
 /// `traced` is what the setup was given, or nothing when the job traces too.
-EchoJob makeEchoJob(const EchoSetup& setup);
+EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage);
 
 /// The scene's own labels in an image of this layout, for each pose.
 LabelJob makeLabelJob(const Scene& scene, const ProbePose* poses, int poseCount, const PlaneImage& layout);

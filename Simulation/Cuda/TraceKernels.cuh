@@ -51,21 +51,26 @@ struct TraceLaunch
   float radPerMm;
   float echoScale;
   float* arrays[pathArrayCount];
-  float* depthOffset; // lines x bins; null: range is depth
+  float* depthOffset;       // lines x bins; null: range is depth
+  float* axisRange;         // lines x (bins + 1), see StraightWay
+  float* axisAmplitude;     // the same
+  EchoSum* reverberation;   // lines x batches x bins, amplitudes times echoScale; null: nothing reverberates
+  float* reverberationMean; // lines x bins
+  float* reverberationError;
 
+  __device__ StraightWay wayOf(int line) const
+  {
+    const std::size_t first = std::size_t(line) * (binCount + 1);
+    return { axisRange + first, axisAmplitude + first, binCount, binMm };
+  }
   __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
 };
 
 template<bool KeepsRest, class Launch>
-__device__ void addEcho(const Launch& launch, int line, const TraceLine& beam, const Vec3f& point, float amplitude)
+__device__ void addEcho(const Launch& launch, int line, float rangeMm, float amplitude)
 {
-  if (launch.echoCount == 0)
-  {
-    return;
-  }
-  const EchoSplit split =
-    splitEcho(beam, point, amplitude, launch.view.coherenceMm, launch.echoSampleMm, launch.echoCount, launch.radPerMm);
-  if (split.sample < 0)
+  const EchoSplit split = splitEcho(rangeMm, amplitude, launch.echoSampleMm, launch.echoCount, launch.radPerMm);
+  if (split.sample < 0 || amplitude == 0.0f)
   {
     return;
   }
@@ -79,6 +84,17 @@ __device__ void addEcho(const Launch& launch, int line, const TraceLine& beam, c
     {
       atomicAdd(launch.echoRest + at + c, EchoSum(__float2ll_rn((units - whole) * float(1 << restBits))));
     }
+  }
+}
+
+/// The echo of a boundary that a path meets: in Acoustic surfaces echo by themselves.
+template<bool KeepsRest, class Launch>
+__device__ void addPathEcho(const Launch& launch, int line, const TraceLine& beam, const Vec3f& point, float amplitude)
+{
+  if (launch.echoCount > 0 && launch.view.model != InterfaceModel::Acoustic)
+  {
+    const EchoPlace place = echoPlace(beam, point, launch.view.coherenceMm);
+    addEcho<KeepsRest>(launch, line, place.depthMm, amplitude * place.weight);
   }
 }
 
@@ -101,7 +117,8 @@ struct CommonSink : PathSink
   __device__ void segment(const PathSegment& piece)
   {
     ++segments;
-    depositByWarp(stage(launch.lines[line], piece, launch.view.coherenceMm, launch.binMm, launch.binCount),
+    depositByWarp(stage(beamSegment(launch.lines[line], piece, launch.view.coherenceMm), piece.length, launch.binMm,
+                        launch.binCount, false),
                   launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
   }
   __device__ void echo(const Vec3f& point, float amplitude)
@@ -109,7 +126,7 @@ struct CommonSink : PathSink
     if (lane == 0)
     {
       // Sums are divided by the paths.
-      addEcho<false>(launch, line, launch.lines[line], point, amplitude * float(launch.paths));
+      addPathEcho<false>(launch, line, launch.lines[line], point, amplitude * float(launch.paths));
     }
   }
 };
@@ -153,11 +170,23 @@ struct LaneSink : PathSink
   __device__ void segment(const PathSegment& piece)
   {
     ++segments;
-    staged = stage(beam, piece, launch.view.coherenceMm, launch.binMm, launch.binCount);
+    const bool reverberates = piece.reflections > 0 && launch.view.model == InterfaceModel::Acoustic;
+    const BeamSegment seen = reverberates ? tissueEcho(launch.wayOf(line), launch.lines[line], beam, piece)
+                                          : beamSegment(beam, piece, launch.view.coherenceMm);
+    staged = stage(seen, piece.length, launch.binMm, launch.binCount, reverberates);
   }
   __device__ void echo(const Vec3f& point, float amplitude)
   {
-    addEcho<ManyPaths>(launch, line, beam, point, amplitude);
+    addPathEcho<ManyPaths>(launch, line, beam, point, amplitude);
+  }
+  __device__ void arrives(const PathState& path, const PathBoundary& boundary)
+  {
+    if (launch.echoCount > 0)
+    {
+      const Arrival arrival =
+        boundaryArrival(launch.view, launch.wayOf(line), launch.lines[line], beam, path, boundary);
+      addEcho<ManyPaths>(launch, line, arrival.rangeMm, arrival.amplitude);
+    }
   }
   /// Whether the last segment falls into a bin: there is room for one.
   __device__ bool holdsSegment() const { return staged.binHigh >= 0; }
@@ -174,10 +203,12 @@ __device__ bool beginPath(const Launch& launch, int line, const PathKey& key, Tr
   {
     beam = pathLine(launch.view, launch.lines[line], key);
     path = PathState();
+    path.straightBack = showsStraightBack(key);
     return startPath(launch.view, launch.space, beam, path, sink);
   }
   const LineStart& start = launch.starts[line];
   path = start.path;
+  path.straightBack = showsStraightBack(key);
   return passBoundary(launch.view, launch.space, start.boundary, key, path, sink);
 }
 
@@ -232,6 +263,8 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
       launch.sums[warpRow + b] = {};
     }
   }
+  EchoSum* reverberation =
+    launch.reverberation + (std::size_t(line) * launch.batches + std::size_t(batch)) * launch.binCount;
   const std::uint32_t lineKey = launch.keyOf(line);
   for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
@@ -269,7 +302,15 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     untilFold -= __popc(waiting);
     for (; waiting; waiting &= waiting - 1)
     {
-      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
+      const StagedSegment& segment = staged[__ffs(int(waiting)) - 1];
+      if (segment.reverberates)
+      {
+        reverberateByWarp(segment, launch.binMm, launch.echoScale, lane, reverberation);
+      }
+      else
+      {
+        depositByWarp(segment, launch.binMm, lane, bins);
+      }
     }
     if (ManyPaths && untilFold <= 0)
     {
@@ -341,6 +382,17 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   {
     launch.arrays[array][at] = bin.of[array];
   }
+  if (launch.reverberation)
+  {
+    const auto meanReverberation = [&](int batch) {
+      const EchoSum sum = launch.reverberation[(std::size_t(line) * launch.batches + batch) * launch.binCount + b];
+      const PathRange range = batchRange(launch.paths, launch.batches, batch);
+      return double((long long)(sum)) / (double(launch.echoScale) * double(range.last - range.first));
+    };
+    const MeanAndError all = meanAndError(hasPaths ? launch.batches : 0, meanReverberation);
+    launch.reverberationMean[at] = all.mean;
+    launch.reverberationError[at] = all.error;
+  }
 }
 
 constexpr int flightThreads = 256;
@@ -351,7 +403,9 @@ template<class Targets>
 __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> launch)
 {
   extern __shared__ float rangeMm[]; // at the ends of bins
+  float* lostNp = rangeMm + launch.binCount + 1;
   __shared__ double sums[flightThreads];
+  __shared__ double lost[flightThreads];
   __shared__ TargetSpans spans;
   const TraceLine& line = launch.lines[blockIdx.x];
   if (threadIdx.x == 0)
@@ -359,41 +413,51 @@ __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> 
     spans = targetSpans(launch.view, launch.space, line);
   }
   __syncthreads();
-  const int steps = flightSteps(launch.binMm);
-  const float stepMm = launch.binMm / float(steps);
   const int each = (launch.binCount + flightThreads - 1) / flightThreads;
   const int first = min(int(threadIdx.x) * each, launch.binCount);
   const int last = min(first + each, launch.binCount);
   double own = 0.0;
+  double ownLost = 0.0;
   for (int b = first; b < last; ++b)
   {
-    float sum = 0.0f;
-    for (int s = 0; s < steps; ++s)
-    {
-      sum += rangePerDepth(launch.view, launch.space, line, spans, (float(b * steps + s) + 0.5f) * stepMm);
-    }
-    own += double(sum * stepMm);
+    const FlightBin bin = flightBin(launch.view, launch.space, line, spans, launch.binMm, b);
+    own += double(bin.rangeMm);
+    ownLost += double(bin.lostNp);
     rangeMm[b + 1] = float(own);
+    lostNp[b + 1] = float(ownLost);
   }
   sums[threadIdx.x] = own;
+  lost[threadIdx.x] = ownLost;
   __syncthreads();
   for (int step = 1; step < flightThreads; step *= 2)
   {
-    const double before = int(threadIdx.x) >= step ? sums[threadIdx.x - step] : 0.0;
+    const bool hasBefore = int(threadIdx.x) >= step;
+    const double before = hasBefore ? sums[threadIdx.x - step] : 0.0;
+    const double lostBefore = hasBefore ? lost[threadIdx.x - step] : 0.0;
     __syncthreads();
     sums[threadIdx.x] += before;
+    lost[threadIdx.x] += lostBefore;
     __syncthreads();
   }
   const double before = sums[threadIdx.x] - own;
+  const double lostBefore = lost[threadIdx.x] - ownLost;
   for (int b = first; b < last; ++b)
   {
     rangeMm[b + 1] = float(before + double(rangeMm[b + 1]));
+    lostNp[b + 1] = float(lostBefore + double(lostNp[b + 1]));
   }
   if (threadIdx.x == 0)
   {
     rangeMm[0] = 0.0f;
+    lostNp[0] = 0.0f;
   }
   __syncthreads();
+  for (int b = threadIdx.x; b <= launch.binCount; b += flightThreads)
+  {
+    const std::size_t at = std::size_t(blockIdx.x) * (launch.binCount + 1) + b;
+    launch.axisRange[at] = rangeMm[b];
+    launch.axisAmplitude[at] = expf(-0.5f * lostNp[b]);
+  }
   for (int b = threadIdx.x; b < launch.binCount; b += flightThreads)
   {
     const float wanted = float(b) * launch.binMm;

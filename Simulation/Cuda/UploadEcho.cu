@@ -325,6 +325,9 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   pulse_.upload(pulse, stream, traffic);
   uploadCarrier(job, stream, traffic);
   level_.upload(job.boundaryLevel, stream, traffic);
+  linesPerImage_ = job.linesPerImage;
+  noise_ = job.noise;
+  reverberationRms_.upload(job.reverberationRms, stream, traffic);
   downshift_ = job.downshift;
   uploadBeam(job.beam, stream, traffic);
   sceneBeams_.upload(job.sceneBeams, stream, traffic);
@@ -400,6 +403,11 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
     {
       givenDepthOffset_.upload(job.given->depthOffsetMm, stream, traffic);
       given_.depthOffset = givenDepthOffset_.data();
+    }
+    if (!job.given->reverberation.empty())
+    {
+      givenReverberation_.upload(job.given->reverberation, stream, traffic);
+      given_.reverberation = givenReverberation_.data();
     }
     given_.binCount = job.given->binCount;
     given_.binMm = job.given->binMm;

@@ -20,14 +20,16 @@ struct StagedSegment
   int binLow;
   int binHigh;
   float scale; ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
+  bool reverberates;
 };
 
-__device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& piece, float coherenceMm, float binMm,
-                                      int binCount)
+__device__ inline StagedSegment stage(const BeamSegment& seen, float length, float binMm, int binCount,
+                                      bool reverberates)
 {
   StagedSegment staged;
-  staged.beam = beamSegment(line, piece, coherenceMm);
-  const DepthSpan span = depthSpan(staged.beam, piece.length, binMm * float(binCount));
+  staged.beam = seen;
+  staged.reverberates = reverberates;
+  const DepthSpan span = depthSpan(staged.beam, length, binMm * float(binCount));
   staged.low = span.low;
   staged.high = span.high;
   const int last = binCount - 1;
@@ -37,7 +39,7 @@ __device__ inline StagedSegment stage(const TraceLine& line, const PathSegment& 
   const float step = binMm / fabsf(staged.beam.mu);
   const float half = 0.5f * staged.beam.decay * step;
   const bool smooth = step < 0.035f * staged.beam.coherence && half < 0.3f;
-  staged.scale = smooth ? piece.intensity * (1.0f + half * half * (1.0f / 6.0f)) / binMm : 0.0f;
+  staged.scale = smooth ? seen.intensity * (1.0f + half * half * (1.0f / 6.0f)) / binMm : 0.0f;
   return staged;
 }
 
@@ -75,6 +77,20 @@ __device__ inline void depositByWarp(const StagedSegment s, float binMm, int lan
     const float to = fminf(s.high, float(b + 1) * binMm);
     const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
     addToBin(s, meanOver(s.beam, from, to, inverseMu) * (to - from) * perMm, at, bins[b]);
+  }
+}
+
+/// The same for the level of what reverberates, by range: sums of integers, since warps share them.
+__device__ inline void reverberateByWarp(const StagedSegment& s, float binMm, float scale, int lane,
+                                         unsigned long long* sums)
+{
+  const float inverseMu = 1.0f / s.beam.mu;
+  for (int b = s.binLow + lane; b <= s.binHigh; b += warpLanes)
+  {
+    const float from = fmaxf(s.low, float(b) * binMm);
+    const float to = fminf(s.high, float(b + 1) * binMm);
+    const float level = meanOver(s.beam, from, to, inverseMu) * fmaxf(0.0f, to - from) / binMm;
+    atomicAdd(sums + b, (unsigned long long)(__float2ll_rn(level * scale)));
   }
 }
 

@@ -36,6 +36,7 @@ public:
   BeamWidth widthAt(double depthMm) const;
   /// Of the resolution cell at a depth, however strong the beam is there: pi s_L s_E.
   double cellAreaMm2(double depthMm) const;
+  double focusMm() const { return focusMm_; }
   BeamWidth focusWidth() const { return widthAt(focusMm_); }
   /// For bricks; null where the kind of beam has none.
   const BeamReachTable* reachTable() const { return sight_ ? &sight_->reach() : reach_ ? &*reach_ : nullptr; }

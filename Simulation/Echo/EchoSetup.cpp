@@ -52,6 +52,7 @@ void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& 
   if (traced.binCount < 1 || !(traced.binMm > 0.0) ||
       traced.intensity.size() != lines.size() * std::size_t(traced.binCount) || traced.echoCount < 0 ||
       !(traced.attenuationNpPerMHz.empty() || traced.attenuationNpPerMHz.size() == traced.intensity.size()) ||
+      !(traced.reverberation.empty() || traced.reverberation.size() == traced.intensity.size()) ||
       !(traced.depthOffsetMm.empty() || traced.depthOffsetMm.size() == traced.intensity.size()) ||
       (traced.echoCount > 0 && !(traced.echoSampleMm > 0.0)) ||
       traced.boundaryEcho.size() != lines.size() * std::size_t(traced.echoCount))
@@ -73,6 +74,16 @@ const EchoSettings& checked(const EchoSources& sources, const std::vector<ScanLi
   return settings;
 }
 
+ReverberationSpeckle speckleOf(const EchoSettings& settings, InterfaceModel model, const BeamModel& beams,
+                               const std::vector<ScanLine>& lines)
+{
+  if (model != InterfaceModel::Acoustic)
+  {
+    return {};
+  }
+  return reverberationSpeckle(settings, beams, lines, settings.sampleCount() + PulseKernel(settings).half());
+}
+
 } // namespace
 
 EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>& scanLines,
@@ -83,7 +94,7 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   , model(sources.traced ? sources.traced->model : sources.model)
   , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
   , beams(settings, model)
-  , finisher(settings, model, sources.traced, level ? &*level : nullptr)
+  , finisher(settings, model, sources.traced, level ? &*level : nullptr, speckleOf(settings, model, beams, lines))
 {
   const bool isAcoustic = model == InterfaceModel::Acoustic;
   if (sources.scene && isAcoustic)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace sono {
 
@@ -15,12 +16,13 @@ constexpr float darkIntensity = 1e-8f; // -160 dB
 } // namespace
 
 LineFinisher::LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced,
-                           const FieldLevel* level)
+                           const FieldLevel* level, ReverberationSpeckle speckle)
   : traced_(traced)
   , samples_(settings.sampleCount())
   , sampleMm_(settings.sampleMm())
   , radPerMm_(4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs)
   , pulse_(settings)
+  , speckle_(std::move(speckle))
 {
   for (int s = 0; s < samples_ + pulse_.half(); ++s)
   {
@@ -122,25 +124,26 @@ std::vector<float> LineFinisher::exponents(int line) const
   return result;
 }
 
-/// In baseband the phases no longer depend on the sample: the pulse is its envelope. Where range is time, what lies
-/// between the depths of two samples of range goes to both, with the phase of where it is shown.
-void LineFinisher::demodulate(int line, const LineSum& sum, float* re, float* im) const
+/// In baseband the phases no longer depend on the sample: the pulse is its envelope.
+void LineFinisher::demodulate(const LineSum& sum, float* re, float* im) const
 {
-  const RangeMap map = rangeMap(line);
-  if (!map.offsetMm)
+  for (std::size_t s = 0; s < carrierRe_.size(); ++s)
   {
-    for (std::size_t s = 0; s < carrierRe_.size(); ++s)
-    {
-      const float a = sum.iq[2 * s];
-      const float b = sum.iq[2 * s + 1];
-      re[s] = a * carrierRe_[s] - b * carrierIm_[s];
-      im[s] = a * carrierIm_[s] + b * carrierRe_[s];
-    }
-    return;
+    const float a = sum.iq[2 * s];
+    const float b = sum.iq[2 * s + 1];
+    re[s] += a * carrierRe_[s] - b * carrierIm_[s];
+    im[s] += a * carrierIm_[s] + b * carrierRe_[s];
   }
+}
+
+/// Where range is time, what lies between the depths of two samples of range goes to both, with the phase of where it
+/// is shown.
+void LineFinisher::showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const
+{
   const float sampleMm = float(sampleMm_);
   const float radPerSample = float(radPerMm_ * sampleMm_);
-  for (int s = 0; s < int(carrierRe_.size()); ++s)
+  const int count = int(carrierRe_.size());
+  for (int s = 0; s < count; ++s)
   {
     const RangeStep step = rangeStep(map, sampleMm, s);
     const int last = std::min(step.end, int(sumCount_));
@@ -152,7 +155,7 @@ void LineFinisher::demodulate(int line, const LineSum& sum, float* re, float* im
                     carrierRe_[std::size_t(s)], carrierIm_[std::size_t(s)]);
       re[s] += (1.0f - share) * shown.re;
       im[s] += (1.0f - share) * shown.im;
-      if (s + 1 < int(carrierRe_.size()))
+      if (s + 1 < count)
       {
         re[s + 1] += share * shown.re;
         im[s + 1] += share * shown.im;
@@ -161,9 +164,26 @@ void LineFinisher::demodulate(int line, const LineSum& sum, float* re, float* im
   }
 }
 
-/// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
-void LineFinisher::addBoundaryEchoes(int line, LineSum& sum) const
+void LineFinisher::addReverberation(int line, float* re, float* im) const
 {
+  const float* bins = traced_->reverberation.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  const float binsPerSample = float(sampleMm_ / traced_->binMm);
+  for (int s = 0; s < int(carrierRe_.size()); ++s)
+  {
+    const float level = levelAtRange(bins, traced_->binCount, binsPerSample, s);
+    if (level > faintestReverberation)
+    {
+      const Vec2f noise = level * speckle_.rms[std::size_t(s)] * speckle_.noise.at(line, s);
+      re[s] += noise.x;
+      im[s] += noise.y;
+    }
+  }
+}
+
+/// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
+LineSum LineFinisher::boundaryEchoes(int line) const
+{
+  LineSum sum{ std::vector<float>(2 * carrierRe_.size(), 0.0f), float(sampleMm_), radPerMm_ };
   const std::complex<float>* echo = traced_->boundaryEcho.data() + std::size_t(line) * std::size_t(traced_->echoCount);
   for (int e = 0; e < traced_->echoCount; ++e)
   {
@@ -187,6 +207,7 @@ void LineFinisher::addBoundaryEchoes(int line, LineSum& sum) const
       }
     }
   }
+  return sum;
 }
 
 SurfaceIntensity LineFinisher::intensity(int line) const
@@ -204,10 +225,6 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   if (traced_)
   {
     applyIntensity(line, sum);
-    if (traced_->model == InterfaceModel::Amadou2024)
-    {
-      addBoundaryEchoes(line, sum);
-    }
   }
   if (surfaces)
   {
@@ -216,7 +233,23 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   const std::size_t half = std::size_t(pulse_.half()); // nothing lies above the first sample
   std::vector<float> re(half + carrierRe_.size(), 0.0f);
   std::vector<float> im(half + carrierRe_.size(), 0.0f);
-  demodulate(line, sum, re.data() + half, im.data() + half);
+  const RangeMap map = rangeMap(line);
+  if (map.offsetMm)
+  {
+    showDepths(map, sum, re.data() + half, im.data() + half);
+  }
+  else
+  {
+    demodulate(sum, re.data() + half, im.data() + half);
+  }
+  if (traced_ && traced_->echoCount > 0)
+  {
+    demodulate(boundaryEchoes(line), re.data() + half, im.data() + half);
+  }
+  if (traced_ && !traced_->reverberation.empty())
+  {
+    addReverberation(line, re.data() + half, im.data() + half);
+  }
   if (!sinks(line))
   {
     pulse_.convolve(re.data(), im.data(), samples_, iq);

@@ -4,6 +4,7 @@
 #include "Echo/FieldLevel.h"
 #include "Echo/FormRf.h"
 #include "Echo/Pulse.h"
+#include "Echo/ReverberationSpeckle.h"
 #include "Kernel/Downshift.h"
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/TimeOfFlight.h"
@@ -24,7 +25,8 @@ class LineFinisher
 public:
   /// `traced` may be null (intensity 1, no boundaries); it must outlive this. `level` is that of the settings' field,
   /// null for a Gaussian beam. Throws Error when the sampling cannot carry the pulse.
-  LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced, const FieldLevel* level);
+  LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced, const FieldLevel* level,
+               ReverberationSpeckle speckle);
 
   int sumCount() const { return int(sumCount_); }           ///< samples by depth
   int rangeCount() const { return int(carrierRe_.size()); } ///< samples by range
@@ -35,8 +37,9 @@ public:
   float reachMm(int line) const;
   /// What the tracer knows of a line.
   SurfaceIntensity intensity(int line) const;
-  /// Adds the traced boundary echoes of a line, times the field's level, phases kept.
-  void addBoundaryEchoes(int line, LineSum& sum) const;
+  /// A sum by range with the traced boundary echoes of a line, times the field's level, phases kept.
+  LineSum boundaryEchoes(int line) const;
+  const ReverberationSpeckle& reverberation() const { return speckle_; }
   /// Writes the settings' sampleCount() samples; the sum is used up. `surfaces`, which may be null, carries its
   /// intensity already.
   void finish(int line, LineSum& sum, const LineSum* surfaces, std::complex<float>* iq) const;
@@ -44,7 +47,9 @@ public:
 private:
   void applyIntensity(int line, LineSum& sum) const;
   RangeMap rangeMap(int line) const;
-  void demodulate(int line, const LineSum& sum, float* re, float* im) const;
+  void demodulate(const LineSum& sum, float* re, float* im) const;
+  void showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const;
+  void addReverberation(int line, float* re, float* im) const;
   bool sinks(int line) const;
   std::vector<float> exponents(int line) const;
 
@@ -59,6 +64,7 @@ private:
   std::vector<float> carrierIm_;
   std::vector<int> bin_; // of the traced intensity before each sample of depth, and the share of the one behind it
   std::vector<float> binShare_;
+  ReverberationSpeckle speckle_;
   std::optional<Downshift> downshift_; // nothing where the frequency stays
 };
 

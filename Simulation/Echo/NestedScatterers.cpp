@@ -89,11 +89,6 @@ NestedMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitud
 
 } // namespace
 
-double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz)
-{
-  return 0.1 * tissue.backscatterPerCmSr * std::pow(frequencyMHz, tissue.backscatterExponent);
-}
-
 NestedScatterers::NestedScatterers(const Scene& scene, double frequencyMHz, double amplitudePerRoot, std::uint64_t seed)
   : scene_(scene)
   , seed_(seed)

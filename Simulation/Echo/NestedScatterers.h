@@ -59,7 +59,4 @@ private:
   std::array<float, 256> fibreScale_{};
 };
 
-/// mu_b at a frequency, 1/(mm sr).
-double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz);
-
 } // namespace sono

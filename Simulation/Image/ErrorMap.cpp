@@ -3,39 +3,48 @@
 #include "Kernel/TimeOfFlight.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sono {
 
 namespace {
 
-float errorPercent(float intensity, float standardError)
+/// Of the sum of two levels.
+float errorPercent(float intensity, float standardError, float other, float otherError)
 {
-  return intensity > 0.0f ? std::min(100.0f, 100.0f * standardError / intensity) : 100.0f;
+  const float level = intensity + other;
+  return level > 0.0f ? std::min(100.0f, 100.0f * std::hypot(standardError, otherError) / level) : 100.0f;
 }
 
-/// Percent of the intensity, by line and range, at multiples of half a bin: a bin's value stands for its middle.
+/// Percent of the intensity, with what reverberates, by line and range, at multiples of half a bin: a bin's value
+/// stands for its middle.
 std::vector<float> errorsByRange(const TracedLines& traced)
 {
   const std::size_t bins = std::size_t(traced.binCount);
   const float binMm = float(traced.binMm);
-  std::vector<float> percent(traced.intensity.size());
-  std::transform(traced.intensity.begin(), traced.intensity.end(), traced.standardError.begin(), percent.begin(),
-                 errorPercent);
-  std::vector<float> samples(2 * percent.size());
+  const auto at = [&](const std::vector<float>& values, std::size_t line, float position) {
+    if (values.empty())
+    {
+      return 0.0f;
+    }
+    const float inside = std::clamp(position, 0.0f, float(bins - 1));
+    const std::size_t bin = line * bins + std::size_t(inside);
+    const std::size_t next = std::min(bin + 1, line * bins + bins - 1);
+    return values[bin] + (inside - std::floor(inside)) * (values[next] - values[bin]);
+  };
+  std::vector<float> samples(2 * traced.intensity.size());
   for (std::size_t line = 0; line < std::size_t(traced.lineCount); ++line)
   {
-    const float* from = percent.data() + line * bins;
-    float* to = samples.data() + 2 * line * bins;
     const RangeMap map{ traced.depthOffsetMm.empty() ? nullptr : traced.depthOffsetMm.data() + line * bins,
                         traced.binCount, 1.0f / binMm };
     for (std::size_t s = 0; s < 2 * bins; ++s)
     {
       const float rangeMm = 0.5f * binMm * float(s);
-      const float depthMm = map.offsetMm ? map.depthOf(rangeMm) : rangeMm;
-      const float position = std::clamp(depthMm / binMm - 0.5f, 0.0f, float(traced.binCount - 1));
-      const std::size_t bin = std::size_t(position);
-      const std::size_t next = std::min(bin + 1, bins - 1);
-      to[s] = from[bin] + (position - float(bin)) * (from[next] - from[bin]);
+      const float depth = (map.offsetMm ? map.depthOf(rangeMm) : rangeMm) / binMm - 0.5f;
+      const float range = rangeMm / binMm - 0.5f;
+      samples[2 * line * bins + s] =
+        errorPercent(at(traced.intensity, line, depth), at(traced.standardError, line, depth),
+                     at(traced.reverberation, line, range), at(traced.reverberationError, line, range));
     }
   }
   return samples;

@@ -86,20 +86,30 @@ SONO_HD inline float meanOver(const BeamSegment& g, float from, float to, float 
   return g.intensity * expNegative(-g.decay * near) * meanDecay(g.decay * step) * 0.5f * gaussWeights(g, near, step);
 }
 
-/// Where a boundary's echo falls on a line's grid of samples, coherence applied: amplitudes (re, im) of the sample
-/// before it and of the one behind it, each with the phase of its distance from there.
+/// Where a boundary's echo lies along a line, and the coherence weight there.
+struct EchoPlace
+{
+  float depthMm;
+  float weight;
+};
+
+SONO_HD inline EchoPlace echoPlace(const TraceLine& line, const Vec3f& point, float coherenceMm)
+{
+  const Vec3f q = point - line.origin;
+  const float r = glm::dot(q, line.axis);
+  return { r, coherenceWeight(coherenceMm, glm::length(q - line.axis * r)) };
+}
+
+/// Where an echo falls on a line's grid of samples: amplitudes (re, im) of the sample before it and of the one behind
+/// it, each with the phase of its distance from there.
 struct EchoSplit
 {
   int sample; ///< -1: not on the grid
   float amplitude[4];
 };
 
-SONO_HD inline EchoSplit splitEcho(const TraceLine& line, const Vec3f& point, float amplitude, float coherenceMm,
-                                   float sampleMm, int sampleCount, float radPerMm)
+SONO_HD inline EchoSplit splitEcho(float r, float a, float sampleMm, int sampleCount, float radPerMm)
 {
-  const Vec3f q = point - line.origin;
-  const float r = glm::dot(q, line.axis);
-  const float distance = glm::length(q - line.axis * r);
   const float position = r / sampleMm;
   const int sample = int(floorf(position));
   if (!(position >= 0.0f) || sample + 1 >= sampleCount)
@@ -109,7 +119,6 @@ SONO_HD inline EchoSplit splitEcho(const TraceLine& line, const Vec3f& point, fl
   const float fraction = position - float(sample);
   const float near = radPerMm * fraction * sampleMm;
   const float far = radPerMm * sampleMm - near;
-  const float a = amplitude * coherenceWeight(coherenceMm, distance);
   float sinNear;
   float cosNear;
   float sinFar;

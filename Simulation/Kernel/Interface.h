@@ -25,6 +25,7 @@ struct Reflection
   float cosRefracted; ///< cos(theta2); 0 at total reflection
   float ratio;        ///< sin(theta2) / sin(theta1)
   bool total;         ///< no real refracted angle: R = 1
+  float amplitude;    ///< r, with its sign
 };
 
 /// R for a plane wave from medium 1 onto medium 2. Acoustic: Snell with sound speeds and
@@ -36,13 +37,13 @@ SONO_HD inline Reflection reflectionAt(InterfaceModel model, float z1, float z2,
   const float sinSquared = ratio * ratio * fmaxf(0.0f, 1.0f - cos1 * cos1);
   if (sinSquared >= 1.0f)
   {
-    return { 1.0f, 0.0f, ratio, true };
+    return { 1.0f, 0.0f, ratio, true, 1.0f };
   }
   const float cos2 = sqrtf(1.0f - sinSquared);
   const float a = model == InterfaceModel::Acoustic ? z2 * cos1 : z2 * cos2;
   const float b = model == InterfaceModel::Acoustic ? z1 * cos2 : z1 * cos1;
   const float r = (a - b) / (a + b);
-  return { r * r, cos2, ratio, false };
+  return { r * r, cos2, ratio, false, r };
 }
 
 /// The branch that a path takes.
@@ -51,6 +52,7 @@ struct Scattered
   Vec3f direction;
   bool reflected;
   float throughput; ///< factor of the intensity
+  float amplitude;  ///< factor of the amplitude of what is in phase, with its sign; 0: nothing is
 };
 
 /// Mirror direction; `normal` points from medium 1 into medium 2, cos1 = direction . normal > 0.
@@ -79,7 +81,7 @@ SONO_HD inline Vec3f branchDirection(const Vec3f& direction, const Vec3f& normal
 SONO_HD inline Scattered scatterByLobe(const Lobe& lobe, const Vec3f& direction, const Vec3f& normal, float cos1,
                                        const Reflection& r, const BounceSample& u)
 {
-  Scattered out;
+  Scattered out{};
   out.reflected = u.choice < r.reflectance || r.total;
   const Vec3f centre = branchDirection(direction, normal, cos1, r, out.reflected);
   const float phi = samplePolar(lobe, u.polar);

@@ -15,7 +15,17 @@ SONO_HD inline Scattered strongerBranch(const PathState& path, const PathBoundar
   const Reflection& r = boundary.reflection;
   const bool reflected = r.total || r.reflectance > 0.5f;
   const Vec3f w = reflected ? mirrorDirection(d, n, boundary.cosine) : refractedDirection(d, n, boundary.cosine, r);
-  return { glm::normalize(w), reflected, reflected ? r.reflectance : 1.0f - r.reflectance };
+  const float share = reflected ? r.reflectance : 1.0f - r.reflectance;
+  return { glm::normalize(w), reflected, share, reflected && r.amplitude < 0.0f ? -sqrtf(share) : sqrtf(share) };
+}
+
+/// The transducer's face as a mirror, with the way through the coupling.
+SONO_HD inline Scattered mirroredByFace(const TraceView& view, const PathBoundary& boundary, PathState& path)
+{
+  path.length += 2.0f * boundary.toFaceMm;
+  path.rangeMm += 2.0f * boundary.toFaceMm;
+  return { mirrorDirection(path.ray.direction, boundary.surface.normal, boundary.cosine), true,
+           view.faceReflection * view.faceReflection, view.faceReflection };
 }
 
 /// How far a path that restarts on a voxel face must go before it counts as clear of the boundary it leaves. The cells
@@ -39,7 +49,8 @@ SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary,
 /// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and does not see
 /// the tissue on the other side again until it is clear of the boundary.
 template<class Space>
-SONO_HD inline void takeBranch(const Space& space, const PathBoundary& boundary, const Scattered& out, PathState& path)
+SONO_HD inline void takeBranch(const TraceView& view, const Space& space, const PathBoundary& boundary,
+                               const Scattered& out, PathState& path)
 {
   const Vec3f incident = path.ray.direction;
   const BoundarySide& side = out.reflected ? boundary.before : boundary.after;
@@ -50,6 +61,11 @@ SONO_HD inline void takeBranch(const Space& space, const PathBoundary& boundary,
   path.target = side.target;
   if (boundary.voxelFace)
   {
+    // The surface, not the voxel's face, is where the medium changes and where a path turns.
+    const float beyond = boundary.restart - boundary.surface.t;
+    const float before = view.media[boundary.before.medium].rangePerMm;
+    const float behind = view.media[boundary.after.medium].rangePerMm;
+    path.rangeMm += beyond * (out.reflected ? -2.0f * before : behind - before);
     path.ignored = out.reflected ? boundary.after.medium : boundary.before.medium;
     path.ignoreUntil = clearance(space, boundary, incident, out);
   }
@@ -58,6 +74,8 @@ SONO_HD inline void takeBranch(const Space& space, const PathBoundary& boundary,
     path.ignoreUntil -= boundary.restart;
   }
   path.intensity *= out.throughput;
+  path.amplitude *= out.amplitude;
+  path.reflections += out.reflected ? 1 : 0;
   path.pieces = 0;
   ++path.collisions;
 }
@@ -70,7 +88,11 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
   const Vec3f& d = path.ray.direction;
   const Vec3f& n = boundary.surface.normal;
   Scattered out;
-  if (view.deterministic)
+  if (boundary.isFace)
+  {
+    out = mirroredByFace(view, boundary, path);
+  }
+  else if (view.deterministic)
   {
     out = strongerBranch(path, boundary);
   }
@@ -78,13 +100,18 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
   {
     const RoughBoundary rough =
       roughBoundary(view, view.media[boundary.before.medium], view.media[boundary.after.medium]);
-    out = scatterRough(rough, d, n, boundary.cosine, boundary.reflection, u);
+    const float chance = reflectionChance(boundary.reflection, view.reverberates, path.reflections > 0);
+    out = scatterRough(rough, d, n, boundary.cosine, boundary.reflection, chance, u);
   }
   else
   {
     out = scatterByLobe(view.lobe, d, n, boundary.cosine, boundary.reflection, u);
   }
-  takeBranch(space, boundary, out, path);
+  if (out.reflected && view.model == InterfaceModel::Acoustic && !view.reverberates)
+  {
+    out.throughput = 0.0f;
+  }
+  takeBranch(view, space, boundary, out, path);
 }
 
 } // namespace sono

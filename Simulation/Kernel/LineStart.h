@@ -63,6 +63,7 @@ SONO_HD inline bool enterSpace(const Space& space, const TraceLine& line, float 
     path.ray.cell[axis] = line.axis[axis] > 0.0f ? 0 : size[axis] - 1;
   }
   path.length = near;
+  path.rangeMm = near;
   return true;
 }
 
@@ -90,6 +91,7 @@ SONO_HD inline bool enterBody(const TraceView& view, const Space& space, const T
     path.ray.position += line.axis * hit.t;
     path.ray.cell = hit.after;
     path.length += hit.t;
+    path.rangeMm += hit.t;
     path.tissue = hit.tissue;
   }
   if (space.targets.any())
@@ -135,7 +137,8 @@ SONO_HD inline TraceLine pathLine(const TraceView& view, const TraceLine& line, 
   const Vec3f lateral = line.lateral * (2.0f * u.polar - 1.0f);
   const Vec3f elevation = line.elevation * (2.0f * u.azimuth - 1.0f);
   return { line.origin + lateral + elevation,
-           glm::normalize(line.axis - lateral * view.perTransmitFocus - elevation * view.perElevationFocus) };
+           glm::normalize(line.axis - lateral * view.perTransmitFocus - elevation * view.perElevationFocus),
+           Vec3f(0.0f), Vec3f(0.0f), line.face };
 }
 
 /// How much coupling a path met.

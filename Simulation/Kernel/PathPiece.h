@@ -2,6 +2,7 @@
 
 #include "Kernel/CellSpace.h"
 #include "Kernel/PathState.h"
+#include "Kernel/Reverberation.h"
 #include "Kernel/TraceView.h"
 
 // A path from where it stands to the next boundary, piece by piece: a piece lies in one medium.
@@ -132,10 +133,15 @@ SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, cons
   float travelled = 0.0f;
   const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, boundary, travelled);
   const TraceMedium& medium = view.media[path.tissue];
-  piece = { path.ray.position, path.ray.direction, travelled, path.intensity, medium.decayPerMm, path.absorbed };
-  path.intensity *= expf(-medium.decayPerMm * travelled);
+  piece = { path.ray.position, path.ray.direction, travelled,        path.intensity, medium.decayPerMm,
+            path.absorbed,     path.length,        path.rangeMm,     path.amplitude, medium.rangePerMm,
+            medium.scatter,    path.reflections,   path.straightBack };
+  const float left = expf(-medium.decayPerMm * travelled);
+  path.intensity *= left;
+  path.amplitude *= sqrtf(left);
   path.absorbed += medium.decayPerMm * travelled;
   path.length += travelled;
+  path.rangeMm += medium.rangePerMm * travelled;
   if (!met)
   {
     return PieceEnd::Path;
@@ -156,6 +162,48 @@ SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, cons
   return ++path.pieces < mostPieces(space) ? PieceEnd::Medium : PieceEnd::Path;
 }
 
+/// A path that has been reflected and comes back to the transducer: its face is what it meets. It may lie inside of the
+/// body, where a piece ends at it, or behind the skin.
+template<class Space>
+SONO_HD inline PieceEnd meetFace(const TraceView& view, const Space& space, const TraceLine& own, float travelled,
+                                 PieceEnd end, PathState& path, PathBoundary& boundary)
+{
+  if (path.reflections == 0 || view.faceReflection == 0.0f || view.model != InterfaceModel::Acoustic)
+  {
+    return end;
+  }
+  const Vec3f& d = path.ray.direction;
+  const Vec3f place = path.ray.position + d * (end == PieceEnd::Path ? travelled : boundary.surface.t);
+  const bool leaves = end == PieceEnd::Boundary && boundary.after.medium == view.outsideTissue;
+  const FaceAhead face = faceAhead(view, own, place, d);
+  constexpr float nextToMm = 2.0f;
+  if (!face.isThere || path.target >= 0 || !(leaves || (end == PieceEnd::Path && fabsf(face.mm) < nextToMm)))
+  {
+    return end;
+  }
+  if (!leaves)
+  {
+    const BoundarySide here{ glm::clamp(space.cellAt(place), Vec3i(0), space.size() - 1), path.tissue, -1 };
+    boundary.before = here;
+    boundary.after = here;
+    boundary.restart = travelled;
+    boundary.voxelFace = false;
+  }
+  boundary.surface = { -own.face, leaves ? boundary.surface.t : travelled, true };
+  boundary.cosine = -glm::dot(d, own.face);
+  boundary.isFace = true;
+  boundary.toFaceMm = face.mm;
+  return PieceEnd::Boundary;
+}
+
+/// Others have no face.
+template<class Space, class Beam>
+SONO_HD inline PieceEnd meetFace(const TraceView&, const Space&, const Beam&, float, PieceEnd end, PathState&,
+                                 PathBoundary&)
+{
+  return end;
+}
+
 /// Follows the path to the end of the piece ahead, which the sink gets. At a boundary the path stays in front of it.
 template<class Space, class Beam, class Sink>
 SONO_HD inline PieceEnd walkPiece(const TraceView& view, const Space& space, const Beam& beam, PathState& path,
@@ -168,9 +216,10 @@ SONO_HD inline PieceEnd walkPiece(const TraceView& view, const Space& space, con
     hit = space.toBoundary(path.ray, path.tissue, path.ignored, path.ignoreUntil, limit.t);
   }
   PathSegment piece;
+  boundary.isFace = false;
   const PieceEnd end = endPiece(view, space, limit, hit, path, boundary, piece);
   sink.segment(piece);
-  return end;
+  return meetFace(view, space, beam, piece.length, end, path, boundary);
 }
 
 /// Follows the path to its next boundary. Returns false when the path ends before one.
@@ -196,6 +245,10 @@ SONO_HD inline void depositBoundary(const TraceView& view, const PathState& path
   const float amplitude =
     boundaryEcho(view.model, from.impedance, to.impedance, path.intensity, boundary.cosine, to.tau, to.gamma);
   sink.echo(path.ray.position + path.ray.direction * boundary.surface.t, amplitude);
+  if (path.reflections > 0 && !boundary.isFace && view.model == InterfaceModel::Acoustic)
+  {
+    sink.arrives(path, boundary);
+  }
 }
 
 } // namespace sono

@@ -14,9 +14,15 @@ struct PathState
   float intensity = 1.0f;
   float absorbed = 0.0f; ///< attenuation met so far, Np of intensity
   float length = 0.0f;   ///< travelled since the transducer, mm
-  int tissue = 0;        ///< medium that the path is in
-  int target = -1;       ///< target that the path is in; the cells do not count there
-  int ignored = -1;      ///< see marchToBoundary
+  float rangeMm = 0.0f;  ///< the same by time: c0 / c of each millimetre
+  /// Of what is in phase, with its sign: the root of the intensity with which the path's own way arrives, over the
+  /// chance with which the path was drawn.
+  float amplitude = 1.0f;
+  int reflections = 0;
+  bool straightBack = false; ///< which of the two echoes of tissue it shows, see tissueEcho
+  int tissue = 0;            ///< medium that the path is in
+  int target = -1;           ///< target that the path is in; the cells do not count there
+  int ignored = -1;          ///< see marchToBoundary
   float ignoreUntil = 0.0f;
   int collisions = 0;
   int pieces = 0; ///< since the last boundary
@@ -30,7 +36,14 @@ struct PathSegment
   float length;
   float intensity; ///< at its start
   float decayPerMm;
-  float absorbed; ///< of PathState, at its start
+  float absorbed;        ///< of PathState, at its start
+  float lengthMm = 0.0f; ///< the same
+  float rangeMm = 0.0f;
+  float amplitude = 1.0f;
+  float rangePerMm = 1.0f; ///< of the medium
+  float scatter = 0.0f;
+  int reflections = 0;
+  bool straightBack = false;
 };
 
 /// One side of a boundary.
@@ -49,6 +62,10 @@ struct PathBoundary
   BoundarySide before;
   BoundarySide after;
   bool voxelFace; ///< a boundary between cells, which are a staircase; false: a target's surface
+  /// It is the transducer's face that reflects, so far behind the boundary, through coupling, mm; the normal is then
+  /// the face's.
+  bool isFace = false;
+  float toFaceMm = 0.0f;
   float cosine;
   Reflection reflection;
 };
@@ -64,6 +81,8 @@ struct PathSink
   /// The echo of that boundary: its place and amplitude, before the coherence weight. In Amadou2024 it is part of the
   /// image; in Acoustic surfaces echo by themselves, and this is what a smooth one across the path would.
   SONO_HD void echo(const Vec3f& /*point*/, float /*amplitude*/) {}
+  /// The same boundary, for a path that has been reflected, in Acoustic: what it lets be heard is boundaryArrival.
+  SONO_HD void arrives(const PathState&, const PathBoundary&) {}
   /// The path has left the boundary along a branch; it may still end there, by roulette.
   SONO_HD void left(const PathState&, const PathBoundary&) {}
 };

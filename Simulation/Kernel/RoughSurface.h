@@ -167,19 +167,37 @@ SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ra
   return path;
 }
 
-/// Draws the branch by the mean surface's R, then whether it goes on coherently, else the facets that it meets. One
-/// number decides on both: its strata are R C_R, R (1 - C_R), T C_T and T (1 - C_T). `normal` points from medium 1
-/// into medium 2, cos1 = direction . normal > 0. The throughput is 1.
-SONO_HD inline Scattered scatterRough(const RoughBoundary& rough, const Vec3f& direction, const Vec3f& normal,
-                                      float cos1, const Reflection& r, const BounceSample& u)
+/// The chance with which a path is reflected. Reverberation is heard by its amplitude, so weak boundaries reflect more
+/// paths than their R, each of which counts less: a quarter of |r|, so that what a path stands for is at most four times
+/// what there is; and |r| once a path has been reflected, for then nothing but reverberation is left to it.
+SONO_HD inline float reflectionChance(const Reflection& r, bool reverberates, bool wasReflected)
 {
-  const bool reflected = r.total || u.choice < r.reflectance;
-  const float before = reflected ? 0.0f : r.reflectance;
-  const float share = reflected ? r.reflectance : 1.0f - r.reflectance;
-  const float coherent = coherentShare(rough, cos1, r.cosRefracted, reflected);
-  if (rough.alpha <= 0.0f || u.choice <= before + share * coherent)
+  if (r.total)
   {
-    return { branchDirection(direction, normal, cos1, r, reflected), reflected, 1.0f };
+    return 1.0f;
+  }
+  return reverberates ? larger(r.reflectance, (wasReflected ? 1.0f : 0.25f) * fabsf(r.amplitude)) : 0.0f;
+}
+
+/// Draws the branch with a chance (see reflectionChance), then whether it goes on coherently, else the facets that it
+/// meets. One number decides on both: with p its strata are p C_R, p (1 - C_R), (1 - p) C_T and (1 - p) (1 - C_T).
+/// `normal` points from medium 1 into medium 2, cos1 = direction . normal > 0. The throughput is the mean surface's R
+/// or T over the chance.
+SONO_HD inline Scattered scatterRough(const RoughBoundary& rough, const Vec3f& direction, const Vec3f& normal,
+                                      float cos1, const Reflection& r, float chance, const BounceSample& u)
+{
+  const bool reflected = r.total || u.choice < chance;
+  const float before = reflected ? 0.0f : chance;
+  const float drawn = reflected ? chance : 1.0f - chance;
+  const float share = reflected ? r.reflectance : 1.0f - r.reflectance;
+  const float throughput = drawn > 0.0f ? share / drawn : 0.0f;
+  const float coherent = rough.alpha <= 0.0f ? 1.0f : coherentShare(rough, cos1, r.cosRefracted, reflected);
+  if (rough.alpha <= 0.0f || u.choice <= before + drawn * coherent)
+  {
+    // Of what is in phase, sqrt(C), the share C of the paths tells.
+    const float amplitude = drawn > 0.0f && coherent > 0.0f ? sqrtf(share / coherent) / drawn : 0.0f;
+    return { branchDirection(direction, normal, cos1, r, reflected), reflected, throughput,
+             reflected && r.amplitude < 0.0f ? -amplitude : amplitude };
   }
   // A frame whose z points back to where the path comes from, x along its slant.
   const Vec3f slant = direction - normal * cos1;
@@ -190,7 +208,7 @@ SONO_HD inline Scattered scatterRough(const RoughBoundary& rough, const Vec3f& d
   const FacetPath out = walkFacets(rough.alpha, incident, reflected ? 0.0f : r.ratio, u);
   const float along = larger(out.direction.z, 1e-6f);
   const Vec3f w = x * out.direction.x + y * out.direction.y + normal * (out.behind ? along : -along);
-  return { glm::normalize(w), !out.behind, 1.0f };
+  return { glm::normalize(w), !out.behind, throughput, 0.0f };
 }
 
 } // namespace sono

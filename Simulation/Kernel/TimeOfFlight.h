@@ -66,30 +66,60 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
   return spans;
 }
 
-/// The tissue at a depth of the axis; the outside tissue also where there are no cells.
+/// The medium at a depth of the axis; -1 in coupling in front of the body, and in what lies outside of it behind, from
+/// which nothing comes: both are taken for what the scanner assumes.
 template<class Space>
-SONO_HD inline int tissueOnAxis(const TraceView& view, const Space& space, const TraceLine& line, float depthMm)
-{
-  const Vec3f position = line.origin + line.axis * depthMm;
-  const Vec3i cell = space.cellAt(position);
-  return space.contains(cell) ? space.tissueAt(cell) : view.outsideTissue;
-}
-
-/// c0 / c at a depth of the axis. Coupling in front of the body is taken for what the scanner assumes, and so is what
-/// lies outside of the body behind it, from which nothing comes.
-template<class Space>
-SONO_HD inline float rangePerDepth(const TraceView& view, const Space& space, const TraceLine& line,
-                                   const TargetSpans& spans, float depthMm)
+SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const TraceLine& line,
+                                const TargetSpans& spans, float depthMm)
 {
   for (int s = 0; s < spans.count; ++s)
   {
     if (depthMm >= spans.fromMm[s] && depthMm < spans.toMm[s])
     {
-      return view.media[spans.medium[s]].rangePerMm;
+      return spans.medium[s];
     }
   }
-  const int tissue = tissueOnAxis(view, space, line, depthMm);
-  return tissue == view.outsideTissue || tissue < 0 ? 1.0f : view.media[tissue].rangePerMm;
+  const Vec3i cell = space.cellAt(line.origin + line.axis * depthMm);
+  const int tissue = space.contains(cell) ? space.tissueAt(cell) : -1;
+  return tissue == view.outsideTissue ? -1 : tissue;
+}
+
+/// What a bin of depth adds to the way along the axis: its range, and the exponent of the intensity that is left of
+/// what goes straight on, across boundaries as if they lay across the axis.
+struct FlightBin
+{
+  float rangeMm = 0.0f;
+  float lostNp = 0.0f;
+};
+
+template<class Space>
+SONO_HD inline FlightBin flightBin(const TraceView& view, const Space& space, const TraceLine& line,
+                                   const TargetSpans& spans, float binMm, int bin)
+{
+  const int steps = flightSteps(binMm);
+  const float stepMm = binMm / float(steps);
+  FlightBin sum;
+  int before = bin > 0 ? mediumOnAxis(view, space, line, spans, (float(bin * steps) - 0.5f) * stepMm) : -1;
+  for (int s = 0; s < steps; ++s)
+  {
+    const int medium = mediumOnAxis(view, space, line, spans, (float(bin * steps + s) + 0.5f) * stepMm);
+    if (medium < 0)
+    {
+      sum.rangeMm += stepMm;
+      continue;
+    }
+    const TraceMedium& m = view.media[medium];
+    sum.rangeMm += stepMm * m.rangePerMm;
+    sum.lostNp += stepMm * m.decayPerMm;
+    if (before >= 0 && before != medium)
+    {
+      const float z = view.media[before].impedance;
+      const float r = (m.impedance - z) / (m.impedance + z);
+      sum.lostNp -= logf(larger(1.0f - r * r, 1e-12f));
+    }
+    before = medium;
+  }
+  return sum;
 }
 
 /// Depth at a range, by the ranges at multiples of `binMm` of depth, [0, bins], which rise. Beyond the last the

@@ -66,9 +66,19 @@ SONO_HD inline bool survivesRoulette(const TraceView& view, const PathKey& key, 
   }
   const float u =
     uniformFrom(philox(view.seed, key.line, key.path, std::uint32_t(path.collisions), key.batch | 0x80000000u).v[0]);
-  const bool survives = u * view.rouletteIntensity < path.intensity;
-  path.intensity = view.rouletteIntensity;
-  return survives;
+  if (path.reflections == 0 || view.model != InterfaceModel::Acoustic)
+  {
+    const bool survives = u * view.rouletteIntensity < path.intensity;
+    path.intensity = view.rouletteIntensity;
+    return survives;
+  }
+  // What comes straight back is heard by its amplitude.
+  const float heard =
+    larger(path.intensity / view.rouletteIntensity, fabsf(path.amplitude) / sqrtf(view.rouletteIntensity));
+  const float chance = smaller(1.0f, heard);
+  path.intensity /= chance;
+  path.amplitude /= chance;
+  return u < chance;
 }
 
 /// In front of a boundary: its echo. Returns false when the path ends there instead, having met as many as it may.
@@ -116,6 +126,7 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const B
                               const PathKey& key, Sink& sink)
 {
   PathState path = start.path;
+  path.straightBack = showsStraightBack(key);
   PathBoundary boundary = start.boundary;
   while (passBoundary(view, space, boundary, key, path, sink) &&
          advanceToBoundary(view, space, beam, path, boundary, sink) && arriveAtBoundary(view, path, boundary, sink))
@@ -129,6 +140,7 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const T
                               Sink& sink)
 {
   PathState path;
+  path.straightBack = showsStraightBack(key);
   bool goesOn = startPath(view, space, own, path, sink);
   while (goesOn)
   {

@@ -20,6 +20,7 @@ struct TraceMedium
   float gamma = 0.0f;
   float roughnessMm = 0.0f;   ///< h, rms height of its surface
   float correlationMm = 1.0f; ///< l, of that height
+  float scatter = 0.0f;       ///< amplitude of its speckle against the tissue that reverberation refers to
 };
 
 /// One main beam (see ScanLine) in the region's local millimetres; the axis is a unit vector. Where paths start apart,
@@ -30,6 +31,7 @@ struct TraceLine
   Vec3f axis;
   Vec3f lateral = Vec3f(0.0f);
   Vec3f elevation = Vec3f(0.0f);
+  Vec3f face = Vec3f(0.0f); ///< unit normal of the transducer's face, into the body
 };
 
 /// Everything a path needs beside the space it runs through, trivially copyable.
@@ -47,6 +49,9 @@ struct TraceView
   bool startsApart = false;       ///< each path starts at a place of its own on the aperture
   float perTransmitFocus = 0.0f;  ///< 1/mm, of the aperture along the array; 0: not focused
   float perElevationFocus = 0.0f; ///< and across it
+  bool reverberates = true;       ///< Acoustic: paths that have been reflected go on; otherwise they end there
+  float faceReflection = 0.0f;    ///< of the amplitude, by the transducer's face
+  float faceRadiusMm = 10.0f;
   int maxCollisions = 7;
   float coherenceMm = 0.1f;
   float depthMm = 160.0f;

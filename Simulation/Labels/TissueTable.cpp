@@ -163,4 +163,9 @@ const Tissue* TissueTable::find(const std::string& name) const
   return nullptr;
 }
 
+double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz)
+{
+  return 0.1 * tissue.backscatterPerCmSr * std::pow(frequencyMHz, tissue.backscatterExponent);
+}
+
 } // namespace sono

@@ -58,4 +58,7 @@ private:
   std::vector<Tissue> tissues_;
 };
 
+/// mu_b at a frequency, 1/(mm sr) (Data/docs/physics.md eq. 11.1).
+double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz);
+
 } // namespace sono

@@ -44,6 +44,7 @@ __attribute__((always_inline)) inline void depositWholeBins(const BeamSegment& g
 LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm)
   : binCount_(binCount)
   , sums_(sums)
+  , reverberation_(std::size_t(binCount), 0.0)
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
@@ -55,6 +56,14 @@ LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double
     bins_[sum].assign(std::size_t(binCount), 0.0f);
     binSums_[sum].assign(std::size_t(binCount), 0.0);
   }
+}
+
+void LineTally::begin(const TraceView& view, const TraceLine& axis, const StraightWay& way)
+{
+  view_ = &view;
+  axis_ = &axis;
+  way_ = way;
+  start(axis, view.coherenceMm);
 }
 
 void LineTally::start(const TraceLine& line, float coherenceMm)
@@ -86,6 +95,17 @@ std::vector<BinSums<double>> LineTally::takeBins(int paths)
       means[b].of[sum] = binSums_[sum][b] / paths;
       binSums_[sum][b] = 0.0;
     }
+  }
+  return means;
+}
+
+std::vector<double> LineTally::takeReverberation(int paths)
+{
+  std::vector<double> means(reverberation_.size(), 0.0);
+  means.swap(reverberation_);
+  for (double& mean : means)
+  {
+    mean /= paths;
   }
   return means;
 }
@@ -128,6 +148,11 @@ __attribute__((always_inline)) inline void LineTally::deposit(const BeamSegment&
 SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
 {
   ++segments_;
+  if (s.reflections > 0 && view_->model == InterfaceModel::Acoustic)
+  {
+    addReverberation(s);
+    return;
+  }
   const BeamSegment g = beamSegment(line_, s, coherenceMm_);
   const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
   if (!(high > low))
@@ -144,15 +169,48 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
   }
 }
 
-void LineTally::echo(const Vec3f& point, float amplitude)
+void LineTally::addReverberation(const PathSegment& s)
 {
-  if (echoes_.empty())
+  const BeamSegment g = tissueEcho(way_, *axis_, line_, s);
+  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
+  if (!(high > low) || g.intensity == 0.0f)
   {
     return;
   }
-  const EchoSplit split =
-    splitEcho(line_, point, amplitude * echoWeight_, coherenceMm_, echoSampleMm_, int(echoes_.size()), radPerMm_);
-  if (split.sample >= 0)
+  const float inverseMu = 1.0f / g.mu;
+  const int last = binCount_ - 1;
+  const int binHigh = std::min(int(high / binMm_), last);
+  for (int b = std::min(int(low / binMm_), last); b <= binHigh; ++b)
+  {
+    const float from = std::max(low, float(b) * binMm_);
+    const float to = std::min(high, float(b + 1) * binMm_);
+    reverberation_[std::size_t(b)] += double(meanOver(g, from, to, inverseMu) * std::max(0.0f, to - from) / binMm_);
+  }
+}
+
+void LineTally::echo(const Vec3f& point, float amplitude)
+{
+  // In Acoustic surfaces echo by themselves.
+  if (!echoes_.empty() && view_->model != InterfaceModel::Acoustic)
+  {
+    const EchoPlace place = echoPlace(line_, point, coherenceMm_);
+    addEcho(place.depthMm, amplitude * place.weight);
+  }
+}
+
+void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
+{
+  if (!echoes_.empty())
+  {
+    const Arrival arrival = boundaryArrival(*view_, way_, *axis_, line_, path, boundary);
+    addEcho(arrival.rangeMm, arrival.amplitude);
+  }
+}
+
+void LineTally::addEcho(float rangeMm, float amplitude)
+{
+  const EchoSplit split = splitEcho(rangeMm, amplitude * echoWeight_, echoSampleMm_, int(echoes_.size()), radPerMm_);
+  if (split.sample >= 0 && amplitude != 0.0f)
   {
     echoes_[std::size_t(split.sample)] += std::complex<double>(split.amplitude[0], split.amplitude[1]);
     echoes_[std::size_t(split.sample) + 1] += std::complex<double>(split.amplitude[2], split.amplitude[3]);

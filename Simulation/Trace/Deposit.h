@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Kernel/PathState.h"
+#include "Kernel/Reverberation.h"
 #include "Kernel/TraceView.h"
 #include "Trace/TracedBin.h"
 
@@ -12,13 +13,16 @@ namespace sono {
 
 /// What the paths of one line leave on its main beam, on the CPU. A path deposits where it crosses the plane at r,
 /// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin. Beside it stand
-/// the other sums of TracedBin.h.
+/// the other sums of TracedBin.h. In Acoustic a path that has been reflected deposits by range instead, see
+/// Reverberation.h.
 class LineTally : public PathSink
 {
 public:
   /// `sums`: the first so many of the sums are kept, the others are 0 (see binSumsOf).
   LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm);
 
+  /// From now on paths are those of this line, whose arrays must outlive them.
+  void begin(const TraceView& view, const TraceLine& axis, const StraightWay& way);
   /// From now on depths and distances are seen from this line.
   void start(const TraceLine& line, float coherenceMm);
 
@@ -27,6 +31,7 @@ public:
 
   void segment(const PathSegment& s);
   void echo(const Vec3f& point, float amplitude);
+  void arrives(const PathState& path, const PathBoundary& boundary);
   std::uint64_t segments() const { return segments_; }
 
   /// To be called after `pathsPerFold` paths.
@@ -34,10 +39,14 @@ public:
 
   /// What was left in each bin, of each of `paths` paths, and forgets it.
   std::vector<BinSums<double>> takeBins(int paths);
+  /// Level of what reverberated in each bin of range, mean of `paths` paths, and forgets it.
+  std::vector<double> takeReverberation(int paths);
   /// Adds the boundary echoes to a line's samples and forgets them.
   void takeEchoes(std::complex<float>* samples);
 
 private:
+  void addEcho(float rangeMm, float amplitude);
+  void addReverberation(const PathSegment& s);
   template<int Sums>
   void deposit(const BeamSegment& g, float low, float high);
 
@@ -45,12 +54,16 @@ private:
   int sums_;
   std::array<std::vector<float>, binSumCount> bins_;     ///< of the paths since the last fold
   std::array<std::vector<double>, binSumCount> binSums_; ///< of those before
+  std::vector<double> reverberation_;                    ///< of the paths since it was taken
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;
   float binMm_;
   float echoSampleMm_;
   float radPerMm_; ///< of the round trip: 2 k
+  const TraceView* view_ = nullptr;
+  const TraceLine* axis_ = nullptr;
+  StraightWay way_;
   TraceLine line_{};
   float coherenceMm_ = 0.0f;
   float echoWeight_ = 1.0f;

@@ -34,38 +34,43 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
   }
 }
 
-/// Where the line's axis leads, by time.
-template<class Space>
-void findDepthOffsets(const Space& space, const TraceSetup& setup, int line, TracedLines& out)
+/// A line's way along its axis, as StraightWay wants it.
+struct AxisWay
 {
+  std::vector<float> rangeMm;
+  std::vector<float> amplitude;
+};
+
+/// Follows the line's axis by time, and writes where ranges lie on it.
+template<class Space>
+AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, TracedLines& out)
+{
+  AxisWay way;
   if (out.depthOffsetMm.empty())
   {
-    return;
+    return way;
   }
   const TraceView& view = setup.view;
   const TraceLine& axis = setup.lines[std::size_t(line)];
   const float binMm = float(out.binMm);
-  const int steps = flightSteps(binMm);
-  const float stepMm = binMm / float(steps);
   const TargetSpans spans = targetSpans(view, space, axis);
-  std::vector<float> rangeMm(std::size_t(out.binCount) + 1, 0.0f);
   double range = 0.0;
-  for (int b = 0; b < out.binCount; ++b)
+  double lost = 0.0;
+  for (int b = 0; b <= out.binCount; ++b)
   {
-    float sum = 0.0f;
-    for (int s = 0; s < steps; ++s)
-    {
-      sum += rangePerDepth(view, space, axis, spans, (float(b * steps + s) + 0.5f) * stepMm);
-    }
-    range += double(sum * stepMm);
-    rangeMm[std::size_t(b) + 1] = float(range);
+    way.rangeMm.push_back(float(range));
+    way.amplitude.push_back(float(std::exp(-0.5 * lost)));
+    const FlightBin bin = flightBin(view, space, axis, spans, binMm, b);
+    range += double(bin.rangeMm);
+    lost += double(bin.lostNp);
   }
   float* offset = out.depthOffsetMm.data() + std::size_t(line) * std::size_t(out.binCount);
   for (int b = 0; b < out.binCount; ++b)
   {
     const float wanted = float(b) * binMm;
-    offset[b] = depthOfRange(rangeMm.data(), out.binCount, binMm, wanted) - wanted;
+    offset[b] = depthOfRange(way.rangeMm.data(), out.binCount, binMm, wanted) - wanted;
   }
+  return way;
 }
 
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
@@ -73,15 +78,16 @@ template<class Space>
 inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
                         LineTally& tally, TracedLines& out)
 {
-  findDepthOffsets(space, setup, index, out);
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
+  const AxisWay way = followAxis(space, setup, index, out);
+  tally.begin(view, line, { way.rangeMm.data(), way.amplitude.data(), out.binCount, float(out.binMm) });
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
-  tally.start(line, view.coherenceMm);
   tally.setEchoWeight(1.0f);
   LineStart start;
   std::vector<BinSums<double>> shared(std::size_t(out.binCount), BinSums<double>{});
   std::vector<std::vector<BinSums<double>>> means; // of batches
+  std::vector<std::vector<double>> reverberation;  // the same
   if (!view.startsApart)
   {
     start = startLine(view, space, line, tally);
@@ -128,6 +134,18 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       }
     }
     means.push_back(tally.takeBins(last - first));
+    if (!out.reverberation.empty())
+    {
+      reverberation.push_back(tally.takeReverberation(last - first));
+    }
+  }
+  for (int b = 0; !reverberation.empty() && b < out.binCount; ++b)
+  {
+    const auto meanOf = [&](int batch) { return reverberation[std::size_t(batch)][std::size_t(b)]; };
+    const MeanAndError bin = meanAndError(batches, meanOf);
+    const std::size_t at = std::size_t(index) * std::size_t(out.binCount) + std::size_t(b);
+    out.reverberation[at] = bin.mean;
+    out.reverberationError[at] = bin.error;
   }
   tally.takeEchoes(echoes);
   writeBins(shared, means, setup.frequencyMHz, index, out);
@@ -179,6 +197,11 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   if (!settings.rangeIsTime())
   {
     out.depthOffsetMm.clear();
+  }
+  if (!settings.reverberates())
+  {
+    out.reverberation.clear();
+    out.reverberationError.clear();
   }
 
   tbb::enumerable_thread_specific<LineTally> tallies([&] {

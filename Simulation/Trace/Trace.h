@@ -17,14 +17,14 @@ namespace sono {
 enum class TracedAxis
 {
   Bins,      ///< of depth
-  RangeBins, ///< as many, by range; none where range is depth
+  RangeBins, ///< as many, by range, or none
   EchoSamples
 };
 
 /// What the tracer gives: for each line and radial bin the mean one-way intensity (1 at the transducer) and its
-/// Monte-Carlo standard error; the attenuation of what arrives there; and, of Amadou2024, the boundary echoes as
-/// complex amplitudes on the echo grid: an echo of amplitude A at depth r adds A exp(-i 2 k (r - r_s)), split linearly
-/// between the two nearest samples s, k = 2 pi f / c0.
+/// Monte-Carlo standard error; the attenuation of what arrives there; and boundary echoes, of Amadou2024 all, of
+/// Acoustic those that were reflected before, as complex amplitudes on the echo grid: an echo of amplitude A at range r
+/// adds A exp(-i 2 k (r - r_s)), split linearly between the two nearest samples s, k = 2 pi f / c0.
 struct TracedLines
 {
   InterfaceModel model = InterfaceModel::Acoustic; ///< what it was traced with; boundaries echo in Amadou2024 alone
@@ -40,7 +40,11 @@ struct TracedLines
   /// lineCount x binCount: depth less range in mm, of what lies on the line's axis and is shown at the range b binMm,
   /// straight in between (Data/docs/physics.md 13.1). Empty: range is depth, as in Amadou2024.
   std::vector<float> depthOffsetMm;
-  int echoCount = 0;                                         ///< 0 for Acoustic
+  /// lineCount x binCount, by range, in the middles of bins: level of the speckle that reverberates, amplitude against
+  /// soft tissue's of 5e-4 /(cm sr) at intensity 1, and its Monte-Carlo standard error (13.2). Empty: nothing does.
+  std::vector<float> reverberation;
+  std::vector<float> reverberationError;
+  int echoCount = 0;                                         ///< 0: none, as of Acoustic without reverberation
   double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho;             ///< lineCount x echoCount
   std::uint64_t segments = 0;                                ///< path segments traced
@@ -61,6 +65,8 @@ struct TracedLines
   {
     visitBins(self, [&](auto& values, const char* name) { visitor(values, name, TracedAxis::Bins); });
     visitor(self.depthOffsetMm, "DepthOffsetMm", TracedAxis::RangeBins);
+    visitor(self.reverberation, "Reverberation", TracedAxis::RangeBins);
+    visitor(self.reverberationError, "ReverberationError", TracedAxis::RangeBins);
     visitor(self.boundaryEcho, "BoundaryEcho", TracedAxis::EchoSamples);
   }
 };

@@ -31,7 +31,7 @@ int TraceSettings::binCount() const
 
 int TraceSettings::echoCount() const
 {
-  return model == InterfaceModel::Acoustic ? 0 : int(std::floor(depthMm / echoSampleMm)) + 1;
+  return rangeIsTime() && !reverberates() ? 0 : int(std::floor(depthMm / echoSampleMm)) + 1;
 }
 
 } // namespace sono

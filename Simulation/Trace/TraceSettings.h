@@ -44,6 +44,8 @@ struct TraceSettings
   BeamAperture aperture;      ///< of the probe: where it is named, paths start over it (see startApart)
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
+  bool reverberation = true;    ///< of Acoustic: whether paths that have been reflected are heard
+  double faceReflection = 0.3;  ///< of the amplitude, by the transducer's face: chosen, a matched one's
   double rouletteDb = -100.0;   ///< paths fainter than this play Russian roulette
   std::uint64_t seed = 1;
   bool interactive = false; ///< for a probe that moves: what is prepared of the scene serves the next poses as well.
@@ -96,6 +98,17 @@ struct TraceSettings
             Parameter{ "rouletteDb", "Roulette (dB)", between(-1000, 0),
                        "Paths fainter than this in dB, 20 log10 of the intensity, -1000 to 0, are ended by chance and "
                        "the others of their kind count more." });
+    visitor(
+      self.reverberation,
+      Parameter{ "reverberation",
+                 "Reverberation",
+                 {},
+                 "Whether sound that was reflected more than once is heard: multiple echoes between walls, mirror "
+                 "images, A-lines of the lung. Not of the model Amadou 2024." });
+    visitor(self.faceReflection,
+            Parameter{ "faceReflection", "Face Reflection", between(0, 1),
+                       "Part of the amplitude that the transducer's face reflects, 0 to 1, no unit: what repeats a "
+                       "strong echo at multiples of its depth." });
     visitor(self.device, deviceParameter());
     visitor(self.seed, Parameter{ "pathSeed", "Path Seed", atLeast(0),
                                   "Seed of the paths, at least 0, no unit: the same seed gives the same result." });
@@ -109,11 +122,14 @@ struct TraceSettings
   /// Whether what an echo's time says is its range, with the speed of every tissue on the way: otherwise, in
   /// Amadou2024, its depth along the line.
   bool rangeIsTime() const { return model == InterfaceModel::Acoustic; }
+  /// Whether paths that have been reflected are heard where their time says; in Amadou2024 they are where they cross
+  /// the line.
+  bool reverberates() const { return rangeIsTime() && reverberation; }
   /// How deep paths are followed, mm: what is shown within the depth may lie deeper.
   double pathDepthMm() const { return rangeIsTime() ? depthMm * deepestPerRange : depthMm; }
   /// Samples of the intensity, to the paths' depth, and of the boundary echoes, to the image's, along a line.
   int binCount() const;
-  int echoCount() const; ///< 0 for Acoustic, whose surfaces echo by themselves
+  int echoCount() const; ///< 0 for Acoustic without reverberation, whose surfaces echo by themselves
 };
 
 } // namespace sono

@@ -23,6 +23,7 @@ TraceMedium makeMedium(const Tissue& tissue, const TraceSettings& settings)
   m.rangePerMm = settings.rangeIsTime() ? float(1000.0 * assumedSoundSpeedMmPerUs / tissue.soundSpeedMPerS) : 1.0f;
   // Intensity falls by 10^(-a f l / 10), l in cm.
   m.decayPerMm = float(tissue.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0);
+  m.scatter = float(std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / reverberationPerMmSr));
   m.tau = float(tissue.tau);
   m.gamma = float(tissue.gamma);
   m.roughnessMm = float(tissue.roughnessMm);
@@ -49,6 +50,15 @@ void forBlocks(const std::vector<ScanLine>& lines, const Visit& visit)
       visit(block, l);
     }
   });
+}
+
+/// Of the transducer's face, into the body: the line is steered away from it.
+Vec3d faceNormal(const ScanLine& line)
+{
+  const double lateral = line.steeringLateral;
+  const double elevational = line.steeringElevational;
+  const double straight = std::sqrt(std::max(0.0, 1.0 - lateral * lateral - elevational * elevational));
+  return glm::normalize(straight * line.axis - lateral * line.lateral - elevational * line.elevation);
 }
 
 /// Where paths start and how they are aimed, all 0 where they start together.
@@ -88,6 +98,12 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.startsApart = settings.startApart();
   view.perTransmitFocus = float(spread.perTransmitFocus);
   view.perElevationFocus = float(spread.perElevationFocus);
+  view.reverberates = settings.reverberates();
+  view.faceReflection = float(settings.faceReflection);
+  if (settings.aperture.isNamed())
+  {
+    view.faceRadiusMm = float(0.5 * std::max(settings.aperture.apertureMm, settings.aperture.elevationApertureMm));
+  }
   view.maxCollisions = settings.maxCollisions;
   view.coherenceMm = float(settings.coherenceMm);
   view.depthMm = float(settings.pathDepthMm());
@@ -191,7 +207,8 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     const Vec2d cosine2 = apertureCosines2(line);
     lines[l] = { Vec3f(scene.localFromWorld(line.originMm) - corner), Vec3f(toLocal * line.axis),
                  Vec3f(toLocal * line.lateral * (spread.lateralMm * std::sqrt(cosine2.x))),
-                 Vec3f(toLocal * line.elevation * (spread.elevationalMm * std::sqrt(cosine2.y))) };
+                 Vec3f(toLocal * line.elevation * (spread.elevationalMm * std::sqrt(cosine2.y))),
+                 Vec3f(toLocal * faceNormal(line)) };
   });
   const CellSpace<NoTargets> empty{ region->view(), {} };
   PathState path;

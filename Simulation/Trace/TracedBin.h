@@ -53,6 +53,8 @@ enum BinArray
   attenuationArray,
   pathArrayCount,
   depthOffsetArray = pathArrayCount,
+  reverberationArray,
+  reverberationErrorArray,
   binArrayCount
 };
 
@@ -60,6 +62,29 @@ struct BinArrays
 {
   float of[pathArrayCount];
 };
+
+/// Of the means of batches, and its standard error.
+struct MeanAndError
+{
+  float mean;
+  float error;
+};
+
+template<class MeanOf>
+SONO_HD inline MeanAndError meanAndError(int batches, const MeanOf& meanOf)
+{
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int batch = 0; batch < batches; ++batch)
+  {
+    const double mean = meanOf(batch);
+    sum += mean;
+    squares += mean * mean;
+  }
+  const double mean = batches > 0 ? sum / batches : 0.0;
+  const double spread = squares - batches * mean * mean;
+  return { float(mean), batches > 1 && spread > 0.0 ? float(sqrt(spread / (double(batches) * (batches - 1)))) : 0.0f };
+}
 
 /// Of the first `sums` sums (binSumsOf): of what all paths of a line leave and, for each of the batches, the mean of
 /// what its paths leave besides: `meanOf(batch)`. A path's intensity falls as the amplitude of the round trip does, so

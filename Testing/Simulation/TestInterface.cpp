@@ -115,7 +115,7 @@ TEST(Interface, ReflectsTotallyFromTheCriticalAngleOn)
       const Vec3f direction(float(sine), 0.0f, float(std::sqrt(1.0 - sine * sine)));
       const RoughBoundary rough{ 0.05f, 0.2f, 10.0f, 5.0f };
       const Scattered s =
-        scatterRough(rough, direction, { 0, 0, 1 }, direction.z, r, BounceSample{ choice, 0.5f, 0.5f });
+        scatterRough(rough, direction, { 0, 0, 1 }, direction.z, r, r.reflectance, BounceSample{ choice, 0.5f, 0.5f });
       EXPECT_TRUE(s.reflected || !r.total);
       EXPECT_EQ(s.direction.z < 0.0f, s.reflected);
     }

@@ -94,7 +94,7 @@ TEST(RoughSurface, BranchesAndCoherenceHaveTheirShares)
   std::vector<double> observed(4, 0.0);
   for (int i = 0; i < 100000; ++i)
   {
-    const Scattered s = scatterRough(rough, d, n, d.z, r, sampleAt(i, 1));
+    const Scattered s = scatterRough(rough, d, n, d.z, r, r.reflectance, sampleAt(i, 1));
     EXPECT_EQ(s.throughput, 1.0f);
     EXPECT_NEAR(glm::length(s.direction), 1.0f, 1e-6f);
     EXPECT_EQ(s.direction.z < 0.0f, s.reflected);
@@ -354,7 +354,7 @@ TEST(RoughSurface, StaysOnItsSideAndOfUnitLengthAtTheLimits)
           BounceSample u = sampleAt(i, 500);
           u.polar = i == 0 ? 0.99999994f : (i == 1 ? 5.96e-8f : u.polar);
           u.azimuth = i == 0 ? 0.99999994f : (i == 1 ? 5.96e-8f : u.azimuth);
-          const Scattered s = scatterRough(rough, d, n, cosine, r, u);
+          const Scattered s = scatterRough(rough, d, n, cosine, r, r.reflectance, u);
           const float side = glm::dot(s.direction, n);
           ASSERT_NEAR(glm::length(s.direction), 1.0f, 1e-5f) << alpha << " " << cosine << " " << speed;
           ASSERT_TRUE(s.reflected ? side < 1e-6f : side > -1e-6f) << alpha << " " << cosine << " " << speed;

@@ -1,0 +1,54 @@
+#include "Echo/ReverberationSpeckle.h"
+
+#include "Core/SoundSpeed.h"
+#include "Kernel/Reverberation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+/// Nodes of the noise are sqrt(3) deviations of a beam apart, as far as lines are closer than that.
+float nodesPerLine(const BeamModel& beams, const std::vector<ScanLine>& lines)
+{
+  if (lines.size() < 2)
+  {
+    return 1.0f;
+  }
+  const auto focusOf = [&](const ScanLine& line) { return line.originMm + line.axis * beams.focusMm(); };
+  const double pitchMm = glm::distance(focusOf(lines[lines.size() / 2]), focusOf(lines[lines.size() / 2 - 1]));
+  return float(std::clamp(pitchMm / (std::sqrt(3.0) * beams.focusWidth().lateralSigmaMm), 1e-3, 1.0));
+}
+
+} // namespace
+
+ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const BeamModel& beams,
+                                          const std::vector<ScanLine>& lines, int samples)
+{
+  constexpr double pi = 3.14159265358979323846;
+  ReverberationSpeckle speckle;
+  speckle.noise.seed = settings.seed;
+  speckle.noise.nodesPerLine = nodesPerLine(beams, lines);
+  const double sampleMm = settings.sampleMm();
+  const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
+  // A beam's width is asked for once a millimetre. A white noise of so much a sample has E_r / sample of that behind
+  // the pulse, and (11.2) is for E_r.
+  std::vector<double> nodes;
+  for (int mm = 0; double(mm - 1) <= samples * sampleMm; ++mm)
+  {
+    const BeamWidth width = beams.widthAt(double(mm));
+    const double power = pi * width.lateralSigmaMm * width.elevationalSigmaMm * width.amplitude * width.amplitude;
+    nodes.push_back(std::sqrt(reverberationPerMmSr * power * sampleMm) * wavelengthMm / beams.focusAreaMm2());
+  }
+  for (int s = 0; s < samples; ++s)
+  {
+    const double position = s * sampleMm;
+    const std::size_t node = std::size_t(position);
+    speckle.rms.push_back(float(nodes[node] + (nodes[node + 1] - nodes[node]) * (position - double(node))));
+  }
+  return speckle;
+}
+
+} // namespace sono

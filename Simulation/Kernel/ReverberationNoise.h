@@ -1,0 +1,45 @@
+#pragma once
+
+#include "Kernel/GreyLevel.h"
+
+namespace sono {
+
+/// The speckle of what reverberates, before the pulse: many places that lie at one range, complex normal and of mean
+/// square 1. Samples are independent, lines alike as their beams overlap: normals at nodes across the lines, blended by
+/// cubic B-splines. It belongs to the probe, not to the body.
+struct ReverberationNoise
+{
+  std::uint64_t seed = 0;
+  float nodesPerLine = 1.0f;
+
+  SONO_HD Vec2f at(int line, int sample) const
+  {
+    constexpr std::uint64_t ownStream = 0x7265766572623aull;
+    const float position = float(line) * nodesPerLine;
+    const int node = int(position);
+    const SplineWeights s = cubicSpline(position - float(node));
+    Vec2f sum(0.0f);
+    float squares = 0.0f;
+    for (int k = 0; k < 4; ++k)
+    {
+      sum += s.w[k] * noiseNode(seed ^ ownStream, std::uint32_t(node + k), std::uint32_t(sample));
+      squares += s.w[k] * s.w[k];
+    }
+    return sum / sqrtf(squares);
+  }
+};
+
+/// A level below this is not worth its noise.
+constexpr float faintestReverberation = 1e-5f;
+
+/// Values in the middles of bins, at a range.
+SONO_HD inline float levelAtRange(const float* bins, int count, float binsPerSample, int sample)
+{
+  const float wanted = float(sample) * binsPerSample - 0.5f;
+  const float position = wanted < 0.0f ? 0.0f : (wanted < float(count - 1) ? wanted : float(count - 1));
+  const int bin = int(position);
+  const int next = bin + 1 < count ? bin + 1 : bin;
+  return bins[bin] + (bins[next] - bins[bin]) * (position - float(bin));
+}
+
+} // namespace sono

@@ -1,0 +1,204 @@
+#include "TestScenes.h"
+
+#include "Echo/FormRf.h"
+#include "Trace/Trace.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+// Paths that have been reflected: Data/docs/physics.md 13.2.
+
+using namespace sono;
+using namespace sono::test;
+
+namespace {
+
+struct Layer
+{
+  double endMm;
+  double impedance;
+  double speed;
+  double attenuation;
+};
+
+std::unique_ptr<Scene> layeredScene(const std::vector<Layer>& layers, double backscatterPerCmSr = 0.0)
+{
+  std::vector<Tissue> tissues;
+  for (std::size_t i = 0; i < layers.size(); ++i)
+  {
+    tissues.push_back(
+      makeTissue("layer" + std::to_string(i), layers[i].impedance, layers[i].speed, layers[i].attenuation));
+    tissues.back().roughnessMm = 0.0;
+    tissues.back().backscatterPerCmSr = backscatterPerCmSr;
+    tissues.back().backscatterExponent = 0.0;
+    tissues.back().scattererProbability = 1.0;
+  }
+  const auto layerAt = [&](const Vec3d& p) {
+    std::size_t layer = 0;
+    while (layer + 1 < layers.size() && p.z > layers[layer].endMm)
+    {
+      ++layer;
+    }
+    return int(layer);
+  };
+  return makeScene({ 40, 40, int(std::lround(2.0 * layers.back().endMm)) }, Vec3d(0.5), tissues, layerAt);
+}
+
+const std::vector<ScanLine>& line()
+{
+  static const std::vector<ScanLine> one{ makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }) };
+  return one;
+}
+
+TraceSettings settings(int paths)
+{
+  TraceSettings s;
+  s.device = Device::Cpu;
+  s.depthMm = 90.0;
+  s.frequencyMHz = 2.5;
+  s.pathsPerLine = paths;
+  s.maxCollisions = 30;
+  s.faceReflection = 0.0;
+  return s;
+}
+
+/// Of the boundary echoes within a tenth of a millimetre of a range: the amplitude with its sign.
+double arrivalAt(const TracedLines& traced, double rangeMm, double frequencyMHz)
+{
+  const double k2 = 4.0 * M_PI * frequencyMHz / 1.54;
+  std::complex<double> sum = 0.0;
+  for (int s = 0; s < traced.echoCount; ++s)
+  {
+    const double r = s * traced.echoSampleMm;
+    if (std::abs(r - rangeMm) < 0.1)
+    {
+      sum += std::complex<double>(traced.boundaryEcho[std::size_t(s)]) * std::polar(1.0, k2 * (rangeMm - r));
+    }
+  }
+  EXPECT_LT(std::abs(sum.imag()), 0.1 * std::abs(sum.real()) + 1e-6) << rangeMm;
+  return sum.real();
+}
+
+double decibels(double amplitude)
+{
+  return 20.0 * std::log10(std::abs(amplitude));
+}
+
+} // namespace
+
+TEST(Reverberation, FourLayersEchoAsTheExactSumOverAllWays)
+{
+  const auto scene = layeredScene({ { 20.0, 1.50, 1480.0, 0.0 },
+                                    { 32.0, 1.90, 1650.0, 0.0 },
+                                    { 50.0, 1.30, 1450.0, 0.0 },
+                                    { 90.0, 2.40, 1800.0, 0.0 } });
+  const TracedLines traced = trace(*scene, line(), settings(400000));
+  // The table of physics.md 13.3, lossless.
+  const double expected[][2] = { { 43.211, -47.79 }, { 62.328, -38.08 }, { 70.245, -36.04 }, { 81.445, -41.06 } };
+  const double signs[] = { -1.0, 1.0, 1.0, -1.0 };
+  for (int i = 0; i < 4; ++i)
+  {
+    const double amplitude = arrivalAt(traced, expected[i][0], 2.5);
+    EXPECT_NEAR(decibels(amplitude), expected[i][1], 0.4) << expected[i][0];
+    EXPECT_GT(amplitude * signs[i], 0.0) << expected[i][0];
+  }
+  // First echoes are the surfaces'.
+  for (const double first : { 20.811, 32.011, 51.128 })
+  {
+    EXPECT_EQ(arrivalAt(traced, first, 2.5), 0.0);
+  }
+}
+
+TEST(Reverberation, ALinesOfAPlateAndTheFace)
+{
+  // Gas behind 20 mm of tissue: at n d, r^n r_t^(n - 1) with n times the attenuation.
+  const auto scene = layeredScene({ { 20.0, 1.6, 1540.0, 0.5 }, { 60.0, 0.0004, 340.0, 0.0 } });
+  TraceSettings s = settings(1000);
+  s.faceReflection = 0.5;
+  const TracedLines traced = trace(*scene, line(), s);
+  const double r = (0.0004 - 1.6) / (0.0004 + 1.6);
+  for (int n = 2; n <= 4; ++n)
+  {
+    const double expected =
+      decibels(std::pow(r, n) * std::pow(0.5, n - 1)) - 2.0 * n * 2.0 * 0.5 * 2.5; // 2 cm there and back
+    EXPECT_NEAR(decibels(arrivalAt(traced, 20.0 * n, 2.5)), expected, 0.05) << n;
+  }
+}
+
+TEST(Reverberation, TissueIsRepeatedBehindTheMirror)
+{
+  // Lossless tissue of 5e-4 /(cm sr) in front of gas: its own way d + (d - z), and with a face straight back, 2 r r_t.
+  const auto scene = layeredScene({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
+  TraceSettings s = settings(2000);
+  s.faceReflection = 0.4;
+  const TracedLines traced = trace(*scene, line(), s);
+  const auto level = [&](double rangeMm) { return double(traced.reverberation[std::size_t(rangeMm / traced.binMm)]); };
+  EXPECT_NEAR(level(10.0), 0.0, 1e-6);
+  // 20 to 40 mm: own way up from the gas, 1, and straight back on the way down after the face, 2 r_t.
+  EXPECT_NEAR(level(30.1), 1.0 + 2.0 * 0.4, 0.02);
+  // 40 to 60: own way down after the face, r_t^2; straight back after the second bounce at the face, 2 r_t^2.
+  EXPECT_NEAR(level(50.1), 0.16 + 2.0 * 0.16, 0.02);
+}
+
+TEST(Reverberation, SpeckleHasTheLevelOfItsTissue)
+{
+  // What the gas mirrors is as strong as the tissue itself.
+  const auto scene = layeredScene({ { 40.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
+  TraceSettings s = settings(500);
+  s.depthMm = 80.0;
+  EchoSettings e;
+  e.device = Device::Cpu;
+  e.depthMm = s.depthMm;
+  std::vector<ScanLine> lines;
+  for (int l = 0; l < 32; ++l)
+  {
+    lines.push_back(makeLine({ 3.0 + 0.44 * l, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }));
+  }
+  e.lateralSigmaMm = e.elevationalSigmaMm = 0.5;
+  const RfLines rf = formRf(*scene, lines, trace(*scene, lines, s), e);
+  const auto power = [&](double fromMm, double toMm) {
+    double sum = 0.0;
+    int count = 0;
+    for (int l = 0; l < rf.lineCount; ++l)
+    {
+      for (int i = int(fromMm / rf.sampleMm); i < int(toMm / rf.sampleMm); ++i, ++count)
+      {
+        sum += std::norm(rf.iq[std::size_t(l) * std::size_t(rf.sampleCount) + std::size_t(i)]);
+      }
+    }
+    return 10.0 * std::log10(sum / count);
+  };
+  EXPECT_NEAR(power(45.0, 75.0), power(8.0, 36.0), 0.4);
+}
+
+TEST(Reverberation, OffPathsEndWhereTheyAreReflected)
+{
+  const auto scene = layeredScene({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 3.0, 1540.0, 0.0 } });
+  TraceSettings s = settings(200);
+  s.reverberation = false;
+  const TracedLines traced = trace(*scene, line(), s);
+  EXPECT_EQ(traced.echoCount, 0);
+  EXPECT_TRUE(traced.reverberation.empty());
+  // Nothing is left to chance: each path is transmitted.
+  const double t = 1.0 - std::pow(1.4 / 4.6, 2.0);
+  for (const double depth : { 10.0, 30.0, 50.0 })
+  {
+    const auto bin = std::size_t(depth / traced.binMm);
+    EXPECT_NEAR(traced.intensity[bin], depth < 20.0 ? 1.0 : t, 1e-5);
+    EXPECT_LT(traced.standardError[bin], 1e-6);
+  }
+}
+
+TEST(Reverberation, PerfectMirrorsEndByTheDepth)
+{
+  const auto scene = layeredScene({ { 2.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } });
+  TraceSettings s = settings(100);
+  s.faceReflection = 1.0;
+  s.maxCollisions = 1000;
+  const TracedLines traced = trace(*scene, line(), s);
+  EXPECT_LT(traced.segments, 100u * 120u); // twice 45 ways of 2 mm in 90, and a few
+  EXPECT_NEAR(std::abs(arrivalAt(traced, 80.0, 2.5)), 1.0, 0.05);
+}
