@@ -32,9 +32,9 @@ __device__ inline StagedSegment stage(const BeamSegment& seen, float length, flo
   const DepthSpan span = depthSpan(staged.beam, length, binMm * float(binCount));
   staged.low = span.low;
   staged.high = span.high;
-  const int last = binCount - 1;
-  staged.binLow = min(int(span.low / binMm), last);
-  staged.binHigh = span.high > span.low ? min(int(span.high / binMm), last) : -1;
+  const BinSpan covered = binSpan(span, binMm);
+  staged.binLow = covered.first;
+  staged.binHigh = covered.last;
   // At a bin's middle w is within step^2 / 12 C0^2 of its mean: here 1e-4.
   const float step = binMm / fabsf(staged.beam.mu);
   const float half = 0.5f * staged.beam.decay * step;

@@ -55,6 +55,23 @@ SONO_HD inline DepthSpan depthSpan(const BeamSegment& g, float length, float end
   return high - low > 1e-6f && fabsf(g.mu) >= 1e-6f ? DepthSpan{ low, high } : DepthSpan{ 0.0f, 0.0f };
 }
 
+/// The bins [first, last] that a span reaches into; none, last < first, where it is empty.
+struct BinSpan
+{
+  int first;
+  int last;
+};
+
+/// By the edges as they are computed where a span is cut at them, float(b) * binMm: a quotient that is rounded past one
+/// would leave a negative rest behind it.
+SONO_HD inline BinSpan binSpan(const DepthSpan& span, float binMm)
+{
+  const int low = int(span.low / binMm);
+  const int high = int(span.high / binMm);
+  return { low + int(float(low + 1) * binMm <= span.low) - int(float(low) * binMm > span.low),
+           high + int(float(high + 1) * binMm < span.high) - int(float(high) * binMm >= span.high) };
+}
+
 SONO_HD inline float beamWeightAt(const BeamSegment& g, float s)
 {
   const float distance = quickSqrt(larger(0.0f, g.a + s * (2.0f * g.b + s * g.c)));

@@ -122,11 +122,10 @@ void LineTally::takeEchoes(std::complex<float>* samples)
 }
 
 template<int Sums>
-__attribute__((always_inline)) inline void LineTally::deposit(const BeamSegment& g, float low, float high)
+__attribute__((always_inline)) inline void LineTally::deposit(const BeamSegment& g, const DepthSpan& span)
 {
-  const int last = binCount_ - 1;
-  const int binLow = std::min(int(low / binMm_), last);
-  const int binHigh = std::min(int(high / binMm_), last);
+  const auto [low, high] = span;
+  const BinSpan covered = binSpan(span, binMm_);
   const float inverseMu = 1.0f / g.mu;
   const auto part = [&](int bin, float from, float to) {
     const float value = meanOver(g, from, to, inverseMu) * (to - from) / binMm_;
@@ -135,14 +134,14 @@ __attribute__((always_inline)) inline void LineTally::deposit(const BeamSegment&
       bins_[std::size_t(sum)][std::size_t(bin)] += value * binFactor(sum, g, 0.5f * (from + to) - g.r0, inverseMu);
     }
   };
-  if (binLow == binHigh)
+  if (covered.first == covered.last)
   {
-    part(binLow, low, high);
+    part(covered.first, low, high);
     return;
   }
-  part(binLow, low, float(binLow + 1) * binMm_);
-  depositWholeBins<Sums>(g, binMm_, binLow + 1, binHigh, bins_);
-  part(binHigh, float(binHigh) * binMm_, high);
+  part(covered.first, low, float(covered.first + 1) * binMm_);
+  depositWholeBins<Sums>(g, binMm_, covered.first + 1, covered.last, bins_);
+  part(covered.last, float(covered.last) * binMm_, high);
 }
 
 SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
@@ -154,18 +153,18 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
     return;
   }
   const BeamSegment g = beamSegment(line_, s, coherenceMm_);
-  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
-  if (!(high > low))
+  const DepthSpan span = depthSpan(g, s.length, binMm_ * float(binCount_));
+  if (!(span.high > span.low))
   {
     return;
   }
   if (sums_ == binSumCount)
   {
-    deposit<binSumCount>(g, low, high);
+    deposit<binSumCount>(g, span);
   }
   else
   {
-    deposit<1>(g, low, high);
+    deposit<1>(g, span);
   }
 }
 

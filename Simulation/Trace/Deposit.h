@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/BeamDeposit.h"
 #include "Kernel/PathState.h"
 #include "Kernel/Reverberation.h"
 #include "Kernel/TraceView.h"
@@ -48,7 +49,7 @@ private:
   void addEcho(float rangeMm, float amplitude);
   void addReverberation(const PathSegment& s);
   template<int Sums>
-  void deposit(const BeamSegment& g, float low, float high);
+  void deposit(const BeamSegment& g, const DepthSpan& span);
 
   int binCount_;
   int sums_;

@@ -1,5 +1,6 @@
 #include "TestScenes.h"
 
+#include "Trace/Deposit.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
@@ -204,6 +205,33 @@ TEST(TraceStress, SpacingsObliqueLeftHandedAndFarAway)
         }
       }
     }
+  }
+}
+
+TEST(TraceStress, SegmentsThatEndOnEdgesOfBinsLeaveTheirLengthAndNothingNegative)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> width(0.005f, 0.5f);
+  std::uniform_int_distribution<int> edge(0, 60);
+  const TraceLine line{ Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f) };
+  for (int n = 0; n < 20000; ++n)
+  {
+    const float binMm = width(random);
+    const int first = edge(random);
+    const float from = float(first) * binMm;
+    const float to = float(first + 1 + edge(random)) * binMm;
+    LineTally tally(130, double(binMm), 1, 0, 1.0, 1.0);
+    tally.start(line, 100.0f);
+    const bool down = n % 2 == 0;
+    tally.segment(
+      { Vec3f(0.0f, 0.0f, down ? from : to), Vec3f(0.0f, 0.0f, down ? 1.0f : -1.0f), to - from, 1.0f, 0.0f, 0.0f });
+    double length = 0.0;
+    for (const BinSums<double>& bin : tally.takeBins(1))
+    {
+      ASSERT_GE(bin.of[intensitySum], 0.0) << binMm << " " << first;
+      length += bin.of[intensitySum] * binMm;
+    }
+    ASSERT_NEAR(length, to - from, 1e-5 * to) << binMm << " " << first;
   }
 }
 
