@@ -15,7 +15,7 @@ struct BoundaryHit
   float intensity;       ///< of the path on arrival, 1 at the transducer
   float echo;            ///< amplitude of the boundary's echo, were it smooth, before the coherence weight
   float incidenceCosine; ///< of the angle between the path and the normal, above 0
-  float depthMm;         ///< along the line's axis, where the echo appears
+  float depthMm;         ///< along the line's axis
   float pathMm;          ///< travelled since the transducer
   int bounce;            ///< boundaries met before
   int from;              ///< medium before and behind: indices into the scene's tissues and, after these, the targets
