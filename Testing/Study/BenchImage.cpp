@@ -4,6 +4,7 @@
 #include "DoubleTrace.h"
 #include "RelativeRms.h"
 
+#include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
 #include "Simulator.h"
@@ -28,11 +29,12 @@ std::array<int, 3> array(const Vec3i& v)
   return { v.x, v.y, v.z };
 }
 
-DoubleInput::Medium doubleMedium(const Tissue& t, double frequencyMHz)
+DoubleInput::Medium doubleMedium(const Tissue& t, const TraceSettings& tracing)
 {
   return { t.impedanceMRayl,
            t.soundSpeedMPerS,
-           t.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0,
+           tracing.rangeIsTime() ? 1000.0 * assumedSoundSpeedMmPerUs / t.soundSpeedMPerS : 1.0,
+           t.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0,
            t.tau,
            t.gamma,
            t.roughnessMm,
@@ -66,12 +68,12 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
   input.spacing = array(spacing);
   for (const Tissue& t : scene.tissues())
   {
-    input.media.push_back(doubleMedium(t, tracing.frequencyMHz));
+    input.media.push_back(doubleMedium(t, tracing));
   }
   input.firstTargetMedium = int(input.media.size());
   for (const TargetSurface& target : bench.targets)
   {
-    input.media.push_back(doubleMedium(target.tissue, tracing.frequencyMHz));
+    input.media.push_back(doubleMedium(target.tissue, tracing));
   }
   if (!bench.targets.empty())
   {
@@ -88,7 +90,8 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
     input.settings[parameter.name] = numberOf(value);
   });
   input.lowDiscrepancy = tracing.sampling != Sampling::Independent;
-  input.depthMm = tracing.depthMm;
+  input.depthMm = tracing.pathDepthMm();
+  input.rangeIsTime = tracing.rangeIsTime();
   input.binCount = tracing.binCount();
   input.echoSampleMm = tracing.echoSampleMm;
   input.echoCount = tracing.echoCount();
@@ -97,13 +100,15 @@ DoubleInput doubleInput(const BenchScene& bench, const TraceSettings& tracing, c
   return input;
 }
 
-/// RF of Acoustic by the product's own image formation. `image` has the intensity, `absorbed` is A times that.
+/// RF of Acoustic by the product's own image formation. `image` has the intensity, `absorbed` is A times that, and the
+/// offsets are those of TracedLines.
 std::vector<std::complex<double>> rfOf(const BenchScene& bench, const TraceSettings& tracing, const BenchImage& image,
-                                       const std::vector<double>& absorbed)
+                                       const std::vector<double>& absorbed, const std::vector<double>& depthOffsetMm)
 {
   TracedLines traced = tracedLayout(image.lineCount, tracing, bench.targets);
   traced.intensity.assign(image.intensity.begin(), image.intensity.end());
   traced.standardError.resize(image.intensity.size());
+  traced.depthOffsetMm.assign(depthOffsetMm.begin(), depthOffsetMm.end());
   for (std::size_t i = 0; i < absorbed.size(); ++i)
   {
     const double intensity = image.intensity[i];
@@ -175,8 +180,9 @@ BenchImage imageInDouble(const BenchScene& bench, const TraceSettings& tracing)
   DoubleTraced traced = traceInDouble(doubleInput(bench, tracing, setup));
   image.traceSeconds = secondsSince(start);
   image.intensity = std::move(traced.intensity);
-  image.iq = tracing.model == InterfaceModel::Amadou2024 ? rfInDouble(bench, image, traced.echo)
-                                                         : rfOf(bench, tracing, image, traced.absorbed);
+  image.iq = tracing.model == InterfaceModel::Amadou2024
+               ? rfInDouble(bench, image, traced.echo)
+               : rfOf(bench, tracing, image, traced.absorbed, traced.depthOffsetMm);
   return image;
 }
 
@@ -270,12 +276,14 @@ BenchImage exactStackImage(const BenchScene& stack)
   BenchImage image = emptyImage(stack, stack.tracing);
   const StackLine line = stackLine(stack.tracing);
   std::vector<double> absorbed;
+  std::vector<double> depthOffsetMm;
   for (int i = 0; i < image.lineCount; ++i)
   {
     image.intensity.insert(image.intensity.end(), line.intensity.begin(), line.intensity.end());
     absorbed.insert(absorbed.end(), line.absorbed.begin(), line.absorbed.end());
+    depthOffsetMm.insert(depthOffsetMm.end(), line.depthOffsetMm.begin(), line.depthOffsetMm.end());
   }
-  image.iq = rfOf(stack, stack.tracing, image, absorbed);
+  image.iq = rfOf(stack, stack.tracing, image, absorbed, depthOffsetMm);
   return image;
 }
 

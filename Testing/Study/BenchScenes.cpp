@@ -1,6 +1,7 @@
 #include "BenchScenes.h"
 
 #include "Core/Progress.h"
+#include "Core/SoundSpeed.h"
 #include "PhantomImaging.h"
 #include "Phantoms/TestObjects.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -28,9 +29,9 @@ void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool
   const std::vector<Layer>& layers = stackLayers();
   const double decay = layers[layer].tissue.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0;
   const bool lastDown = down && layer + 1 == layers.size();
-  double wall = down ? (lastDown ? tracing.depthMm : layers[layer + 1].fromMm) : layers[layer].fromMm;
-  // Nothing is heard of a path whose length and way back are more than twice the depth.
-  const double heard = 2.0 * tracing.depthMm - length - r;
+  double wall = down ? (lastDown ? tracing.pathDepthMm() : layers[layer + 1].fromMm) : layers[layer].fromMm;
+  // Nothing is heard of a path whose length and way back are more than twice the depth of the paths.
+  const double heard = 2.0 * tracing.pathDepthMm() - length - r;
   const bool late = heard <= 0.0 || (down && r + 0.5 * heard < wall);
   wall = late ? (down && heard > 0.0 ? r + 0.5 * heard : r) : wall;
   const double low = std::min(r, wall);
@@ -63,6 +64,23 @@ void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool
   followStack(tracing, wall, next, down, arrives * (1.0 - reflectance), absorbed, length, collisions + 1, out);
 }
 
+/// The depth that is shown at a range: layer by layer, as far as its time goes.
+double stackDepth(double rangeMm)
+{
+  const std::vector<Layer>& layers = stackLayers();
+  double fromRange = 0.0;
+  for (std::size_t layer = 0;; ++layer)
+  {
+    const double rangePerMm = 1000.0 * assumedSoundSpeedMmPerUs / layers[layer].tissue.soundSpeedMPerS;
+    const double into = (rangeMm - fromRange) / rangePerMm;
+    if (layer + 1 == layers.size() || layers[layer].fromMm + into <= layers[layer + 1].fromMm)
+    {
+      return layers[layer].fromMm + into;
+    }
+    fromRange += (layers[layer + 1].fromMm - layers[layer].fromMm) * rangePerMm;
+  }
+}
+
 } // namespace
 
 const std::vector<Layer>& stackLayers()
@@ -80,6 +98,11 @@ StackLine stackLine(const TraceSettings& tracing)
   StackLine line;
   line.intensity.resize(std::size_t(tracing.binCount()));
   line.absorbed.resize(line.intensity.size());
+  for (std::size_t b = 0; b < line.intensity.size(); ++b)
+  {
+    const double rangeMm = double(b) * tracing.radialBinMm;
+    line.depthOffsetMm.push_back(stackDepth(rangeMm) - rangeMm);
+  }
   followStack(tracing, 0.0, 0, true, 1.0, 0.0, 0.0, 0, line);
   return line;
 }
@@ -101,7 +124,7 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCou
       tissues.push_back(t);
     }
     bench.tracing.depthMm = 80.0;
-    bench.scene = test::makeScene(Vec3i(Vec3d(20.0, 20.0, 80.0) / h), Vec3d(h), tissues, [](const Vec3d& p) {
+    bench.scene = test::makeScene(Vec3i(Vec3d(20.0, 20.0, 84.0) / h), Vec3d(h), tissues, [](const Vec3d& p) {
       int layer = 0;
       while (layer + 1 < int(stackLayers().size()) && p.z > stackLayers()[std::size_t(layer) + 1].fromMm)
       {

@@ -39,8 +39,9 @@ const std::vector<Layer>& stackLayers();
 /// boundaries, each with its probability.
 struct StackLine
 {
-  std::vector<double> intensity; ///< by bin
-  std::vector<double> absorbed;  ///< A times that, A the attenuation that has been met, Np of intensity
+  std::vector<double> intensity;     ///< by bin
+  std::vector<double> absorbed;      ///< A times that, A the attenuation that has been met, Np of intensity
+  std::vector<double> depthOffsetMm; ///< at the range of each bin's start: what is shown there lies so much deeper
 };
 StackLine stackLine(const TraceSettings& tracing);
 

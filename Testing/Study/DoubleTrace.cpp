@@ -59,6 +59,30 @@ Space makeSpace(const DoubleInput& input, const std::vector<kernel::BvhNode>& no
   return space;
 }
 
+/// Where the line's axis leads, by time, as trace() finds it.
+void findDepthOffsets(const DoubleInput& input, const kernel::TraceView& view, const Space& space,
+                      const kernel::TraceLine& line, double* offset)
+{
+  const double binMm = input.settings.at("radialBinMm");
+  const int steps = kernel::flightSteps(binMm);
+  const double stepMm = binMm / steps;
+  const kernel::TargetSpans spans = kernel::targetSpans(view, space, line);
+  std::vector<double> rangeMm{ 0.0 };
+  for (int b = 0; b < input.binCount; ++b)
+  {
+    double range = rangeMm.back();
+    for (int s = 0; s < steps; ++s)
+    {
+      range += stepMm * kernel::rangePerDepth(view, space, line, spans, (b * steps + s + 0.5) * stepMm);
+    }
+    rangeMm.push_back(range);
+  }
+  for (int b = 0; b < input.binCount; ++b)
+  {
+    offset[b] = kernel::depthOfRange(rangeMm.data(), input.binCount, binMm, b * binMm) - b * binMm;
+  }
+}
+
 /// One line by paths of its own, as trace() follows it.
 void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Space& space,
                const kernel::TraceLine& line, int index, kernel::TracedLines& out, double* absorbed)
@@ -120,7 +144,8 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   std::vector<kernel::TraceMedium> media;
   for (const DoubleInput::Medium& m : input.media)
   {
-    media.push_back({ m.impedance, m.speed, m.decayPerMm, m.tau, m.gamma, m.roughnessMm, m.correlationMm });
+    media.push_back(
+      { m.impedance, m.speed, m.rangePerMm, m.decayPerMm, m.tau, m.gamma, m.roughnessMm, m.correlationMm });
   }
   std::vector<kernel::BvhNode> nodes;
   for (const DoubleInput::Node& n : input.nodes)
@@ -148,9 +173,16 @@ DoubleTraced traceInDouble(const DoubleInput& input)
   out.intensity.assign(lines.size() * std::size_t(input.binCount), 0.0);
   out.boundaryEcho.assign(lines.size() * std::size_t(input.echoCount), {});
   std::vector<double> absorbed(out.intensity.size(), 0.0);
-  parallelFor(out.lineCount, {},
-              [&](int i) { traceLine(input, view, space, lines[std::size_t(i)], i, out, absorbed.data()); });
-  return { std::move(out.intensity), std::move(absorbed), std::move(out.boundaryEcho) };
+  out.depthOffsetMm.assign(input.rangeIsTime ? out.intensity.size() : 0, 0.0);
+  parallelFor(out.lineCount, {}, [&](int i) {
+    const kernel::TraceLine& line = lines[std::size_t(i)];
+    traceLine(input, view, space, line, i, out, absorbed.data());
+    if (input.rangeIsTime)
+    {
+      findDepthOffsets(input, view, space, line, out.depthOffsetMm.data() + std::ptrdiff_t(i) * input.binCount);
+    }
+  });
+  return { std::move(out.intensity), std::move(absorbed), std::move(out.depthOffsetMm), std::move(out.boundaryEcho) };
 }
 
 } // namespace sono::study

@@ -17,6 +17,7 @@ struct DoubleInput
   {
     double impedance;
     double speed;
+    double rangePerMm;
     double decayPerMm;
     double tau;
     double gamma;
@@ -54,7 +55,8 @@ struct DoubleInput
   int outsideTissue;
   std::map<std::string, double> settings; ///< the tracer's parameters by their names
   bool lowDiscrepancy;
-  double depthMm;
+  double depthMm; ///< of the paths
+  bool rangeIsTime;
   int binCount;
   double echoSampleMm;
   int echoCount;
@@ -66,6 +68,7 @@ struct DoubleTraced
 {
   std::vector<double> intensity;          ///< by line and bin
   std::vector<double> absorbed;           ///< the same: the sum of A I, see LineTally
+  std::vector<double> depthOffsetMm;      ///< the same, by range: TracedLines::depthOffsetMm
   std::vector<std::complex<double>> echo; ///< by line and echo sample
 };
 

@@ -44,6 +44,7 @@ using ::sono::YieldPoint;
 #define vec3 dvec3
 #define sono sonoInDouble
 #define atan2f atan2
+#define ceilf ceil
 #define cosf cos
 #define erfcf erfc
 #define expf exp
@@ -96,6 +97,7 @@ inline double sinSmall(double x)
 #include "Kernel/EchoSplat.h"
 #include "Kernel/Scatterer.h"
 #include "Kernel/TargetBvh.h"
+#include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
 #include "Trace/Deposit.h"
 #include "Trace/Trace.h"
@@ -105,6 +107,7 @@ inline double sinSmall(double x)
 #undef vec3
 #undef sono
 #undef atan2f
+#undef ceilf
 #undef cosf
 #undef erfcf
 #undef expf
