@@ -2,7 +2,7 @@
 import unittest
 
 import numpy as np
-from chain import Chain, listen, make
+from chain import Chain, listen, make, shown_deeper
 from sonovdb.vtkSonoFilters import vtkSonoErrorMap, vtkSonoUltrasound
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
@@ -31,10 +31,16 @@ class TestErrorMap(unittest.TestCase):
         self.map.SetInputConnection(self.chain.tracer.GetOutputPort())
 
     def test_percentages_lie_where_their_lines_do(self):
-        """Each pixel by hand: its angle and depth, and the four values of lines and bins around."""
+        """Each pixel by hand: its angle and range, and the values of the lines beside it, known at every half a bin of
+        range by the depth that is shown there."""
         intensity, error = traced_lines(self.chain)
         with np.errstate(invalid="ignore"):
             percent = np.where(intensity > 0, 100 * error / intensity, 100)
+        middles = 0.25 * np.arange(percent.shape[1]) + 0.125
+        samples = 0.125 * np.arange(2 * percent.shape[1])
+        traced = self.chain.tracer.GetOutput()
+        percent = np.array([np.interp(samples + shown_deeper(traced, n, samples), middles, of_line)
+                            for n, of_line in enumerate(percent)])
         self.map.Update()
         flat = self.map.GetOutputDataObject(1)
         made, mask = array(flat, "ErrorPercent"), array(flat, "Mask")
@@ -42,12 +48,12 @@ class TestErrorMap(unittest.TestCase):
         x_mm = (flat.GetOrigin()[0] + flat.GetSpacing()[0] * np.arange(columns))[None, :]
         y_mm = (flat.GetOrigin()[1] + flat.GetSpacing()[1] * np.arange(rows))[:, None]
         line = (np.degrees(np.arctan2(x_mm, y_mm)) + 30) / 60 * 12
-        bins = np.hypot(x_mm, y_mm) / 0.25 - 0.5
-        inside = (line > 0.01) & (line < 11.99) & (bins < 359.5) & (bins > 2)
+        halves = np.hypot(x_mm, y_mm) / 0.125
+        inside = (line > 0.01) & (line < 11.99) & (halves < 720) & (halves > 5)
         self.assertGreater(inside.sum(), 5000)
-        line, bins = line[inside], np.clip(bins[inside], 0, 359)
-        low, near = np.minimum(line.astype(int), 11), np.minimum(bins.astype(int), 358)
-        across, along = line - low, bins - near
+        line, halves = line[inside], halves[inside]
+        low, near = line.astype(int), halves.astype(int)
+        across, along = line - low, halves - near
         by_hand = ((1 - across) * ((1 - along) * percent[low, near] + along * percent[low, near + 1])
                    + across * ((1 - along) * percent[low + 1, near] + along * percent[low + 1, near + 1]))
         np.testing.assert_allclose(made[inside], by_hand, atol=0.05)

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from chain import Chain, listen
+from chain import Chain, listen, shown_deeper
 from sonovdb.vtkSonoFilters import vtkSonoPictureWriter
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
@@ -150,7 +150,10 @@ class TestFlatImage(PictureCase):
             x, y = lateral[0, column], depth[row, 0]
             if np.hypot(x, y) > 85 or abs(np.degrees(np.arctan2(x, y))) > 28:
                 continue
-            place, seen = position + x * right + y * axial, set()
+            # What is shown lies deeper than its pixel, as the traced lines say.
+            range_mm, line = np.hypot(x, y), (np.degrees(np.arctan2(x, y)) + 30) / 60 * 11
+            longer = 1 + shown_deeper(self.chain.tracer.GetOutput(), line, range_mm) / range_mm
+            place, seen = position + longer * (x * right + y * axial), set()
             for shift in np.array(np.meshgrid(*3 * [(-0.4, 0.4)])).T.reshape(-1, 3):  # a pixel may be half a pixel off
                 point = labels.FindPoint(place + shift)
                 seen.add(int(labels.GetPointData().GetScalars().GetTuple1(point)))

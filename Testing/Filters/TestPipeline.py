@@ -36,7 +36,7 @@ class TestStages(unittest.TestCase):
 
     def test_traced_lines_have_one_row_a_line(self):
         lines = self.chain.tracer.GetOutputDataObject(0)
-        self.assertEqual(lines.GetDimensions(), (360, 12, 1))  # 90 mm in bins of 0.25 mm
+        self.assertEqual(lines.GetDimensions(), (375, 12, 1))  # 90 mm and 4 % of it in bins of 0.25 mm: 374.4
         self.assertAlmostEqual(lines.GetOrigin()[0], 0.125)    # the first bin's centre
         self.assertAlmostEqual(lines.GetSpacing()[0], 0.25)
         intensity = values(lines, "Intensity")
@@ -113,13 +113,14 @@ class TestStages(unittest.TestCase):
         whole_extent = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()
         chain = Chain()
         chain.tracer.SetPathsPerLine(1)
-        for depth_mm in (161.0, 168.0, 175.0):
+        for depth_mm in (122.5, 148.75, 157.5, 166.25):  # 4 % deeper than these are 364, 442, 468 and 494 bins of 0.35
             for bin_mm in (0.35, 0.7):
                 with self.subTest(depth=depth_mm, bin=bin_mm):
                     chain.probe.SetDepthMm(depth_mm)
                     chain.tracer.SetRadialBinMm(bin_mm)
                     chain.tracer.Update()
-                    self.assertEqual(chain.tracer.GetOutputDataObject(0).GetDimensions()[0], round(depth_mm / bin_mm))
+                    self.assertEqual(chain.tracer.GetOutputDataObject(0).GetDimensions()[0],
+                                     round(1.04 * depth_mm / bin_mm))
                     for port in (0, 1):
                         announced = chain.tracer.GetOutputInformation(port).Get(whole_extent)
                         self.assertEqual(tuple(announced), chain.tracer.GetOutputDataObject(port).GetExtent())

@@ -5,7 +5,7 @@ import numpy as np
 import paraview  # noqa: F401  (finds ParaView's VTK libraries)
 from sonovdb.vtkSonoFilters import (vtkSonoBMode, vtkSonoImageFormation, vtkSonoLabelMapReader, vtkSonoProbeSource,
                                     vtkSonoRayTracer, vtkSonoScanConverter, vtkSonoSceneBuilder, vtkSonoThoraxSource)
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
@@ -74,6 +74,21 @@ def moving_plane(folder, depths, size, names):
         reader.AddFileName(write_labels(pathlib.Path(folder, f"phase{phase}.vti"), voxels))
     pathlib.Path(folder, "labels.csv").write_text("id,name\n1,{}\n2,{}\n".format(*names))
     return reader
+
+
+def shown_deeper(lines, line, range_mm, elevations=1, elevation=0.0):
+    """How much deeper, in mm, than its range lies what traced lines show there: their offsets, which begin with each
+    bin, straight between bins, lines and elevations. `line` counts from 0, with fractions, `elevation` from 0 to 1."""
+    offsets = vtk_to_numpy(lines.GetFieldData().GetArray("DepthOffsetMm"))
+    offsets = offsets.reshape(elevations, lines.GetDimensions()[1] // elevations, -1)
+    starts = lines.GetSpacing()[0] * np.arange(offsets.shape[2])
+    deeper = 0.0
+    for e, plane in enumerate(offsets):
+        for n, of_line in enumerate(plane):
+            shares = [np.maximum(0, 1 - np.abs(np.clip(wanted, 0, last) - at)) for wanted, at, last in (
+                (line, n, len(plane) - 1), (elevation * (elevations - 1), e, elevations - 1))]
+            deeper = deeper + shares[0] * shares[1] * np.interp(range_mm, starts, of_line)
+    return deeper
 
 
 class Chain:
