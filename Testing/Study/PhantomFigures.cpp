@@ -204,7 +204,7 @@ void drawParameters(Output& output, const HeartView& base, const std::string& na
     const PlaneImage plane = scanConvert(base.geometry, grey.grey, grey.sampleCount, grey.sampleMm, pixelMm);
     if (panels.empty())
     {
-      panels.push_back(pictureOfLabels(volume, base.geometry, pose, plane));
+      panels.push_back(pictureOfLabels(volume, base.geometry, pose, plane, image.traced));
     }
     panels.push_back(pictureOf(plane));
     const auto against = [&](const std::string& label, double fromMm) {
@@ -225,6 +225,7 @@ struct ObjectView
 {
   std::unique_ptr<Scene> scene;
   PhantomImaging imaging;
+  TracedLines traced;
   RfLines rf;
 };
 
@@ -233,13 +234,14 @@ ObjectView viewObject(TestObject object, bool quick)
 {
   TestObjectSettings settings;
   settings.spacingMm = quick ? 2.0 : 0.5;
-  ObjectView view{ sceneOf(makeTestObject(object, settings)), phantomImaging(quick ? 32 : 128), {} };
+  ObjectView view{ sceneOf(makeTestObject(object, settings)), phantomImaging(quick ? 32 : 128), {}, {} };
   PhantomImaging& imaging = view.imaging;
   imaging.geometry.depthMm = imaging.tracing.depthMm = imaging.echo.depthMm = 110.0;
   imaging.bmode.tgcDbPerCm = 3.6;
   imaging.bmode.automaticReference = true;
   const auto lines = makeScanLines(imaging.geometry, ProbePose{});
-  view.rf = formRf(*view.scene, lines, trace(*view.scene, lines, imaging.tracing), imaging.echo);
+  view.traced = trace(*view.scene, lines, imaging.tracing);
+  view.rf = formRf(*view.scene, lines, view.traced, imaging.echo);
   return view;
 }
 
@@ -273,7 +275,8 @@ Picture pictureOfView(const ObjectView& view, bool labels)
   const BModeLines grey =
     makeBMode(view.rf.envelope(), view.rf.lineCount, view.rf.sampleCount, view.rf.sampleMm, view.imaging.bmode);
   const PlaneImage plane = scanConvert(view.imaging.geometry, grey.grey, grey.sampleCount, grey.sampleMm, 0.5);
-  return labels ? pictureOfLabels(view.scene->volume(), view.imaging.geometry, ProbePose{}, plane) : pictureOf(plane);
+  return labels ? pictureOfLabels(view.scene->volume(), view.imaging.geometry, ProbePose{}, plane, view.traced)
+                : pictureOf(plane);
 }
 
 void drawArtefacts(Output& output)
@@ -283,8 +286,8 @@ void drawArtefacts(Output& output)
   const ObjectView bone = viewObject(TestObject::ShadowSphere, quick);
   const ObjectView rib = viewObject(TestObject::Rib, quick);
   output.figure("enhancement_db", behindSphereDb(fluid), "dB");
-  // Over the sphere's diameter gel would have taken this more than water does.
-  output.figure("enhancement_theory_db", 2.0 * (0.5 - 0.0022) * 3.6 * 2.0, "dB");
+  // Over the sphere's 2 cm, which by their time are as long as 2.081 cm of gel, gel would have taken this more.
+  output.figure("enhancement_theory_db", 2.0 * (0.5 * 2.0 * 1540.0 / 1480.0 - 0.0022 * 2.0) * 3.6, "dB");
   output.figure("shadow_db", behindSphereDb(bone), "dB");
   writePicture(montage({ pictureOfView(fluid, false), pictureOfView(bone, false), pictureOfView(rib, true),
                          pictureOfView(rib, false) },

@@ -62,9 +62,10 @@ Picture pictureOf(const PlaneImage& grey)
 }
 
 Picture pictureOfLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
-                        const PlaneImage& layout)
+                        const PlaneImage& layout, const TracedLines& traced)
 {
-  const std::vector<std::uint16_t> ids = sliceLabels(labels, geometry, pose, layout);
+  const DepthOffsets offsets{ &traced.depthOffsetMm, traced.binCount, traced.binMm };
+  const std::vector<std::uint16_t> ids = sliceLabels(labels, geometry, pose, layout, offsets);
   Picture picture = blank(layout.width, layout.height);
   for (std::size_t i = 0; i < ids.size(); ++i)
   {

@@ -3,6 +3,7 @@
 #include "Image/ScanConvert.h"
 #include "Labels/LabelVolume.h"
 #include "Probe/ScanGeometry.h"
+#include "Trace/Trace.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,9 +22,10 @@ struct Picture
 /// Grey levels 0 to 1; outside of the sector dark blue, so that it differs from black inside.
 Picture pictureOf(const PlaneImage& grey);
 
-/// The labels of the probe's plane in their colours, or in a palette of our own where the map has none.
+/// The labels of what the traced lines show in the probe's plane, in their colours, or in a palette of our own where
+/// the map has none.
 Picture pictureOfLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
-                        const PlaneImage& layout);
+                        const PlaneImage& layout, const TracedLines& traced);
 
 /// Pictures of one size in rows.
 Picture montage(const std::vector<Picture>& panels, int columns);
