@@ -65,8 +65,8 @@ TEST(GpuStages, ManyCollisionsManyPathsFineBins)
   s.tracing.pathsPerLine = 20001;
   expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu), "20001 paths");
   s.tracing.pathsPerLine = 8000; // so many that none counts alone in a surface's echo
-  s.tracing.radialBinMm = 0.01;  // 16000 bins do not fit in shared memory
-  expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu), "16000 bins");
+  s.tracing.radialBinMm = 0.01;  // 16640 bins do not fit in shared memory
+  expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu), "16640 bins");
   s.tracing.pathsPerLine = 3; // fewer than the batches
   s.tracing.radialBinMm = 0.25;
   expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu), "3 paths");
