@@ -23,7 +23,7 @@ struct SampledPulse;
  * own besides those of the tissues (port 1): points in world coordinates, LPS mm, with the point array "Amplitude", the
  * echo of each on the axis of a beam where the intensity is 1. An optional pulse-echo field (port 2, the output of
  * vtkSonoPulseEchoField) takes the place of the Gaussian beam; it must reach the probe's depth. The output holds lines
- * x RF samples, x the depth in mm and y the number of the scan line, with the point arrays "RF", "IQ" (complex,
+ * x RF samples, x the range in mm and y the number of the scan line, with the point arrays "RF", "IQ" (complex,
  * demodulated) and "Envelope" (the modulus of IQ).
  */
 class VTKSONOFILTERS_EXPORT vtkSonoImageFormation : public vtkImageAlgorithm

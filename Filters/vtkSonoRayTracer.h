@@ -24,14 +24,16 @@ struct TraceSettings;
  * one string "Tissue", or TargetTissue.
  * Output 0: lines x radial bins, x the depth in mm and y the number of the scan line, with the point arrays
  * "Intensity" (mean one-way intensity, 1 at the transducer), "StandardError" (of that mean) and
- * "AttenuationNpPerMHz" (two-way exponent of the amplitude per MHz). Its field data carry the scene, the probe and the
- * boundary echoes, so that it alone suffices for vtkSonoImageFormation.
+ * "AttenuationNpPerMHz" (two-way exponent of the amplitude per MHz). In the model Acoustic they reach 4 % deeper than
+ * the image, since range is time there. Its field data carry the scene, the probe, the boundary echoes and
+ * "DepthOffsetMm" (by line and range: how much deeper than the range of each bin's start lies what is shown there; of
+ * Acoustic), so that it alone suffices for vtkSonoImageFormation.
  * Output 1: lines x RF samples with the complex point array "BoundaryEcho", of Amadou 2024; empty for Acoustic.
  * Output 2: some of the paths as polylines in the world, for display, with the point arrays "Intensity" (on arrival),
  * "IntensityDb" (20 log10 of it) and "Bounce" (boundaries met before), and the cell array "Line".
  * Output 3: the boundaries that these paths met, as vertices on the surfaces, with the same arrays and "Normals" (into
  * the tissue behind), "IncidenceDeg" (between path and normal), "EchoAmplitude" (of the boundary's echo, before the
- * coherence weight), "DepthMm" (along the scan line, where the echo appears), "PathMm" (travelled since the
+ * coherence weight), "DepthMm" (along the scan line), "PathMm" (travelled since the
  * transducer), and the names "FromTissue" and "ToTissue"; "Line" is a point array there.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoRayTracer : public vtkImageAlgorithm

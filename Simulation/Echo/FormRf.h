@@ -34,12 +34,12 @@
 
 namespace sono {
 
-/// RF lines as demodulated IQ: the real RF at depth r is Re(iq exp(i 2 k r)), k = 2 pi f / c0; |iq| is the envelope.
+/// RF lines as demodulated IQ: the real RF at range r is Re(iq exp(i 2 k r)), k = 2 pi f / c0; |iq| is the envelope.
 struct RfLines
 {
   int lineCount = 0;
   int sampleCount = 0;
-  double sampleMm = 0.0; ///< sample s lies at depth s * sampleMm
+  double sampleMm = 0.0; ///< sample s lies at range s * sampleMm
   double centreFrequencyMHz = 0.0;
   double samplingMHz = 0.0;
   std::vector<std::complex<float>> iq; ///< lineCount x sampleCount
