@@ -183,7 +183,7 @@ void LineTally::addReverberation(const PathSegment& s)
   {
     const float from = std::max(low, float(b) * binMm_);
     const float to = std::min(high, float(b + 1) * binMm_);
-    reverberation_[std::size_t(b)] += double(meanOver(g, from, to, inverseMu) * std::max(0.0f, to - from) / binMm_);
+    reverberation_[std::size_t(b)] += double(meanOver(g, from, to, inverseMu) * larger(0.0f, to - from) / binMm_);
   }
 }
 

@@ -22,46 +22,39 @@ std::vector<ScanLine> middleLines(const ScanGeometry& geometry, const ProbePose&
   return { first, first + lineCount };
 }
 
-/// Adds what a path leaves from `r` on, inside `layer`, going down or up.
-void followStack(const TraceSettings& tracing, double r, std::size_t layer, bool down, double intensity,
-                 double absorbed, double length, int collisions, StackLine& out)
+/// Adds what goes straight on leaves, through so many boundaries; what is reflected is not followed.
+void followStack(const TraceSettings& tracing, StackLine& out)
 {
   const std::vector<Layer>& layers = stackLayers();
-  const double decay = layers[layer].tissue.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0;
-  const bool lastDown = down && layer + 1 == layers.size();
-  double wall = down ? (lastDown ? tracing.pathDepthMm() : layers[layer + 1].fromMm) : layers[layer].fromMm;
-  // Nothing is heard of a path whose length and way back are more than twice the depth of the paths.
-  const double heard = 2.0 * tracing.pathDepthMm() - length - r;
-  const bool late = heard <= 0.0 || (down && r + 0.5 * heard < wall);
-  wall = late ? (down && heard > 0.0 ? r + 0.5 * heard : r) : wall;
-  const double low = std::min(r, wall);
-  const double high = std::max(r, wall);
-  for (std::size_t b = 0; b < out.intensity.size(); ++b)
+  double intensity = 1.0;
+  double absorbed = 0.0;
+  for (std::size_t layer = 0; layer < layers.size() && int(layer) <= tracing.maxCollisions; ++layer)
   {
-    const double from = std::max(low, double(b) * tracing.radialBinMm);
-    const double to = std::min(high, double(b + 1) * tracing.radialBinMm);
-    if (to > from)
+    const double decay = layers[layer].tissue.attenuationDbPerCmMHz * tracing.frequencyMHz * std::log(10.0) / 100.0;
+    const double low = layers[layer].fromMm;
+    const double high = layer + 1 == layers.size() ? tracing.pathDepthMm() : layers[layer + 1].fromMm;
+    for (std::size_t b = 0; b < out.intensity.size(); ++b)
     {
-      const double near = down ? from - r : r - to;
-      const double share = decay > 0.0 ? -std::expm1(-decay * (to - from)) / decay : to - from;
-      const double value = intensity * std::exp(-decay * near) * share / tracing.radialBinMm;
-      out.intensity[b] += value;
-      out.absorbed[b] += value * (absorbed + decay * (near + 0.5 * (to - from)));
+      const double from = std::max(low, double(b) * tracing.radialBinMm);
+      const double to = std::min(high, double(b + 1) * tracing.radialBinMm);
+      if (to > from)
+      {
+        const double near = from - low;
+        const double share = decay > 0.0 ? -std::expm1(-decay * (to - from)) / decay : to - from;
+        const double value = intensity * std::exp(-decay * near) * share / tracing.radialBinMm;
+        out.intensity[b] += value;
+        out.absorbed[b] += value * (absorbed + decay * (near + 0.5 * (to - from)));
+      }
+    }
+    absorbed += decay * (high - low);
+    intensity *= std::exp(-decay * (high - low));
+    if (layer + 1 < layers.size())
+    {
+      const double z1 = layers[layer].tissue.impedanceMRayl;
+      const double z2 = layers[layer + 1].tissue.impedanceMRayl;
+      intensity *= 1.0 - std::pow((z2 - z1) / (z2 + z1), 2);
     }
   }
-  if (late || lastDown || (!down && layer == 0) || collisions == tracing.maxCollisions)
-  {
-    return;
-  }
-  const std::size_t next = down ? layer + 1 : layer - 1;
-  const double z1 = layers[layer].tissue.impedanceMRayl;
-  const double z2 = layers[next].tissue.impedanceMRayl;
-  const double reflectance = std::pow((z2 - z1) / (z2 + z1), 2);
-  const double arrives = intensity * std::exp(-decay * (high - low));
-  absorbed += decay * (high - low);
-  length += high - low;
-  followStack(tracing, wall, layer, !down, arrives * reflectance, absorbed, length, collisions + 1, out);
-  followStack(tracing, wall, next, down, arrives * (1.0 - reflectance), absorbed, length, collisions + 1, out);
 }
 
 /// The depth that is shown at a range: layer by layer, as far as its time goes.
@@ -103,7 +96,7 @@ StackLine stackLine(const TraceSettings& tracing)
     const double rangeMm = double(b) * tracing.radialBinMm;
     line.depthOffsetMm.push_back(stackDepth(rangeMm) - rangeMm);
   }
-  followStack(tracing, 0.0, 0, true, 1.0, 0.0, 0.0, 0, line);
+  followStack(tracing, line);
   return line;
 }
 
@@ -167,6 +160,7 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCou
   {
     throw Error("there is no bench scene '" + name + "': take stack, cyst, rib, a4c or phantom");
   }
+  bench.tracing.reverberation = false; // the twin in double precision knows the direct sound alone
   bench.echo.depthMm = bench.tracing.depthMm;
   bench.tracing.frequencyMHz = bench.echo.centreFrequencyMHz;
   bench.tracing.echoSampleMm = bench.echo.sampleMm();

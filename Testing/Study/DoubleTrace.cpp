@@ -36,6 +36,7 @@ kernel::TraceView makeView(const DoubleInput& input, const std::vector<kernel::T
   view.waveNumberAtOne = 2000.0 * M_PI * input.frequencyMHz;
   view.lowDiscrepancy = input.lowDiscrepancy;
   view.deterministic = deterministic;
+  view.reverberates = false; // the study's settings have none
   view.maxCollisions = int(setting("maxCollisions"));
   view.coherenceMm = setting("coherenceMm");
   view.depthMm = input.depthMm;
@@ -64,18 +65,11 @@ void findDepthOffsets(const DoubleInput& input, const kernel::TraceView& view, c
                       const kernel::TraceLine& line, double* offset)
 {
   const double binMm = input.settings.at("radialBinMm");
-  const int steps = kernel::flightSteps(binMm);
-  const double stepMm = binMm / steps;
   const kernel::TargetSpans spans = kernel::targetSpans(view, space, line);
   std::vector<double> rangeMm{ 0.0 };
   for (int b = 0; b < input.binCount; ++b)
   {
-    double range = rangeMm.back();
-    for (int s = 0; s < steps; ++s)
-    {
-      range += stepMm * kernel::rangePerDepth(view, space, line, spans, (b * steps + s + 0.5) * stepMm);
-    }
-    rangeMm.push_back(range);
+    rangeMm.push_back(rangeMm.back() + kernel::flightBin(view, space, line, spans, binMm, b).rangeMm);
   }
   for (int b = 0; b < input.binCount; ++b)
   {
@@ -89,7 +83,7 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
 {
   kernel::LineTally tally(input.binCount, input.settings.at("radialBinMm"), kernel::binSumsOf(view.model),
                           input.echoCount, input.echoSampleMm, input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
-  tally.start(line, view.coherenceMm);
+  tally.begin(view, line, {});
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
   std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;
   const std::vector<kernel::BinSums<double>> shared = tally.takeBins(1);
