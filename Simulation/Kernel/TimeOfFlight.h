@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/SoundSpeed.h"
 #include "Kernel/LineStart.h"
 
 // A scanner knows time alone: what lies at depth z of a line is shown at the range
@@ -21,7 +22,8 @@ SONO_HD inline int flightSteps(float binMm)
   return steps > 1 ? steps : 1;
 }
 
-/// Where a line's axis runs inside targets, which count instead of the cells there.
+/// Where a line's axis runs inside targets, which count instead of the cells there. Not where it does for less than a
+/// wavelength at the speed that the scanner assumes: the beam is wider, and its wave closes behind a wire unchanged.
 struct TargetSpans
 {
   static constexpr int most = 8;
@@ -40,6 +42,7 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
   {
     return spans;
   }
+  const float shortest = 6.2831853f * 1000.0f * float(assumedSoundSpeedMmPerUs) / view.waveNumberAtOne;
   float from = 0.0f;
   while (spans.count < TargetSpans::most && from < view.depthMm)
   {
@@ -57,10 +60,13 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
     {
       break;
     }
-    spans.fromMm[spans.count] = from + in;
-    spans.toMm[spans.count] = from + in + out.t;
-    spans.medium[spans.count] = view.firstTargetMedium + out.target;
-    ++spans.count;
+    if (out.t >= shortest)
+    {
+      spans.fromMm[spans.count] = from + in;
+      spans.toMm[spans.count] = from + in + out.t;
+      spans.medium[spans.count] = view.firstTargetMedium + out.target;
+      ++spans.count;
+    }
     from += in + out.t + 1e-3f;
   }
   return spans;

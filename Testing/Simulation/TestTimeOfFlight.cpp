@@ -197,6 +197,24 @@ TEST(TimeOfFlight, ATargetsSpeedCounts)
   EXPECT_NEAR(map.depthOf(float(behind + 20.0)), 60.0, 0.1);
 }
 
+TEST(TimeOfFlight, AWireIsTooThinToCount)
+{
+  // A wavelength is 0.616 mm.
+  const Tissue nylon = makeTissue("nylon", 2.96, 2600.0, 0.0);
+  const auto scene = layeredScene({ { 80.0, 1.6, 1540.0, 0.5 } });
+  for (const double thickness : { 0.1, 0.6, 0.65 })
+  {
+    const std::vector<TargetSurface> targets{ makeBox("wire", nylon, { 2.0, 9.0, 20.0 },
+                                                      { 18.0, 11.0, 20.0 + thickness }),
+                                              makeBox("plate", nylon, { 2.0, 2.0, 30.0 }, { 18.0, 18.0, 40.0 }) };
+    const TracedLines traced =
+      trace(*scene, { makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 }) }, tracing(), {}, targets);
+    const double counts = thickness < 0.616 ? 0.0 : thickness;
+    const double behind = 50.0 - (10.0 + counts) * (1.0 - 1540.0 / 2600.0);
+    EXPECT_NEAR(mapOf(traced).depthOf(float(behind)), 50.0, 0.05) << thickness;
+  }
+}
+
 TEST(TimeOfFlight, AmadousRangeIsDepth)
 {
   const auto scene = layeredScene(stack);
