@@ -15,7 +15,8 @@
  *   came, not a number outside the scanned area. It falls with the square root of the number of paths.
  * - "Mask": 1 inside the scanned area.
  * While the probe is being moved nothing is known: no pixel is a number and the mask is empty.
- * It is that of the depth which is shown at a pixel. Between lines and radial bins the percentage is interpolated. The speckle is no error and does not count.
+ * It is that of the depth which is shown at a pixel. Between lines and radial bins the percentage is interpolated. The
+ * speckle is no error and does not count.
  *
  * Output 1 is the same image in the probe's own frame, mm, as of vtkSonoScanConverter.
  */

@@ -23,10 +23,10 @@ struct LabelVolume;
  * (elevation); of a matrix it is a volume, x lateral, y elevation, z axial.
  *
  * Its point arrays are "BMode" (1, black, to 255 in the scanned area, 0 outside), "Mask" (1 inside it) and, as the
- * ground truth, "Labels": the label of the voxel nearest to what is shown there (in the model Acoustic range is time, and that lies
- * deeper or less deep than the pixel), 0 outside the mask and outside the label map. The label map
- * is that of the optional port 1, an image whose active point scalars are labels, else that of the scene that was
- * traced; its names and colours are in the field data. Without either there are no "Labels".
+ * ground truth, "Labels": the label of the voxel nearest to what is shown there (in the model Acoustic range is time,
+ * and that lies deeper or less deep than the pixel), 0 outside the mask and outside the label map. The label map is
+ * that of the optional port 1, an image whose active point scalars are labels, else that of the scene that was traced;
+ * its names and colours are in the field data. Without either there are no "Labels".
  *
  * Output 1 is the same image in the probe's own frame, mm, to look at it flat: x lateral, y range (of a matrix
  * y elevation, z range), 0 at the centre of the transducer's face.
