@@ -1,5 +1,6 @@
 #include "SonoLabelImage.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/Progress.h"
 #include "SonoSharedArray.h"
 
@@ -68,10 +69,11 @@ void copyWholeNumbers(const Value* values, std::size_t count, vtkDataArray* arra
 {
   if constexpr (std::is_same_v<Value, unsigned char> || std::is_same_v<Value, unsigned short>)
   {
+    voxels = roomFor<std::uint16_t>(count);
     voxels.assign(values, values + count);
     return;
   }
-  voxels.resize(count);
+  voxels = largeVector<std::uint16_t>(count);
   for (std::size_t i = 0; i < voxels.size(); ++i)
   {
     const auto value = static_cast<double>(values[i]);

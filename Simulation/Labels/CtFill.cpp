@@ -1,5 +1,6 @@
 #include "Labels/CtFill.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
 #include "Labels/BodyDepth.h"
@@ -216,7 +217,7 @@ std::vector<std::string> fillFromCt(LabelVolume& volume, const MatchedScan& ct, 
   };
 
   const Vec3i n = volume.placement.size;
-  std::vector<std::uint8_t> found(volume.voxels.size(), outside);
+  auto found = largeVector(volume.voxels.size(), std::uint8_t(outside));
   std::array<bool, classCount> occurs{};
   std::mutex mutex;
   parallelFor(n.z, partOf(progress, 0.5, 0.95), [&](int k) {

@@ -1,7 +1,9 @@
 #include "Labels/DistanceField.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -74,14 +76,12 @@ private:
 
 std::vector<float> distanceTo(const std::vector<char>& mask, const Vec3i& size, const Vec3d& spacingMm)
 {
-  std::vector<float> squared(mask.size());
-  for (std::size_t n = 0; n < mask.size(); ++n)
-  {
-    squared[n] = mask[n] ? 0.0f : far;
-  }
+  auto squared = largeVector<float>(mask.size());
   const std::ptrdiff_t row = size.x;
   const std::ptrdiff_t plane = row * size.y;
   parallelFor(size.z, {}, [&](int k) {
+    std::transform(mask.begin() + k * plane, mask.begin() + (k + 1) * plane, squared.begin() + k * plane,
+                   [](char mark) { return mark ? 0.0f : far; });
     Envelope envelope;
     for (int j = 0; j < size.y; ++j)
     {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/LargeMemory.h"
 #include "Core/Progress.h"
 #include "Labels/VoxelFile.h"
 
@@ -112,7 +113,7 @@ inline std::vector<std::uint16_t> readLabelNumbers(VoxelFile& file, const Progre
 {
   file.bytes.need(file.numbers() * bytesOf(file.type)); // before memory is taken for them
   const LabelConversion conversion(file);
-  std::vector<std::uint16_t> labels(std::size_t(file.numbers()));
+  auto labels = largeVector<std::uint16_t>(std::size_t(file.numbers()));
   readNumbers(file, progress, [&](const auto* numbers, std::size_t count, std::size_t position) {
     conversion.convert(numbers, count, position, labels.data() + position);
   });

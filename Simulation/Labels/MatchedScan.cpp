@@ -1,5 +1,6 @@
 #include "Labels/MatchedScan.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Rounding.h"
 #include "Core/Simd.h"
@@ -210,7 +211,7 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, cons
   MatchedScan matched;
   matched.isCt = scale.isCt;
   matched.notice = scale.notice;
-  matched.values.resize(labels.voxels.size());
+  matched.values = largeVector<std::int16_t>(labels.voxels.size());
   if (sameGrid(grid, scan.placement))
   {
     parallelFor(n.z, progress, [&](int k) {

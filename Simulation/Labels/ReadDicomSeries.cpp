@@ -1,5 +1,6 @@
 #include "Labels/ReadDicomSeries.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Labels/DicomFile.h"
 #include "Labels/VoxelFile.h"
@@ -229,7 +230,7 @@ IntensityVolume readDicomSeries(const std::string& path, const Progress& progres
   volume.placement = stack.placement;
   volume.placement.frameOfReference = slices.front().frameOfReference;
   volume.modality = slices.front().modality;
-  volume.values.resize(volume.placement.voxelCount());
+  volume.values = largeVector<float>(volume.placement.voxelCount());
   const std::size_t planeVoxels = std::size_t(volume.placement.size.x) * std::size_t(volume.placement.size.y);
   parallelFor(int(slices.size()), partOf(progress, 0.3, 1.0), [&](int n) {
     readPixels(slices[std::size_t(n)], volume.values.data() + planeVoxels * std::size_t(stack.slices[std::size_t(n)]));

@@ -1,5 +1,6 @@
 #include "Labels/ReadIntensities.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
 #include "Labels/ReadDicomSeries.h"
@@ -30,7 +31,7 @@ IntensityVolume readVoxelFile(const std::string& path, const Progress& progress)
   file.bytes.need(file.numbers() * bytesOf(file.type)); // before memory is taken for them
   IntensityVolume volume;
   volume.placement = file.placement;
-  volume.values.resize(std::size_t(file.numbers()));
+  volume.values = largeVector<float>(std::size_t(file.numbers()));
   readNumbers(file, progress, [&](const auto* numbers, std::size_t count, std::size_t position) {
     float* const values = volume.values.data() + position;
     bool finite = true;

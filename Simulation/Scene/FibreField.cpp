@@ -1,9 +1,12 @@
 #include "Scene/FibreField.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Labels/DistanceField.h"
+#include "Labels/LabelRuns.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cmath>
 #include <string>
@@ -20,19 +23,17 @@ std::size_t indexIn(const Vec3i& p, const Vec3i& size)
   return std::size_t(p.x) + std::size_t(size.x) * (std::size_t(p.y) + std::size_t(size.y) * std::size_t(p.z));
 }
 
-/// Calls visit(voxel, index in the volume, index in the box) for each voxel of a box.
+/// Calls visit(voxel, index in the volume, index in the box) for each voxel of a box's slice at k.
 template<class Visit>
-void forVoxels(const VoxelBox& box, const Vec3i& size, const Visit& visit)
+void forSlice(const VoxelBox& box, int k, const Vec3i& size, const Visit& visit)
 {
-  std::size_t inBox = 0;
-  for (int k = box.first.z; k < box.last.z; ++k)
+  std::size_t inBox = indexIn({ 0, 0, k - box.first.z }, box.size());
+  for (int j = box.first.y; j < box.last.y; ++j)
   {
-    for (int j = box.first.y; j < box.last.y; ++j)
+    const std::size_t row = indexIn({ 0, j, k }, size);
+    for (int i = box.first.x; i < box.last.x; ++i)
     {
-      for (int i = box.first.x; i < box.last.x; ++i)
-      {
-        visit(Vec3i(i, j, k), indexIn({ i, j, k }, size), inBox++);
-      }
+      visit(Vec3i(i, j, k), row + std::size_t(i), inBox++);
     }
   }
 }
@@ -40,14 +41,29 @@ void forVoxels(const VoxelBox& box, const Vec3i& size, const Visit& visit)
 /// Around the muscle, with a margin for derivatives.
 VoxelBox muscleBox(const Vec3i& size, const std::vector<std::uint8_t>& tissues, const std::vector<bool>& isMuscle)
 {
-  VoxelBox box{ size, Vec3i(0) };
-  forVoxels({ Vec3i(0), size }, size, [&](const Vec3i& p, std::size_t at, std::size_t) {
-    if (isMuscle[tissues[at]])
-    {
-      box.first = glm::min(box.first, p);
-      box.last = glm::max(box.last, p + 1);
-    }
+  const VoxelBox none{ size, Vec3i(0) };
+  std::vector<VoxelBox> ofSlices(std::size_t(size.z), none);
+  parallelFor(size.z, {}, [&](int k) {
+    VoxelBox& own = ofSlices[std::size_t(k)];
+    const std::uint8_t* slice = tissues.data() + indexIn({ 0, 0, k }, size);
+    forRuns(slice, std::size_t(size.x) * std::size_t(size.y), [&](std::size_t begin, std::size_t end, std::uint8_t t) {
+      if (isMuscle[t])
+      {
+        const int firstRow = int(begin / std::size_t(size.x));
+        const int lastRow = int((end - 1) / std::size_t(size.x));
+        const bool isOneRow = firstRow == lastRow;
+        const int firstX = isOneRow ? int(begin % std::size_t(size.x)) : 0;
+        const int lastX = isOneRow ? int((end - 1) % std::size_t(size.x)) : size.x - 1;
+        own.first = glm::min(own.first, Vec3i(firstX, firstRow, k));
+        own.last = glm::max(own.last, Vec3i(lastX, lastRow, k) + 1);
+      }
+    });
   });
+  VoxelBox box = none;
+  for (const VoxelBox& own : ofSlices)
+  {
+    box = { glm::min(box.first, own.first), glm::max(box.last, own.last) };
+  }
   return { glm::max(box.first - marginVoxels, Vec3i(0)), glm::min(box.last + marginVoxels, size) };
 }
 
@@ -92,15 +108,18 @@ Vec3d longAxis(const VoxelBox& box, const Vec3i& size, const Vec3d& spacingMm, c
   Vec3d sum(0.0);
   Mat3d products(0.0);
   double count = 0.0;
-  forVoxels(box, size, [&](const Vec3i& p, std::size_t, std::size_t n) {
-    if (mask[n])
-    {
-      const Vec3d q = Vec3d(p - box.first) * spacingMm;
-      sum += q;
-      products += glm::outerProduct(q, q);
-      count += 1.0;
-    }
-  });
+  for (int k = box.first.z; k < box.last.z; ++k)
+  {
+    forSlice(box, k, size, [&](const Vec3i& p, std::size_t, std::size_t n) {
+      if (mask[n])
+      {
+        const Vec3d q = Vec3d(p - box.first) * spacingMm;
+        sum += q;
+        products += glm::outerProduct(q, q);
+        count += 1.0;
+      }
+    });
+  }
   return count > 0.0 ? principalAxis(products / count - glm::outerProduct(sum, sum) / (count * count))
                      : Vec3d(0.0, 0.0, 1.0);
 }
@@ -120,7 +139,7 @@ float wallDepth(float toLeft, float toBlood, float toOutside, float halfVoxel)
 
 FibreField::FibreField(const VoxelBox& box)
   : box_(box)
-  , packed_(box.empty() ? 0 : std::size_t(box.size().x) * std::size_t(box.size().y) * std::size_t(box.size().z), 0u)
+  , packed_(largeVector<std::uint32_t>(box.empty() ? 0 : indexIn({ 0, 0, box.size().z }, box.size())))
 {
 }
 
@@ -152,29 +171,41 @@ FibreField buildFibreField(const LabelVolume& volume, const std::vector<std::uin
   }
   const Vec3i boxSize = box.size();
   const std::size_t count = std::size_t(boxSize.x) * std::size_t(boxSize.y) * std::size_t(boxSize.z);
-  Masks masks{ std::vector<char>(count), std::vector<char>(count), std::vector<char>(count) };
-  forVoxels(box, size, [&](const Vec3i&, std::size_t at, std::size_t n) {
-    const bool blood = isBlood[tissueVoxels[at]];
-    const bool left = blood && isLeft[volume.voxels[at]];
-    masks.left[n] = left;
-    masks.blood[n] = blood && !left;
-    masks.outside[n] = !blood && !isMuscle[tissueVoxels[at]];
-    masks.hasLeft |= left;
+  Masks masks{ largeVector<char>(count), largeVector<char>(count), largeVector<char>(count) };
+  std::atomic<bool> hasLeft{ false };
+  parallelFor(boxSize.z, {}, [&](int k) {
+    bool hasLeftHere = false;
+    forSlice(box, box.first.z + k, size, [&](const Vec3i&, std::size_t at, std::size_t n) {
+      const bool blood = isBlood[tissueVoxels[at]];
+      const bool left = blood && isLeft[volume.voxels[at]];
+      masks.left[n] = left;
+      masks.blood[n] = blood && !left;
+      masks.outside[n] = !blood && !isMuscle[tissueVoxels[at]];
+      hasLeftHere |= left;
+    });
+    if (hasLeftHere)
+    {
+      hasLeft = true;
+    }
   });
+  masks.hasLeft = hasLeft;
   const Vec3d axis = longAxis(box, size, spacingMm, masks.hasLeft ? masks.left : masks.blood);
   std::vector<float> depth = distanceTo(masks.left, boxSize, spacingMm);
   {
     const std::vector<float> toBlood = distanceTo(masks.blood, boxSize, spacingMm);
     const std::vector<float> toOutside = distanceTo(masks.outside, boxSize, spacingMm);
     const float halfVoxel = 0.5f * float(std::cbrt(spacingMm.x * spacingMm.y * spacingMm.z));
-    for (std::size_t n = 0; n < count; ++n)
-    {
-      // Off the muscle the depth goes on, for the derivatives at its surfaces.
-      depth[n] = masks.outside[n] ? 1.0f
-                                  : (masks.left[n] || masks.blood[n]
-                                       ? (masks.blood[n] && masks.hasLeft && toOutside[n] > depth[n] ? 1.0f : 0.0f)
-                                       : wallDepth(depth[n], toBlood[n], toOutside[n], halfVoxel));
-    }
+    const std::size_t slice = indexIn({ 0, 0, 1 }, boxSize);
+    parallelFor(boxSize.z, {}, [&](int k) {
+      for (std::size_t n = slice * std::size_t(k); n < slice * std::size_t(k + 1); ++n)
+      {
+        // Off the muscle the depth goes on, for the derivatives at its surfaces.
+        depth[n] = masks.outside[n] ? 1.0f
+                                    : (masks.left[n] || masks.blood[n]
+                                         ? (masks.blood[n] && masks.hasLeft && toOutside[n] > depth[n] ? 1.0f : 0.0f)
+                                         : wallDepth(depth[n], toBlood[n], toOutside[n], halfVoxel));
+      }
+    });
   }
   parallelFor(boxSize.z, {}, [&](int k) {
     for (int j = 0; j < boxSize.y; ++j)

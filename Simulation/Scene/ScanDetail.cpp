@@ -1,5 +1,6 @@
 #include "Scene/ScanDetail.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Rounding.h"
 #include "Core/Simd.h"
@@ -157,7 +158,7 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
   }
   const Vec3i n = labels.placement.size;
   const std::size_t slice = std::size_t(n.x) * n.y;
-  std::vector<std::uint8_t> codes(labels.voxels.size(), std::uint8_t(detailNone));
+  auto codes = largeVector(labels.voxels.size(), std::uint8_t(detailNone));
   std::vector<std::int64_t> power(count, 0);
   std::mutex mutex;
   parallelFor(n.z, partOf(progress, 0.0, 0.85), [&](int k) {

@@ -1,5 +1,6 @@
 #include "Scene/Scene.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Policy.h"
 #include "Kernel/DetailCode.h"
@@ -138,7 +139,7 @@ Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTi
   const auto outside = indexOf.find(outsideTissue);
   outsideIndex_ = outside == indexOf.end() ? -1 : outside->second;
 
-  tissueVoxels_.resize(volume_.voxels.size());
+  tissueVoxels_ = largeVector<std::uint8_t>(volume_.voxels.size());
   const std::size_t slice = std::size_t(volume_.placement.size.x) * volume_.placement.size.y;
   parallelFor(volume_.placement.size.z, {}, [&](int k) {
     const std::uint16_t* from = volume_.voxels.data() + slice * k;

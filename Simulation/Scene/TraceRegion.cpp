@@ -1,5 +1,6 @@
 #include "Scene/TraceRegion.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
 #include "Scene/RegionOnDemand.h"
@@ -102,7 +103,7 @@ public:
     , size_(size)
     , region_(region)
     , n_(region.box.size())
-    , boundary_(std::size_t(n_.x) * n_.y * n_.z)
+    , boundary_(largeVector<std::uint8_t>(std::size_t(n_.x) * n_.y * n_.z))
   {
   }
 
@@ -121,9 +122,8 @@ public:
   /// touches another tissue, or to the border.
   std::vector<std::uint8_t> distances(const Progress& progress) const
   {
-    std::vector<std::uint8_t> distance(boundary_.size(), std::uint8_t(maxDistance));
-    for (int k = 0; k < n_.z; ++k)
-    {
+    auto distance = largeVector<std::uint8_t>(boundary_.size());
+    parallelFor(n_.z, {}, [&](int k) {
       for (int j = 0; j < n_.y; ++j)
       {
         std::uint8_t* row = distance.data() + linear(0, j, k);
@@ -133,7 +133,7 @@ public:
                        [&](std::uint8_t m) { return std::uint8_t(m != 0 || border ? 0 : maxDistance); });
         row[0] = row[n_.x - 1] = 0;
       }
-    }
+    });
     chebyshevDistance(distance, n_, progress);
     return distance;
   }
@@ -142,8 +142,8 @@ public:
   {
     const Vec3i blocks = TissueCells::blocksFor(n_);
     const std::size_t count = std::size_t(blocks.x) * blocks.y * blocks.z;
-    region_.cell.assign(count * 32, TissueCells::outsideWord);
-    region_.firstRecord.assign(count, 0);
+    region_.cell = largeVector(count * 32, TissueCells::outsideWord);
+    region_.firstRecord = largeVector<std::uint32_t>(count);
     const TissueCells layout = region_.view();
     parallelFor(blocks.z, progress, [&](int layer) {
       // A layer of blocks holds the border and the voxels 2 layer - 1 and 2 layer.
@@ -171,7 +171,7 @@ public:
       first = total;
       total += own;
     }
-    region_.record.assign(total, 0u);
+    region_.record = largeVector<std::uint32_t>(total);
   }
 
 private:
