@@ -18,11 +18,14 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkShortArray.h"
+#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -52,6 +55,11 @@ sono::IntensityView scanFromImage(vtkImageData* image, std::vector<float>& conve
   {
     scan.values = floats->GetPointer(0);
   }
+  else if (auto* shorts = vtkShortArray::SafeDownCast(values))
+  {
+    const auto keep = [array = vtkSmartPointer<vtkDataArray>(values)](const std::int16_t*) {};
+    scan.shorts = { std::shared_ptr<const std::int16_t>(shorts->GetPointer(0), keep), scan.count };
+  }
   else
   {
     converted.resize(scan.count);
@@ -63,7 +71,7 @@ sono::IntensityView scanFromImage(vtkImageData* image, std::vector<float>& conve
     }
     scan.values = converted.data();
   }
-  if (!sono::rangeOf(scan.values, scan.count).finite)
+  if (scan.values && !sono::rangeOf(scan.values, scan.count).finite)
   {
     throw sono::Error("The scan holds values that are not finite; correct them or choose another one.");
   }

@@ -17,6 +17,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkShortArray.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -30,6 +31,15 @@ bool isSeries(const std::string& path)
 {
   std::error_code error;
   return std::filesystem::is_directory(path, error) || sono::isDicomFile(path);
+}
+
+template<class Array, class Value>
+void addIntensities(const sono::SharedSpan<Value>& values, vtkImageData* image)
+{
+  const auto array = sono::sharedArray<Array>("Intensities", values);
+  const sono::IntensityRange range = sono::rangeOf(values.begin(), values.size);
+  sono::tellRange(range.low, range.high, array);
+  image->GetPointData()->SetScalars(array);
 }
 
 } // namespace
@@ -100,9 +110,17 @@ int vtkSonoScanReader::RequestInformation(vtkInformation*, vtkInformationVector*
     }
     this->Series = isSeries(this->FileName) ? this->Read() : nullptr;
     vtkInformation* outInfo = output->GetInformationObject(0);
-    sono::announceLabelImage(this->Series ? this->Series->placement : sono::openVoxels(this->FileName).placement,
-                             outInfo);
-    vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_FLOAT, 1);
+    if (this->Series)
+    {
+      sono::announceLabelImage(this->Series->placement, outInfo);
+      vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_FLOAT, 1);
+    }
+    else
+    {
+      const sono::VoxelFile file = sono::openVoxels(this->FileName);
+      sono::announceLabelImage(file.placement, outInfo);
+      vtkDataObject::SetPointDataActiveScalarInfo(outInfo, sono::areShorts(file) ? VTK_SHORT : VTK_FLOAT, 1);
+    }
   });
 }
 
@@ -116,12 +134,15 @@ int vtkSonoScanReader::RequestData(vtkInformation*, vtkInformationVector**, vtkI
     const std::shared_ptr<const sono::IntensityVolume> volume = this->Series ? this->Series : this->Read();
     vtkImageData* image = vtkImageData::GetData(output);
     sono::placeImage(volume->placement, image);
-    const sono::SharedSpan<float> kept{ std::shared_ptr<const float>(volume, volume->values.data()),
-                                        volume->values.size() };
-    const auto values = sono::sharedArray<vtkFloatArray>("Intensities", kept);
-    const sono::IntensityRange range = sono::rangeOf(kept.begin(), kept.size);
-    sono::tellRange(range.low, range.high, values);
-    image->GetPointData()->SetScalars(values);
+    if (volume->shorts.data)
+    {
+      addIntensities<vtkShortArray>(volume->shorts, image);
+    }
+    else
+    {
+      const std::shared_ptr<const float> values(volume, volume->values.data());
+      addIntensities<vtkFloatArray>(sono::SharedSpan<float>(values, volume->values.size()), image);
+    }
     if (!volume->modality.empty())
     {
       vtkNew<vtkStringArray> modality;

@@ -104,7 +104,7 @@ std::vector<Block> blocksOf(const LabelVolume& volume, const MatchedScan& ct, co
         for (int j = low.y; j < high.y; ++j)
         {
           const std::size_t first = std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-          addRow(volume.voxels.data() + first, ct.values.data() + first, std::size_t(n.x),
+          addRow(volume.voxels.data() + first, ct.values.begin() + first, std::size_t(n.x),
                  columns.labelledOrDense.data(), columns.gas.data(), columns.gasHu.data());
         }
       }

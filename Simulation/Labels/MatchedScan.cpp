@@ -34,6 +34,18 @@ bool sameGrid(const GridPlacement& a, const GridPlacement& b)
          glm::distance(a.worldFromIndex({ last.x, 0.0, 0.0 }), b.worldFromIndex({ last.x, 0.0, 0.0 })) < within;
 }
 
+/// What visit(values) makes of a scan's values, of whichever type they are.
+template<class Visit>
+auto withValues(const IntensityView& scan, const Visit& visit)
+{
+  return scan.values ? visit(scan.values) : visit(scan.shorts.begin());
+}
+
+IntensityRange rangeOfScan(const IntensityView& scan)
+{
+  return withValues(scan, [&](const auto* values) { return rangeOf(values, scan.count); });
+}
+
 /// Whether values are those of a CT.
 bool areHounsfieldUnits(const IntensityView& scan, const IntensityRange& range)
 {
@@ -43,7 +55,9 @@ bool areHounsfieldUnits(const IntensityView& scan, const IntensityRange& range)
   }
   const auto isBelow = [&](float value) { return value < belowAir && value > range.low; };
   const auto below =
-    range.low < belowAir ? std::count_if(scan.values, scan.values + scan.count, isBelow) : std::ptrdiff_t(0);
+    range.low < belowAir
+      ? withValues(scan, [&](const auto* values) { return std::count_if(values, values + scan.count, isBelow); })
+      : std::ptrdiff_t(0);
   return double(below) <= mostBelowAir * double(scan.count);
 }
 
@@ -52,11 +66,12 @@ struct ValueScale
 {
   bool isCt;
   float factor;
+  bool keepsShorts;   ///< values that are shorts stay as they are
   std::string notice; ///< as of MatchedScan
 
   explicit ValueScale(const IntensityView& scan)
   {
-    const IntensityRange range = rangeOf(scan.values, scan.count);
+    const IntensityRange range = rangeOfScan(scan);
     isCt = scan.modality.empty() ? areHounsfieldUnits(scan, range) : scan.modality == "CT";
     const float most = std::max(std::fabs(range.low), std::fabs(range.high));
     const bool hasAir = scan.modality.empty() && range.low < airAtMost && range.low < -leastOfAir * range.high;
@@ -78,6 +93,7 @@ struct ValueScale
       notice = text.str();
     }
     factor = isCt || !(most > 0.0f) ? 1.0f : largestValue / most;
+    keepsShorts = factor == 1.0f && most <= largestValue;
   }
   std::int16_t operator()(float value) const { return rounded(value, factor); }
 
@@ -92,6 +108,14 @@ SONO_SIMD_CLONES void roundAll(const float* values, std::size_t count, float fac
   for (std::size_t n = 0; n < count; ++n)
   {
     to[n] = ValueScale::rounded(values[n], factor);
+  }
+}
+
+SONO_SIMD_CLONES void roundAll(const std::int16_t* values, std::size_t count, float factor, std::int16_t* to)
+{
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    to[n] = ValueScale::rounded(float(values[n]), factor);
   }
 }
 
@@ -126,16 +150,17 @@ SONO_SIMD_CLONES ScanSums sumsOf(const std::int16_t* values, std::size_t count)
 
 /// The scan's value at an index of its own, linear between voxels' centres; beyond the outermost ones theirs, for half
 /// a voxel.
-float valueAt(const IntensityView& scan, const Vec3d& index)
+template<class Value>
+float valueAt(const Value* values, const Vec3i& n, const Vec3d& index)
 {
-  const Vec3i& n = scan.placement.size;
   const Vec3d at = glm::clamp(index, Vec3d(0.0), Vec3d(n - 1));
   const Vec3i low = glm::min(Vec3i(at), glm::max(n - 2, Vec3i(0)));
   const Vec3i high = glm::min(low + 1, n - 1);
   const Vec3f share(at - Vec3d(low));
   const auto row = [&](int j, int k) {
-    const float* values = scan.values + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
-    return values[low.x] + share.x * (values[high.x] - values[low.x]);
+    const Value* of = values + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
+    const auto first = float(of[low.x]);
+    return first + share.x * (float(of[high.x]) - first);
   };
   const float below = row(low.y, low.z) + share.y * (row(high.y, low.z) - row(low.y, low.z));
   const float above = row(low.y, high.z) + share.y * (row(high.y, high.z) - row(low.y, high.z));
@@ -211,12 +236,20 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, cons
   MatchedScan matched;
   matched.isCt = scale.isCt;
   matched.notice = scale.notice;
-  matched.values = largeVector<std::int16_t>(labels.voxels.size());
-  if (sameGrid(grid, scan.placement))
+  const bool isSameGrid = sameGrid(grid, scan.placement);
+  if (isSameGrid && !scan.values && scale.keepsShorts)
   {
-    parallelFor(n.z, progress, [&](int k) {
-      roundAll(scan.values + slice * k, slice, scale.factor, matched.values.data() + slice * k);
+    matched.values = scan.shorts;
+    return matched;
+  }
+  auto found = largeVector<std::int16_t>(labels.voxels.size());
+  if (isSameGrid)
+  {
+    withValues(scan, [&](const auto* values) {
+      parallelFor(n.z, progress,
+                  [&](int k) { roundAll(values + slice * k, slice, scale.factor, found.data() + slice * k); });
     });
+    matched.values = SharedSpan<std::int16_t>(std::move(found));
     return matched;
   }
   std::mutex mutex;
@@ -231,25 +264,28 @@ MatchedScan matchScan(const LabelVolume& labels, const IntensityView& scan, cons
     step[axis] = scan.placement.indexFromWorld(grid.worldFromIndex(one)) - first;
   }
   const Vec3d end = Vec3d(scan.placement.size) - 0.5;
-  parallelFor(n.z, progress, [&](int k) {
-    std::size_t labelledHere = 0;
-    std::size_t reachedHere = 0;
-    std::size_t at = slice * k;
-    for (int j = 0; j < n.y; ++j)
-    {
-      for (int i = 0; i < n.x; ++i, ++at)
+  withValues(scan, [&](const auto* values) {
+    parallelFor(n.z, progress, [&](int k) {
+      std::size_t labelledHere = 0;
+      std::size_t reachedHere = 0;
+      std::size_t at = slice * k;
+      for (int j = 0; j < n.y; ++j)
       {
-        const Vec3d index = first + step * Vec3d(i, j, k);
-        const bool isIn = glm::all(glm::greaterThanEqual(index, Vec3d(-0.5))) && glm::all(glm::lessThan(index, end));
-        matched.values[at] = isIn ? scale(valueAt(scan, index)) : MatchedScan::nothing;
-        labelledHere += labels.voxels[at] != 0 ? 1 : 0;
-        reachedHere += isIn && labels.voxels[at] != 0 ? 1 : 0;
+        for (int i = 0; i < n.x; ++i, ++at)
+        {
+          const Vec3d index = first + step * Vec3d(i, j, k);
+          const bool isIn = glm::all(glm::greaterThanEqual(index, Vec3d(-0.5))) && glm::all(glm::lessThan(index, end));
+          found[at] = isIn ? scale(valueAt(values, scan.placement.size, index)) : MatchedScan::nothing;
+          labelledHere += labels.voxels[at] != 0 ? 1 : 0;
+          reachedHere += isIn && labels.voxels[at] != 0 ? 1 : 0;
+        }
       }
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    labelled += labelledHere;
-    reached += reachedHere;
+      const std::lock_guard<std::mutex> lock(mutex);
+      labelled += labelledHere;
+      reached += reachedHere;
+    });
   });
+  matched.values = SharedSpan<std::int16_t>(std::move(found));
   matched.reachedShare = labelled > 0 ? double(reached) / double(labelled) : 1.0;
   if (matched.reachedShare < leastShare)
   {
@@ -269,7 +305,7 @@ std::vector<ScanOfLabel> scanOfLabels(const LabelVolume& labels, const MatchedSc
   const std::size_t slice = std::size_t(n.x) * n.y;
   parallelFor(n.z, progress, [&](int k) {
     std::vector<ScanSums> own(all.size());
-    const std::int16_t* values = scan.values.data() + slice * k;
+    const std::int16_t* values = scan.values.begin() + slice * k;
     forRuns(labels.voxels.data() + slice * k, slice, [&](std::size_t begin, std::size_t end, std::uint16_t id) {
       own[std::size_t(indexOf[id])].add(sumsOf(values + begin, end - begin));
     });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/Progress.h"
+#include "Core/SharedSpan.h"
 #include "Labels/LabelVolume.h"
 #include "Labels/ReadIntensities.h"
 
@@ -15,7 +16,7 @@ struct MatchedScan
 {
   static constexpr std::int16_t nothing = -32768; ///< where the scan does not reach
 
-  std::vector<std::int16_t> values; ///< one a voxel of the label map, i fastest: of a CT, Hounsfield units
+  SharedSpan<std::int16_t> values; ///< one a voxel of the label map, i fastest: of a CT, Hounsfield units
   bool isCt = false;
   double reachedShare = 1.0; ///< of the labelled voxels (those but 0), how many lie within the scan
   std::string notice; ///< what a scan that does not say it was taken for, and why, if not for a CT; empty: nothing

@@ -31,6 +31,15 @@ IntensityVolume readVoxelFile(const std::string& path, const Progress& progress)
   file.bytes.need(file.numbers() * bytesOf(file.type)); // before memory is taken for them
   IntensityVolume volume;
   volume.placement = file.placement;
+  if (areShorts(file))
+  {
+    auto shorts = largeVector<std::int16_t>(std::size_t(file.numbers()));
+    readNumbers(file, progress, [&](const auto* numbers, std::size_t count, std::size_t position) {
+      std::copy(numbers, numbers + count, shorts.data() + position);
+    });
+    volume.shorts = SharedSpan<std::int16_t>(std::move(shorts));
+    return volume;
+  }
   volume.values = largeVector<float>(std::size_t(file.numbers()));
   readNumbers(file, progress, [&](const auto* numbers, std::size_t count, std::size_t position) {
     float* const values = volume.values.data() + position;
@@ -81,9 +90,20 @@ SONO_SIMD_CLONES IntensityRange rangeOfPart(const float* values, std::size_t cou
            std::count(notFinite, notFinite + lanes, 0u) == std::ptrdiff_t(lanes) };
 }
 
-} // namespace
+SONO_SIMD_CLONES IntensityRange rangeOfPart(const std::int16_t* values, std::size_t count)
+{
+  std::int16_t low = values[0];
+  std::int16_t high = values[0];
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    low = std::min(low, values[n]);
+    high = std::max(high, values[n]);
+  }
+  return { float(low), float(high), true };
+}
 
-IntensityRange rangeOf(const float* values, std::size_t count)
+template<class Value>
+IntensityRange rangeOfAll(const Value* values, std::size_t count)
 {
   constexpr std::size_t together = std::size_t(1) << 20;
   std::vector<IntensityRange> parts((count + together - 1) / together);
@@ -97,6 +117,25 @@ IntensityRange rangeOf(const float* values, std::size_t count)
     all = { std::min(all.low, part.low), std::max(all.high, part.high), all.finite && part.finite };
   }
   return all;
+}
+
+} // namespace
+
+IntensityRange rangeOf(const float* values, std::size_t count)
+{
+  return rangeOfAll(values, count);
+}
+
+IntensityRange rangeOf(const std::int16_t* values, std::size_t count)
+{
+  return rangeOfAll(values, count);
+}
+
+bool areShorts(const VoxelFile& file)
+{
+  const bool isSmall =
+    file.type == NumberType::Int8 || file.type == NumberType::UInt8 || file.type == NumberType::Int16;
+  return isSmall && file.slope == 1.0 && file.intercept == 0.0;
 }
 
 IntensityVolume readIntensities(const std::string& path, const Progress& progress)

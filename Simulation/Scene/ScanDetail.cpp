@@ -78,7 +78,7 @@ public:
   LabelSmoother(const LabelVolume& labels, const MatchedScan& scan)
     : size_(labels.placement.size)
     , labels_(labels.voxels.data())
-    , values_(scan.values.data())
+    , values_(scan.values.begin())
     , sums_(std::size_t(size_.x))
     , weights_(std::size_t(size_.x))
   {
@@ -180,7 +180,7 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
           smoothed = true;
         }
         std::uint8_t* const run = codes.data() + row + begin;
-        const std::int16_t* const values = scan.values.data() + row + begin;
+        const std::int16_t* const values = scan.values.begin() + row + begin;
         codeRun(smoother.sums() + begin, smoother.weights() + begin, values, int(end - begin), slope[l],
                 float(means[l].mean), run);
         for (std::size_t i = 0; i < end - begin; ++i)
@@ -207,7 +207,7 @@ std::vector<std::uint8_t> scanDetail(const LabelVolume& labels, const MatchedSca
       if (by != 0)
       {
         const std::size_t at = slice * k + begin;
-        shiftRun(by, scan.values.data() + at, end - begin, codes.data() + at);
+        shiftRun(by, scan.values.begin() + at, end - begin, codes.data() + at);
       }
     });
   });

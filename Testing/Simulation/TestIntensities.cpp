@@ -22,6 +22,13 @@ protected:
   {
     return errorOf([&] { readIntensities(file(name)); });
   }
+  /// Of a file of whole numbers.
+  std::vector<std::int16_t> shortsOf(const char* name)
+  {
+    const IntensityVolume volume = readIntensities(file(name));
+    EXPECT_TRUE(volume.values.empty());
+    return { volume.shorts.begin(), volume.shorts.end() };
+  }
 };
 
 } // namespace
@@ -41,14 +48,14 @@ TEST_F(Intensities, OfTheThreeFormatsAreScaledAndPlaced)
   // -1000 and 40 with the high byte first; then as text.
   text("a.nrrd", "NRRD0004\ntype: short\nencoding: raw\nendian: big\ndimension: 3\nsizes: 2 1 1\nspacings: 2 3 4\n\n" +
                    std::string("\xFC\x18\0\x28", 4));
-  EXPECT_EQ(readIntensities(file("a.nrrd")).values, (std::vector<float>{ -1000.0f, 40.0f }));
+  EXPECT_EQ(shortsOf("a.nrrd"), (std::vector<std::int16_t>{ -1000, 40 }));
   text("t.nrrd", "NRRD0004\ntype: float\nencoding: ascii\ndimension: 3\nsizes: 2 1 1\n\n-3.5 7\n");
   EXPECT_EQ(readIntensities(file("t.nrrd")).values, (std::vector<float>{ -3.5f, 7.0f }));
   text("a.mha",
        "NDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = True\nDimSize = 2 1 1\nElementType = MET_SHORT\n"
        "ElementDataFile = LOCAL\n" +
          std::string("\xFC\x18\0\x28", 4));
-  EXPECT_EQ(readIntensities(file("a.mha")).values, (std::vector<float>{ -1000.0f, 40.0f }));
+  EXPECT_EQ(shortsOf("a.mha"), (std::vector<std::int16_t>{ -1000, 40 }));
 }
 
 TEST_F(Intensities, BytesAreSkippedAndMembersFollowEachOther)
@@ -56,9 +63,9 @@ TEST_F(Intensities, BytesAreSkippedAndMembersFollowEachOther)
   // A detached file behind four bytes that do not belong to it.
   text("d.raw", "skip\1\2");
   text("d.nhdr", "NRRD0004\ntype: uchar\nencoding: raw\nbyte skip: 4\ndimension: 3\nsizes: 2 1 1\ndata file: d.raw\n");
-  EXPECT_EQ(readIntensities(file("d.nhdr")).values, (std::vector<float>{ 1.0f, 2.0f }));
+  EXPECT_EQ(shortsOf("d.nhdr"), (std::vector<std::int16_t>{ 1, 2 }));
   text("e.nhdr", "NRRD0004\ntype: uchar\nencoding: raw\nbyte skip: -1\ndimension: 3\nsizes: 2 1 1\ndata file: d.raw\n");
-  EXPECT_EQ(readIntensities(file("e.nhdr")).values, (std::vector<float>{ 1.0f, 2.0f }));
+  EXPECT_EQ(shortsOf("e.nhdr"), (std::vector<std::int16_t>{ 1, 2 }));
   for (const char* const part : { "sk\1", "\2\3\4" })
   {
     const gzFile gz = gzopen(file("m.gz").c_str(), "ab"); // two members
@@ -66,7 +73,7 @@ TEST_F(Intensities, BytesAreSkippedAndMembersFollowEachOther)
     gzclose(gz);
   }
   text("m.nhdr", "NRRD0004\ntype: uchar\nencoding: gzip\nbyte skip: 2\ndimension: 3\nsizes: 4 1 1\ndata file: m.gz\n");
-  EXPECT_EQ(readIntensities(file("m.nhdr")).values, (std::vector<float>{ 1.0f, 2.0f, 3.0f, 4.0f }));
+  EXPECT_EQ(shortsOf("m.nhdr"), (std::vector<std::int16_t>{ 1, 2, 3, 4 }));
 }
 
 TEST_F(Intensities, WhatIsNoScanIsRefused)

@@ -130,6 +130,33 @@ TEST(MatchedScan, IsTheScanWhereTheLabelMapHasItsVoxels)
   });
 }
 
+TEST(MatchedScan, OfShortsIsThatOfTheSameNumbers)
+{
+  const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
+  GridPlacement finer = gridOf({ 117, 118, 39 }, Vec3d(1.03), { -59.7, -59.9, -19.6 });
+  const LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "liver" } }, isLiver);
+  const auto torso = [](const Vec3d& p) { return torsoHu(p); };
+  const auto padded = [](const Vec3d& p) { return p.x < -50.0 ? -32768.0 : torsoHu(p); };
+  const auto mr = [](const Vec3d& p) { return std::round(700.0 + 3.0 * p.x); };
+  for (const std::function<double(const Vec3d&)>& value :
+       { std::function<double(const Vec3d&)>(torso), { padded }, { mr } })
+  {
+    for (const GridPlacement& own : { grid, finer })
+    {
+      const IntensityVolume floats = scanned(own, value);
+      IntensityVolume shorts;
+      shorts.placement = own;
+      shorts.shorts = SharedSpan<std::int16_t>(std::vector<std::int16_t>(floats.values.begin(), floats.values.end()));
+      const MatchedScan expected = matchScan(labels, floats);
+      const MatchedScan matched = matchScan(labels, shorts);
+      EXPECT_EQ(matched.isCt, expected.isCt);
+      EXPECT_EQ(matched.notice, expected.notice);
+      ASSERT_EQ(matched.values.size, expected.values.size);
+      EXPECT_TRUE(std::equal(matched.values.begin(), matched.values.end(), expected.values.begin()));
+    }
+  }
+}
+
 TEST(MatchedScan, OfAnotherPlaceOrPatientIsRefused)
 {
   const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
