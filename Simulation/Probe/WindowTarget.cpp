@@ -1,12 +1,15 @@
 #include "Probe/WindowTarget.h"
 
 #include "Core/Error.h"
+#include "Core/ParallelFor.h"
 #include "Labels/LabelCode.h"
 #include "Labels/LabelWords.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <mutex>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -183,20 +186,27 @@ OrganInBox organInBox(const Scene& scene, const std::vector<int>& labels)
   {
     sections[std::size_t(axis)].assign(std::size_t(n[axis]), 0);
   }
-  std::size_t row = 0;
-  for (int k = 0; k < n.z; ++k)
-  {
-    for (int j = 0; j < n.y; ++j, row += std::size_t(n.x))
+  std::mutex mutex;
+  parallelFor(n.z, {}, [&](int k) {
+    std::array<std::vector<int>, 2> own{ std::vector<int>(std::size_t(n.x)), std::vector<int>(std::size_t(n.y)) };
+    for (int j = 0; j < n.y; ++j)
     {
+      const std::uint16_t* row =
+        scene.volume().voxels.data() + std::size_t(n.x) * (std::size_t(j) + std::size_t(n.y) * k);
       for (int i = (j + k) % 2; i < n.x; i += 2)
       {
-        const int is = wanted[scene.volume().voxels[row + std::size_t(i)]];
-        sections[0][std::size_t(i)] += is;
-        sections[1][std::size_t(j)] += is;
-        sections[2][std::size_t(k)] += is;
+        const int is = wanted[row[i]];
+        own[0][std::size_t(i)] += is;
+        own[1][std::size_t(j)] += is;
       }
     }
-  }
+    sections[2][std::size_t(k)] = std::accumulate(own[1].begin(), own[1].end(), 0);
+    const std::lock_guard<std::mutex> lock(mutex); // whole numbers: in whatever order
+    for (std::size_t axis : { 0, 1 })
+    {
+      std::transform(own[axis].begin(), own[axis].end(), sections[axis].begin(), sections[axis].begin(), std::plus<>());
+    }
+  });
   const bool isCut = std::any_of(sections.begin(), sections.end(), [](const std::vector<int>& section) {
     return 2 * std::max(section.front(), section.back()) > *std::max_element(section.begin(), section.end());
   });
@@ -205,22 +215,15 @@ OrganInBox organInBox(const Scene& scene, const std::vector<int>& labels)
 
 /// Whether the liver is the better first picture of the two: where the heart goes on beyond the box and the liver does
 /// not, or where next to nothing of the heart is in it.
-bool showsLiverRather(const Scene& scene, const std::vector<int>& heart, const std::vector<int>& liver)
+bool showsLiverRather(const OrganInBox& heart, const OrganInBox& liver)
 {
-  const OrganInBox ofHeart = organInBox(scene, heart);
-  if (!ofHeart.isCut)
-  {
-    return false;
-  }
-  const OrganInBox ofLiver = organInBox(scene, liver);
-  return !ofLiver.isCut || 10 * ofHeart.voxels < ofLiver.voxels;
+  return heart.isCut && (!liver.isCut || 10 * heart.voxels < liver.voxels);
 }
 
 /// A kidney where there is more of it than of a liver that is cut.
-WindowTarget liverOrKidney(const Scene& scene, const std::vector<int>& liver)
+WindowTarget liverOrKidney(const Scene& scene, const std::vector<int>& liver, const OrganInBox& ofLiver)
 {
   const WindowTarget whole = targetOf(liverOrgan->name, liver, liverOrgan->preset);
-  const OrganInBox ofLiver = organInBox(scene, liver);
   for (const char* side : { "right", "left" })
   {
     const std::vector<int> kidney = ofLiver.isCut ? labelsOf(scene, *kidneyOrgan, { side }) : std::vector<int>();
@@ -238,9 +241,14 @@ WindowTarget defaultTarget(const Scene& scene)
 {
   const std::vector<int> heart = labelsOf(scene, *heartOrgan, {});
   const std::vector<int> liver = labelsOf(scene, *liverOrgan, {});
-  if (!liver.empty() && (heart.empty() || showsLiverRather(scene, heart, liver)))
+  if (!liver.empty())
   {
-    return liverOrKidney(scene, liver);
+    const OrganInBox ofHeart = heart.empty() ? OrganInBox{ 0, true } : organInBox(scene, heart);
+    const OrganInBox ofLiver = ofHeart.isCut ? organInBox(scene, liver) : OrganInBox{ 0, true };
+    if (showsLiverRather(ofHeart, ofLiver))
+    {
+      return liverOrKidney(scene, liver, ofLiver);
+    }
   }
   if (!heart.empty())
   {
