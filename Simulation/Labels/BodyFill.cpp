@@ -15,11 +15,11 @@ namespace sono {
 
 namespace {
 
-/// Blocks that are labelled for the most part: a speck of one voxel does not count.
-std::vector<char> labelledBlocks(const LabelVolume& volume)
+/// Blocks that hold labels of these ids for the most part: a speck of one voxel does not count.
+std::vector<char> blocksOf(const LabelVolume& volume, const std::vector<char>& isWanted)
 {
   const CoarseGrid grid(volume.placement);
-  std::vector<char> labelled(grid.count());
+  std::vector<char> blocks(grid.count());
   const Vec3i n = volume.placement.size;
   parallelFor(grid.size.z, {}, [&](int ck) {
     std::vector<int> balance(std::size_t(grid.size.x) * grid.size.y, 0);
@@ -31,14 +31,21 @@ std::vector<char> labelledBlocks(const LabelVolume& volume)
         int* to = balance.data() + std::size_t(j / grid.factor.y) * grid.size.x;
         for (int i = 0; i < n.x; ++i)
         {
-          to[i / grid.factor.x] += row[i] != 0 ? 1 : -1;
+          to[i / grid.factor.x] += isWanted[row[i]] ? 1 : -1;
         }
       }
     }
-    std::transform(balance.begin(), balance.end(), labelled.begin() + std::ptrdiff_t(balance.size()) * ck,
+    std::transform(balance.begin(), balance.end(), blocks.begin() + std::ptrdiff_t(balance.size()) * ck,
                    [](int b) { return b > 0 ? 1 : 0; });
   });
-  return labelled;
+  return blocks;
+}
+
+std::vector<char> labelledBlocks(const LabelVolume& volume)
+{
+  std::vector<char> isLabelled(65536, 1);
+  isLabelled[0] = 0;
+  return blocksOf(volume, isLabelled);
 }
 
 /// Where the thyroid is; empty where it has no label.
@@ -53,19 +60,7 @@ std::vector<char> thyroidBlocks(const LabelVolume& volume)
     isThyroid[std::size_t(label.id)] = has("thyroid") && !has("cartilage") ? 1 : 0;
     isThere = isThere || isThyroid[std::size_t(label.id)];
   }
-  if (!isThere)
-  {
-    return {};
-  }
-  const CoarseGrid grid(volume.placement);
-  const Vec3i n = volume.placement.size;
-  std::vector<char> blocks;
-  blocks.reserve(grid.count());
-  forBlocks(grid, [&](const Vec3i& block) {
-    const Vec3i v = glm::min(block * grid.factor + grid.factor / 2, n - 1);
-    blocks.push_back(isThyroid[volume.voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x]]);
-  });
-  return blocks;
+  return isThere ? blocksOf(volume, isThyroid) : std::vector<char>();
 }
 
 } // namespace
