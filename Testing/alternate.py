@@ -2,8 +2,8 @@
 """alternate.py OLD_BUILD NEW_BUILD [ROUNDS] [defaults]: is anything slower than it was?
 
 Two build folders' filters make the bundled A4C in turn, each time in a new process, on the CPU, with Amadou2024's
-numbers, which every version knows, or each with its own defaults. Prints the processor seconds of each part, medians of ROUNDS (6), as
-`name old new new/old`. What else the machine does meets both alike.
+numbers, which every version knows, or each with its own defaults. Prints the processor seconds of each part, medians of
+ROUNDS (6), as `name old new new/old`. What else the machine does meets both alike.
 """
 import os
 import resource
