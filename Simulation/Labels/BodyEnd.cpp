@@ -7,6 +7,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <mutex>
 #include <set>
 
 namespace sono {
@@ -27,10 +29,10 @@ const std::set<std::string> insideABody{ "blood",       "cartilage",     "cortic
                                          "spleen",      "valve",         "vessel_wall" };
 const std::set<std::string> ofATrunk{ "cortical_bone", "cartilage", "lung" };
 
-/// Of each label, its faces against 0, on every other row and slice; and the box of all labels.
+/// Of each label by its index, its faces against 0, on every other row and slice; and the box of all labels.
 struct Ends
 {
-  std::vector<std::size_t> faces = std::vector<std::size_t>(65536, 0);
+  std::vector<std::size_t> faces;
   Vec3i low{ 1 << 30 };
   Vec3i high{ -1 };
   std::vector<std::size_t> sections; ///< voxels with labels, of each slice
@@ -40,15 +42,15 @@ Ends endsOf(const LabelVolume& volume)
 {
   constexpr int every = 2;
   const Vec3i n = volume.placement.size;
-  std::vector<Ends> slices(std::size_t((n.z + every - 1) / every));
-  for (Ends& slice : slices)
-  {
-    slice.faces.clear();
-  }
-  parallelFor(int(slices.size()), {}, [&](int slice) {
-    Ends& ends = slices[std::size_t(slice)];
-    ends.faces.assign(65536, 0);
-    std::size_t section = 0;
+  const std::vector<int> indexOf = volume.indexOfId();
+  Ends all;
+  all.faces.resize(volume.labels.size());
+  all.sections.resize(std::size_t((n.z + every - 1) / every));
+  std::mutex mutex;
+  parallelFor(int(all.sections.size()), {}, [&](int slice) {
+    Ends ends;
+    ends.faces.resize(all.faces.size());
+    std::size_t& section = all.sections[std::size_t(slice)];
     const int k = slice * every;
     for (int j = 0; j < n.y; j += every)
     {
@@ -64,21 +66,18 @@ Ends endsOf(const LabelVolume& volume)
         }
         for (const std::uint16_t other : { i > 0 ? row[i - 1] : row[i], below[i] })
         {
-          ends.faces[row[i]] += row[i] != 0 && other == 0 ? 1 : 0;
-          ends.faces[other] += row[i] == 0 && other != 0 ? 1 : 0;
+          if ((row[i] == 0) != (other == 0))
+          {
+            ++ends.faces[std::size_t(indexOf[std::max(row[i], other)])];
+          }
         }
       }
     }
-    ends.sections = { section };
+    const std::lock_guard<std::mutex> lock(mutex); // whole numbers: in whatever order
+    all.low = glm::min(all.low, ends.low);
+    all.high = glm::max(all.high, ends.high);
+    std::transform(all.faces.begin(), all.faces.end(), ends.faces.begin(), all.faces.begin(), std::plus<>());
   });
-  Ends all;
-  for (const Ends& slice : slices)
-  {
-    all.sections.insert(all.sections.end(), slice.sections.begin(), slice.sections.end());
-    all.low = glm::min(all.low, slice.low);
-    all.high = glm::max(all.high, slice.high);
-    std::transform(all.faces.begin(), all.faces.end(), slice.faces.begin(), all.faces.begin(), std::plus<>());
-  }
   return all;
 }
 
@@ -114,9 +113,10 @@ BodyEnd bodyEnd(const LabelVolume& volume, const std::vector<std::string>& unmap
   std::size_t closed = 0;
   bool isTrunk = false;
   std::size_t known = 0;
-  for (const LabelInfo& label : labels)
+  for (std::size_t l = 0; l < labels.size(); ++l)
   {
-    const std::size_t faces = ends.faces[std::size_t(label.id)];
+    const LabelInfo& label = labels[l];
+    const std::size_t faces = ends.faces[l];
     if (label.id == 0 || label.tissue == "air") // the airways'
     {
       continue;
