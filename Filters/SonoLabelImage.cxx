@@ -154,8 +154,13 @@ void placeImage(const GridPlacement& placement, vtkImageData* image)
 std::vector<std::uint8_t> scanDetailOf(vtkImageData* image)
 {
   auto* codes = vtkUnsignedCharArray::SafeDownCast(image->GetPointData()->GetArray(scanDetailArray));
-  return codes ? std::vector<std::uint8_t>(codes->GetPointer(0), codes->GetPointer(0) + codes->GetNumberOfValues())
-               : std::vector<std::uint8_t>();
+  if (!codes)
+  {
+    return {};
+  }
+  auto detail = roomFor<std::uint8_t>(std::size_t(codes->GetNumberOfValues()));
+  detail.assign(codes->GetPointer(0), codes->GetPointer(0) + codes->GetNumberOfValues());
+  return detail;
 }
 
 void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)

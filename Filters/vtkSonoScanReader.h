@@ -17,7 +17,7 @@ class ReadFiles;
  * @class vtkSonoScanReader
  * @brief Reads a CT or MR and places it in the world
  *
- * Reads NIfTI, NRRD, MetaImage and, by its folder or one of its files, a DICOM series. The output has float point
+ * Reads NIfTI, NRRD, MetaImage and, by its folder or one of its files, a DICOM series. The output has point
  * scalars "Intensities" (of a CT, Hounsfield units; shorts where the file has such, else floats) and stands in world
  * coordinates, LPS mm, with its direction matrix. Where the file says which it is, a string array "Modality" in the
  * field data has it: CT or MR.

@@ -22,9 +22,15 @@ public:
     value_.resize(std::size_t(count));
     vertex_.resize(std::size_t(count));
     start_.resize(std::size_t(count) + 1);
+    bool isZero = true;
     for (int q = 0; q < count; ++q)
     {
       value_[std::size_t(q)] = line[q * stride];
+      isZero = isZero && line[q * stride] == 0.0f;
+    }
+    if (isZero)
+    {
+      return; // and stays so, as most of a volume does
     }
     int last = -1;
     for (int q = 0; q < count; ++q)

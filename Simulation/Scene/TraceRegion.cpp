@@ -54,42 +54,53 @@ SONO_SIMD_CLONES void sweepRow(std::uint8_t* row, const std::uint8_t* const* ear
   }
 }
 
-/// Chebyshev distance of every cell to the nearest marked one or the border of the box, by two chamfer sweeps.
+/// Chebyshev distance of every cell to the nearest marked one or the border of the box, by two chamfer sweeps. A row
+/// needs the one before it and the three around it in the slice before: blocks of rows on a diagonal through both go at
+/// the same time.
 void chebyshevDistance(std::vector<std::uint8_t>& distance, const Vec3i& n, const Progress& progress)
 {
-  std::vector<std::uint8_t> scratch(std::size_t(n.x) + 2);
+  constexpr int blockRows = 32;
   const auto row = [&](int y, int z) {
     return distance.data() + std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * z);
   };
-  for (int pass = 0; pass < 2; ++pass)
-  {
+  const auto sweepBlock = [&](int pass, int kk, int block) {
+    std::vector<std::uint8_t> scratch(std::size_t(n.x) + 2);
     const int step = pass == 0 ? -1 : 1;
-    for (int kk = 1; kk + 1 < n.z; ++kk)
+    const int k = pass == 0 ? kk : n.z - 1 - kk;
+    for (int jj = 1 + block * blockRows; jj < std::min(1 + (block + 1) * blockRows, n.y - 1); ++jj)
     {
-      report(progress, 0.5 * (pass + double(kk) / n.z));
-      const int k = pass == 0 ? kk : n.z - 1 - kk;
-      for (int jj = 1; jj + 1 < n.y; ++jj)
+      const int j = pass == 0 ? jj : n.y - 1 - jj;
+      const std::uint8_t* earlier[4] = { row(j + step, k), row(j - 1, k + step), row(j, k + step),
+                                         row(j + 1, k + step) };
+      std::uint8_t* out = row(j, k);
+      sweepRow(out, earlier, 4, n.x, scratch.data());
+      if (pass == 0)
       {
-        const int j = pass == 0 ? jj : n.y - 1 - jj;
-        const std::uint8_t* earlier[4] = { row(j + step, k), row(j - 1, k + step), row(j, k + step),
-                                           row(j + 1, k + step) };
-        std::uint8_t* out = row(j, k);
-        sweepRow(out, earlier, 4, n.x, scratch.data());
-        if (pass == 0)
+        for (int i = 1; i < n.x; ++i)
         {
-          for (int i = 1; i < n.x; ++i)
-          {
-            out[i] = std::min(out[i], std::uint8_t(out[i - 1] + 1));
-          }
-        }
-        else
-        {
-          for (int i = n.x - 2; i >= 0; --i)
-          {
-            out[i] = std::min(out[i], std::uint8_t(out[i + 1] + 1));
-          }
+          out[i] = std::min(out[i], std::uint8_t(out[i - 1] + 1));
         }
       }
+      else
+      {
+        for (int i = n.x - 2; i >= 0; --i)
+        {
+          out[i] = std::min(out[i], std::uint8_t(out[i + 1] + 1));
+        }
+      }
+    }
+  };
+  const int blocks = (n.y - 2 + blockRows - 1) / blockRows;
+  const int slices = n.z - 2;
+  const int diagonals = blocks > 0 && slices > 0 ? 2 * (slices - 1) + blocks : 0;
+  for (int pass = 0; pass < 2; ++pass)
+  {
+    for (int d = 0; d < diagonals; ++d)
+    {
+      report(progress, 0.5 * (pass + double(d) / diagonals));
+      const int first = std::max(0, (d - blocks + 2) / 2); // the least slice whose block on the diagonal is there
+      const int last = std::min(slices - 1, d / 2);
+      parallelFor(last - first + 1, {}, [&](int i) { sweepBlock(pass, 1 + first + i, d - 2 * (first + i)); });
     }
   }
 }
