@@ -67,13 +67,16 @@ LabelInfo segmentOf(DcmItem& item)
 std::vector<LabelInfo> segmentsOf(DcmItem& data, const std::string& path)
 {
   std::vector<LabelInfo> labels;
-  for (unsigned long n = 0; DcmItem* const item = dicomItem(data, DCM_SegmentSequence, n); ++n)
+  DcmSequenceOfItems* segments = nullptr;
+  data.findAndGetSequence(DCM_SegmentSequence, segments);
+  DcmObject* object = segments ? segments->nextInContainer(nullptr) : nullptr; // the items are a linked list
+  for (; auto* const item = dynamic_cast<DcmItem*>(object); object = segments->nextInContainer(object))
   {
     labels.push_back(segmentOf(*item));
     if (labels.back().id < 1 || labels.back().id > 65535)
     {
-      refuse(path,
-             "its segment " + std::to_string(n + 1) + " has no number; save it again from the program that made it");
+      refuse(path, "its segment " + std::to_string(labels.size()) +
+                     " has no number; save it again from the program that made it");
     }
   }
   std::sort(labels.begin(), labels.end(), [](const LabelInfo& x, const LabelInfo& y) { return x.id < y.id; });
@@ -300,13 +303,20 @@ LabelVolume readDicomSeg(const std::string& path, const Progress& progress)
           return frames.bits == 8 ? bytes[pixel] : bytes[2 * pixel] + 256 * bytes[2 * pixel + 1];
       }
     };
+    // Of a mask most bytes hold eight equal pixels.
+    const auto areEight = [&](std::uint64_t pixel, int segment) {
+      const std::uint64_t bit = firstBit % 8 + pixel;
+      return frames.kind == Kind::Binary && bit % 8 == 0 && pixel + 8 <= planePixels &&
+             bytes[bit / 8] == (segment != 0 ? 0xff : 0);
+    };
     const std::uint64_t firstVoxel = std::uint64_t(stack.slices[frame]) * planePixels;
     for (std::uint64_t pixel = 0; pixel < planePixels;)
     {
       const std::uint64_t begin = pixel;
       const int segment = segmentAt(begin);
-      while (++pixel < planePixels && segmentAt(pixel) == segment)
+      for (++pixel; pixel < planePixels && segmentAt(pixel) == segment;)
       {
+        pixel += areEight(pixel, segment) ? 8 : 1;
       }
       if (segment != 0)
       {

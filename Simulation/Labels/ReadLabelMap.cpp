@@ -11,9 +11,11 @@
 #include "Labels/ReadNrrd.h"
 #include "Labels/VoxelFile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <new>
 #include <set>
 
@@ -137,15 +139,15 @@ LabelVolume readLabelMap(const std::string& path, int phase, const Progress& pro
 
 void readLabelTable(const std::string& tablePath, LabelVolume& volume)
 {
+  std::multimap<int, LabelInfo*> ofId; // a table may have as many rows as there are ids
+  for (LabelInfo& label : volume.labels)
+  {
+    ofId.emplace(label.id, &label);
+  }
   for (const LabelInfo& row : readLabels(tablePath))
   {
-    for (LabelInfo& label : volume.labels)
-    {
-      if (label.id == row.id)
-      {
-        copyDescription(row, label);
-      }
-    }
+    const auto [first, last] = ofId.equal_range(row.id);
+    std::for_each(first, last, [&row](const auto& label) { copyDescription(row, *label.second); });
   }
 }
 

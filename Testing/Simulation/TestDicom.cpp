@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <map>
+#include <random>
 
 namespace fs = std::filesystem;
 using namespace sono;
@@ -76,6 +77,27 @@ TEST_F(DicomFiles, SegmentsHaveNamesCodesColoursAndAPlace)
     EXPECT_NEAR(channel, 1.0f, 0.005f);
   }
   EXPECT_FALSE(volume.labels[2].hasColor);
+}
+
+TEST_F(DicomFiles, RunsOfEveryLengthAndPlaceInTheirBytesAreThere)
+{
+  // 19 x 13 pixels, so that each frame begins elsewhere in a byte; runs of 1 to 40 pixels.
+  std::mt19937 random(7);
+  std::vector<SegFrame> frames;
+  std::vector<std::uint16_t> expected;
+  for (int k = 0; k < 16; ++k)
+  {
+    std::vector<std::uint8_t> pixels;
+    for (std::uint8_t value = std::uint8_t(k % 2); pixels.size() < 247; value = std::uint8_t(1 - value))
+    {
+      pixels.insert(pixels.end(), 1 + random() % 40, value);
+    }
+    pixels.resize(247);
+    expected.insert(expected.end(), pixels.begin(), pixels.end());
+    frames.push_back({ 1, "10\\20\\" + std::to_string(4 * k), pixels });
+  }
+  DicomBytes("SEG", 19, 13).segment(1, "a", "1").frames("BINARY", frames).write(file("r.dcm"));
+  EXPECT_EQ(readLabelMap(file("r.dcm")).voxels, expected);
 }
 
 TEST_F(DicomFiles, FractionsCountFromOneHalfAndMayBeCompressed)
