@@ -1,5 +1,7 @@
 #include "Labels/VoxelRuns.h"
 
+#include "Core/LargeMemory.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -24,7 +26,7 @@ FlattenedStructures flattenStructures(const std::vector<Structure>& structures, 
   });
 
   FlattenedStructures flat;
-  flat.voxels.resize(voxelCount);
+  flat.voxels = largeVector<std::uint16_t>(voxelCount);
   std::size_t covered = 0;
   std::uint16_t below = 0; // of the first overlap
   std::uint16_t above = 0;
