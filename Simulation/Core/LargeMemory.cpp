@@ -2,30 +2,15 @@
 
 #include "Core/ParallelFor.h"
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 #include <algorithm>
-#include <cstdint>
 
 namespace sono {
 
 namespace {
 
 constexpr std::size_t pageBytes = 4096;
-constexpr std::size_t hugePageBytes = std::size_t(1) << 21;
-constexpr std::size_t leastBytes = 8 * hugePageBytes; // below, starting the cores costs as much
-
-void askForHugePages([[maybe_unused]] char* memory, [[maybe_unused]] std::size_t bytes)
-{
-#if defined(MADV_HUGEPAGE)
-  const auto at = reinterpret_cast<std::uintptr_t>(memory);
-  const std::size_t before = (hugePageBytes - at % hugePageBytes) % hugePageBytes;
-  const std::size_t whole = (bytes - before) / hugePageBytes * hugePageBytes;
-  madvise(memory + before, whole, MADV_HUGEPAGE); // refused: it goes by small pages
-#endif
-}
+constexpr std::size_t partBytes = std::size_t(1) << 21;
+constexpr std::size_t leastBytes = 8 * partBytes; // below, starting the cores costs as much
 
 } // namespace
 
@@ -35,11 +20,11 @@ void touchMemory(void* memory, std::size_t bytes)
   {
     return;
   }
+  // Huge pages are not asked for: of a virtual machine's memory they are what its host has to give anew.
   char* const begin = static_cast<char*>(memory);
-  askForHugePages(begin, bytes);
-  parallelFor(int((bytes + hugePageBytes - 1) / hugePageBytes), {}, [&](int part) {
-    volatile char* const first = begin + std::size_t(part) * hugePageBytes;
-    const std::size_t count = std::min(hugePageBytes, bytes - std::size_t(part) * hugePageBytes);
+  parallelFor(int((bytes + partBytes - 1) / partBytes), {}, [&](int part) {
+    volatile char* const first = begin + std::size_t(part) * partBytes;
+    const std::size_t count = std::min(partBytes, bytes - std::size_t(part) * partBytes);
     for (std::size_t at = 0; at < count; at += pageBytes)
     {
       first[at] = 0;

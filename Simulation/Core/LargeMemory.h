@@ -5,9 +5,9 @@
 
 namespace sono {
 
-/// Has all cores write to each page of memory that was just taken and holds nothing yet, on huge pages where the system
-/// gives them. Fresh memory costs a fault for each page that is written to first, on one core more than to fill it:
-/// half a second a gigabyte, and several where a virtual machine has to ask its host. Small memory is left as it is.
+/// Has all cores write to each page of memory that was just taken and holds nothing yet. Fresh memory costs a fault for
+/// each page that is written to first, on one core more than to fill it: half a second a gigabyte, and several where a
+/// virtual machine has to ask its host. Small memory is left as it is.
 void touchMemory(void* memory, std::size_t bytes);
 
 /// No numbers, with room for `count` that was touched.
