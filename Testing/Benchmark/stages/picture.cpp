@@ -1,4 +1,5 @@
 // The picture: echoes of surfaces and boundaries, levels and statistics of speckle, beams, the pulse's frequency, costs
+#include "ApicalImage.h"
 #include "BeamFigures.h"
 #include "BoundaryEchoes.h"
 #include "PhantomScene.h"
@@ -144,22 +145,6 @@ void measureSpeckle()
   }
 }
 
-/// A4C of the bundled thorax with the P4-2.
-ImageSettings a4cWith(InterfaceModel model)
-{
-  ImageSettings settings;
-  settings.geometry = p42().geometry;
-  settings.echo = echoOf(p42(), settings.geometry.depthMm);
-  settings.tracing.model = model;
-  settings.matchStages();
-  return settings;
-}
-
-std::vector<ScanLine> a4cLines(const ImageSettings& settings)
-{
-  return makeScanLines(settings.geometry, thoraxPhantomA4C().orthonormalized());
-}
-
 void measureDrift(const Scene& scene)
 {
   ImageSettings work = a4cWith(InterfaceModel::Acoustic);
@@ -182,33 +167,6 @@ void measureDrift(const Scene& scene)
   printFigure("boundary_echo_drift_db", worst, "dB", "at most 0.5");
 }
 
-struct Seconds
-{
-  double trace;
-  double echo;
-  double image; ///< both, envelope, grey levels and scan conversion
-};
-
-Seconds imageSeconds(const Scene& scene, const ImageSettings& work)
-{
-  Stopwatch watch;
-  const auto lines = a4cLines(work);
-  const TracedLines traced = trace(scene, lines, work.tracing);
-  const double traceSeconds = watch.lap();
-  const RfLines rf = formRf(scene, lines, traced, work.echo);
-  const double echoSeconds = watch.lap();
-  const BModeLines grey = makeBMode(rf.envelope(), rf.lineCount, rf.sampleCount, rf.sampleMm, BModeSettings());
-  scanConvert(work.geometry, grey.grey, grey.sampleCount, grey.sampleMm, 0.23);
-  return { traceSeconds, echoSeconds, traceSeconds + echoSeconds + watch.lap() };
-}
-
-/// Of an image after another of the same kind: the scene keeps one region, and who follows another fan pays for it.
-Seconds warmImageSeconds(const Scene& scene, const ImageSettings& work)
-{
-  imageSeconds(scene, work);
-  return imageSeconds(scene, work);
-}
-
 /// Whole images, made in turns so that the machine's moods cancel: medians of the quotients.
 void measureTimes(const Scene& scene)
 {
@@ -222,9 +180,9 @@ void measureTimes(const Scene& scene)
   std::vector<double> fieldToGaussian;
   for (int round = 0; round < 7; ++round)
   {
-    const Seconds ofAcoustic = warmImageSeconds(scene, acoustic);
-    const Seconds ofAmadou = warmImageSeconds(scene, amadou);
-    const Seconds ofField = warmImageSeconds(scene, field);
+    const ImageSeconds ofAcoustic = warmImageSeconds(scene, acoustic);
+    const ImageSeconds ofAmadou = warmImageSeconds(scene, amadou);
+    const ImageSeconds ofField = warmImageSeconds(scene, field);
     image.push_back(ofAcoustic.image / ofAmadou.image);
     tracing.push_back(ofAcoustic.trace / ofAmadou.trace);
     echo.push_back(ofAcoustic.echo / ofAmadou.echo);
