@@ -33,6 +33,7 @@ Tissue fluid(const std::string& name, double impedance, double speed, double att
   Tissue tissue = makeTissue(name, impedance, speed, attenuation);
   tissue.roughnessMm = 0.0;
   tissue.backscatterPerCmSr = backscatter;
+  tissue.scattererMean = tissue.scattererProbability = backscatter > 0.0 ? 1.0 : 0.0;
   return tissue;
 }
 
