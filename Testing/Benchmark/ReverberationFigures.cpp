@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <numeric>
 
 namespace sono {
 
@@ -38,21 +39,21 @@ Tissue fluid(const std::string& name, double impedance, double speed, double att
 }
 
 /// All that a line down the axis needs, of a beam and a pulse.
-ImageSettings settingsOf(const EchoSettings& echo, int pathsPerLine)
+ImageSettings settingsOf(const EchoSettings& echo, double face, int pathsPerLine)
 {
   ImageSettings settings;
   settings.echo = echo;
   settings.geometry.depthMm = echo.depthMm;
   settings.tracing.pathsPerLine = pathsPerLine;
   settings.tracing.maxCollisions = mostCollisions;
+  settings.tracing.faceReflection = face;
 
   settings.matchStages();
   return settings;
 }
 
-/// The envelope of a line down the middle of plane layers, `acrossMm` wide.
-std::vector<double> layersEnvelope(const LayerStack& stack, const ImageSettings& settings, int acrossMm,
-                                   std::vector<std::complex<float>>* iq = nullptr)
+/// IQ of a line down the middle of plane layers, `acrossMm` wide.
+RfLines layersRf(const LayerStack& stack, const ImageSettings& settings, int acrossMm, double voxelMm = 1.0)
 {
   std::vector<Tissue> tissues;
   for (const StackLayer& layer : stack.layers)
@@ -68,16 +69,21 @@ std::vector<double> layersEnvelope(const LayerStack& stack, const ImageSettings&
     }
     return layer;
   };
-  const int deepMm = int(1.2 * settings.echo.depthMm) + 4;
-  const auto scene = makeScene({ acrossMm, acrossMm, deepMm }, Vec3d(1.0), tissues, labelAt);
+  const int deep = int((1.2 * settings.echo.depthMm + 4.0) / voxelMm);
+  const auto scene = makeScene({ acrossMm, acrossMm, deep }, Vec3d(1.0, 1.0, voxelMm), tissues, labelAt);
   const std::vector<ScanLine> lines{ makeLine({ 0.5 * acrossMm + 0.2, 0.5 * acrossMm + 0.4, 0.0 }, { 0, 0, 1 }) };
-  const RfLines rf = formRf(*scene, lines, trace(*scene, lines, settings.tracing), settings.echo);
-  const std::vector<float> envelope = rf.envelope();
-  if (iq)
+  return formRf(*scene, lines, trace(*scene, lines, settings.tracing), settings.echo);
+}
+
+template<class T>
+std::vector<double> envelopeOf(const std::vector<std::complex<T>>& iq)
+{
+  std::vector<double> envelope;
+  for (const std::complex<T>& v : iq)
   {
-    *iq = rf.iq;
+    envelope.push_back(double(std::abs(v)));
   }
-  return { envelope.begin(), envelope.end() };
+  return envelope;
 }
 
 struct Peak
@@ -132,22 +138,18 @@ struct HeardArrival
 
 /// What a line shows of a stack beside what it must.
 std::vector<HeardArrival> hearStack(const std::string& name, const LayerStack& stack, double fractionalBandwidth,
-                                    int pathsPerLine)
+                                    int pathsPerLine, double voxelMm = 1.0)
 {
   EchoSettings echo;
   echo.fractionalBandwidth = fractionalBandwidth;
   const double f = echo.centreFrequencyMHz;
   const auto counted = stackArrivals(stack, f, std::pow(10.0, leastDb / 20.0), 150.0);
   echo.depthMm = counted.back().rangeMm + 4.0;
-  const ImageSettings settings = settingsOf(echo, pathsPerLine);
-  std::vector<std::complex<float>> iq;
-  const std::vector<double> envelope = layersEnvelope(stack, settings, 24, &iq);
+  const ImageSettings settings = settingsOf(echo, stack.faceReflection, pathsPerLine);
+  const RfLines rf = layersRf(stack, settings, 24, voxelMm);
   const auto exactSignal = exactIq(everyArrival(stack, f, 1e-7, echo.depthMm + 4.0), echo);
-  std::vector<double> exact;
-  for (const std::complex<double>& v : exactSignal)
-  {
-    exact.push_back(std::abs(v));
-  }
+  const std::vector<double> envelope = envelopeOf(rf.iq);
+  const std::vector<double> exact = envelopeOf(exactSignal);
   std::vector<HeardArrival> heard;
   for (const Arrival& a : counted)
   {
@@ -159,7 +161,7 @@ std::vector<HeardArrival> hearStack(const std::string& name, const LayerStack& s
                  name.c_str(), fractionalBandwidth, a.rangeMm, a.primary ? "boundary" : "reverberation",
                  static_cast<long long>(a.routes), decibels(h.exact.amplitude), h.heard.rangeMm - h.exact.rangeMm,
                  decibels(h.heard.amplitude / h.exact.amplitude),
-                 std::arg(std::complex<double>(iq[at]) / exactSignal[at]) * 180.0 / M_PI);
+                 std::arg(std::complex<double>(rf.iq[at]) / exactSignal[at]) * 180.0 / M_PI);
   }
   return heard;
 }
@@ -181,15 +183,15 @@ constexpr int alines = 3;
 /// A-lines through the P4-2's beam against the lung's own echo at so many times its depth: the largest error, dB.
 double apertureAlinesDb(int pathsPerLine)
 {
-  const ImageSettings settings = settingsOf(echoOf(p42(), alines * lungMm + 6.0), pathsPerLine);
+  const ImageSettings settings = settingsOf(echoOf(p42(), alines * lungMm + 6.0), faceReflection, pathsPerLine);
   const double sampleMm = settings.echo.sampleMm();
   const LayerStack near = lungStack(lungMm);
-  const std::vector<double> heard = layersEnvelope(near, settings, 80);
+  const std::vector<double> heard = envelopeOf(layersRf(near, settings, 80).iq);
   double worst = 0.0;
   for (int n = 1; n <= alines; ++n)
   {
     const LayerStack deep = lungStack(n * lungMm);
-    const double once = peakNear(layersEnvelope(deep, settings, 80), sampleMm, deep.rangeMm(0)).amplitude;
+    const double once = peakNear(envelopeOf(layersRf(deep, settings, 80).iq), sampleMm, deep.rangeMm(0)).amplitude;
     const Peak line = peakNear(heard, sampleMm, deep.rangeMm(0));
     const double expected = once * std::pow(std::abs(near.reflection(0)) * faceReflection, n - 1);
     std::fprintf(stderr, "A-line %d of the P4-2: %+.4f mm, %+.3f dB against a lung as deep\n", n,
@@ -217,10 +219,11 @@ std::vector<double> meanPower(const Scene& scene, const std::vector<ScanLine>& l
 
 } // namespace
 
-StackErrors stackErrors(const std::string& name, const LayerStack& stack, double fractionalBandwidth, int pathsPerLine)
+StackErrors stackErrors(const std::string& name, const LayerStack& stack, double fractionalBandwidth, int pathsPerLine,
+                        double voxelMm)
 {
   StackErrors worst;
-  for (const HeardArrival& h : hearStack(name, stack, fractionalBandwidth, pathsPerLine))
+  for (const HeardArrival& h : hearStack(name, stack, fractionalBandwidth, pathsPerLine, voxelMm))
   {
     worst.rangeMm = std::max(worst.rangeMm, std::abs(h.heard.rangeMm - h.exact.rangeMm));
     worst.amplitudeDb = std::max(worst.amplitudeDb, std::abs(decibels(h.heard.amplitude / h.exact.amplitude)));
@@ -244,6 +247,62 @@ AlineErrors alineErrors(int pathsPerLine)
   return worst;
 }
 
+double tissueReverberationErrorDb(int pathsPerLine)
+{
+  // Speckle between 5 and 12 mm over a lung, without loss: r and rt are all that there is.
+  const LayerStack stack = lungStack(lungMm);
+  const StackLayer& tissue = stack.layers[0];
+  const StackLayer& lung = stack.layers[1];
+  const double r = std::abs(stack.reflection(0));
+  const double rt = r * faceReflection;
+  constexpr double fromMm = 5.0;
+  constexpr double toMm = 12.0;
+  const auto scene = makeScene({ 60, 60, 100 }, Vec3d(1.0),
+                               { fluid("clear", tissue.impedanceMRayl, tissue.speedMPerS, 0.0),
+                                 fluid("bright", tissue.impedanceMRayl, tissue.speedMPerS, 0.0, 1e-2),
+                                 fluid("lung", lung.impedanceMRayl, lung.speedMPerS, 0.0) },
+                               [&](const Vec3d& p) { return p.z > lungMm ? 2 : (p.z > fromMm && p.z < toMm ? 1 : 0); });
+  EchoSettings echo;
+  echo.depthMm = 80.0;
+  const ImageSettings settings = settingsOf(echo, faceReflection, pathsPerLine);
+  std::vector<ScanLine> lines;
+  for (int l = 0; l < 36; ++l)
+  {
+    lines.push_back(makeLine({ 10.0 + 8.0 * (l % 6), 10.0 + 8.0 * (l / 6), 0.0 }, { 0, 0, 1 }));
+  }
+  const std::vector<double> power = meanPower(*scene, lines, trace(*scene, lines, settings.tracing), echo, 4);
+  const auto level = [&](double from) {
+    const int first = int((from + 1.0) / echo.sampleMm());
+    const int last = int((from + toMm - fromMm - 1.0) / echo.sampleMm());
+    double sum = 0.0;
+    for (std::size_t l = 0; l < lines.size(); ++l)
+    {
+      const auto line = power.begin() + std::ptrdiff_t(l) * echo.sampleCount();
+      sum += std::accumulate(line + first, line + last, 0.0);
+    }
+    return std::sqrt(sum);
+  };
+  struct Copy
+  {
+    const char* what;
+    double fromMm;
+    double amplitude;
+  };
+  const double direct = level(fromMm);
+  double worst = 0.0;
+  for (const Copy& copy :
+       { Copy{ "straight back, by the lung and the face", lungMm + fromMm, 2.0 * rt },
+         Copy{ "mirrored by the lung", 2.0 * lungMm - toMm, r * r },
+         Copy{ "by lung and face once each way, or twice one way", 2.0 * lungMm + fromMm, 3.0 * rt * rt } })
+  {
+    const double error = decibels(level(copy.fromMm) / (direct * copy.amplitude));
+    std::fprintf(stderr, "tissue at %g to %g mm, %s: at %g mm %.2f dB, which is off by %+.2f dB\n", fromMm, toMm,
+                 copy.what, copy.fromMm, decibels(level(copy.fromMm) / direct), error);
+    worst = std::max(worst, std::abs(error));
+  }
+  return worst;
+}
+
 double mirrorImageErrorMm(int pathsPerLine)
 {
   const double speed = 1550.0; // the liver's
@@ -263,7 +322,7 @@ double mirrorImageErrorMm(int pathsPerLine)
               });
   EchoSettings echo;
   echo.depthMm = 105.0;
-  const ImageSettings settings = settingsOf(echo, pathsPerLine);
+  const ImageSettings settings = settingsOf(echo, 0.0, pathsPerLine);
   constexpr double stepDeg = 0.35;
   constexpr int half = 20;
   std::vector<ScanLine> lines;

@@ -20,9 +20,10 @@ struct StackErrors
 };
 
 /// A line without an aperture across smooth plane layers without scatterers: where its arrivals lie and how strong they
-/// are against the exact ones (LayerStack.h), of which all above -60 dB count. The pulse is 2.5 MHz, and sinks.
+/// are against the exact ones (LayerStack.h), of which all above -60 dB count. The pulse is 2.5 MHz, and sinks. Layers
+/// are as many voxels thick.
 StackErrors stackErrors(const std::string& name, const test::LayerStack& stack, double fractionalBandwidth,
-                        int pathsPerLine);
+                        int pathsPerLine, double voxelMm);
 
 /// A lung 30 mm under soft tissue, which rings between it and a face that reflects half the pressure.
 struct AlineErrors
@@ -32,6 +33,10 @@ struct AlineErrors
   double apertureDb = 0.0;  ///< the same with the P4-2's beam, against that of a lung n times as deep
 };
 AlineErrors alineErrors(int pathsPerLine);
+
+/// Speckle over that lung, and its copies: straight back after lung and face, mirrored by the lung, and by its own way
+/// after lung and face. The largest error of their levels against its own, dB.
+double tissueReverberationErrorDb(int pathsPerLine);
 
 /// A sphere of bright tissue in front of a slanted diaphragm, behind which is lung: how far the middle of what is seen
 /// behind lies from where a mirror would show it, by the time that sound takes, mm.
