@@ -245,7 +245,7 @@ SONO_HD inline void depositBoundary(const TraceView& view, const PathState& path
   const float amplitude =
     boundaryEcho(view.model, from.impedance, to.impedance, path.intensity, boundary.cosine, to.tau, to.gamma);
   sink.echo(path.ray.position + path.ray.direction * boundary.surface.t, amplitude);
-  if (path.reflections > 0 && !boundary.isFace && view.model == InterfaceModel::Acoustic)
+  if (path.reflections > 0 && view.model == InterfaceModel::Acoustic)
   {
     sink.arrives(path, boundary);
   }

@@ -91,7 +91,10 @@ SONO_HD inline bool arriveAtBoundary(const TraceView& view, const PathState& pat
   {
     return false;
   }
-  depositBoundary(view, path, boundary, sink);
+  if (!boundary.isFace)
+  {
+    depositBoundary(view, path, boundary, sink);
+  }
   return true;
 }
 

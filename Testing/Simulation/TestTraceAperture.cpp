@@ -137,7 +137,8 @@ TEST(TraceAperture, BehindAnEdgeThereIsTheShareOfTheApertureThatSeesIt)
   expectShadowOfEdge(1, 20.0, 3.5, elevationFocusMm);
 }
 
-// The twin of a ball in gel: rays in double precision, both branches of each at every boundary, exact in the branches.
+// The twin of a ball in gel: rays in double precision, straight on at every boundary. What is reflected reverberates,
+// and is no part of the intensity.
 
 struct Medium
 {
@@ -154,7 +155,7 @@ struct Twin
   double coherenceMm;
   double depthMm; ///< where I is asked for
 
-  /// I w_R at the depth, of a ray and all that becomes of it.
+  /// I w_R at the depth, of a ray as far as it is transmitted.
   double follow(const Vec3d& origin, const Vec3d& axis, Vec3d p, Vec3d d, double intensity, bool inside, int met) const
   {
     const Vec3d q = p - centre;
@@ -184,10 +185,6 @@ struct Twin
     const double sin2 = c2 / c1 * std::sqrt(std::max(0.0, 1.0 - cos1 * cos1));
     const double cos2 = std::sqrt(std::max(0.0, 1.0 - sin2 * sin2));
     const double r = sin2 >= 1.0 ? 1.0 : (cos1 - cos2) / (cos1 + cos2); // of equal impedances
-    if (intensity * r * r > 1e-5)
-    {
-      sum += follow(origin, axis, p, d - 2.0 * cos1 * n, intensity * r * r, inside, met + 1);
-    }
     if (r * r < 1.0)
     {
       const Vec3d across = d - cos1 * n;
