@@ -119,6 +119,10 @@ ProbeField readProbe(vtkFieldData* field)
   {
     ScanGeometry::visitCompounding(probe.geometry, read);
   }
+  if (field->HasArray("ImagingMode"))
+  {
+    ProbeSettings::visitMode(probe, read);
+  }
   probe.geometry.validate();
   probe.pose.positionMm = readVector("ProbePositionMm", field);
   probe.pose.axial = readVector("ProbeAxial", field);

@@ -3,6 +3,7 @@
 #include "Echo/Pulse.h"
 #include "Image/BMode.h"
 #include "Image/GreyMap.h"
+#include "Image/Haze.h"
 #include "Simulator.h"
 #include "SonoDataFile.h"
 #include "SonoLineImage.h"
@@ -42,8 +43,10 @@ void vtkSonoBMode::PrintSelf(ostream& os, vtkIndent indent)
 sono::BModeSettings vtkSonoBMode::Settings(const sono::ProbeSettings& probe) const
 {
   sono::BModeSettings settings = sono::settingsIn<sono::BModeSettings>(std::as_const(*this->Parameters));
-  settings.frequencyMHz = probe.centreFrequencyMHz;
-  settings.pulseSigmaMm = sono::pulseSigmaMm(probe.centreFrequencyMHz, probe.fractionalBandwidth);
+  settings.frequencyMHz = probe.receivedMHz();
+  settings.pulseSigmaMm = sono::pulseSigmaMm(probe.receivedMHz(), probe.receivedBandwidth());
+  settings.hazeGrowthPerMm =
+    sono::bodyWallGrowthPerMm(probe.imagingMode, probe.centreFrequencyMHz, probe.facePressureKPa);
   settings.linesAcross = probe.geometry.lineCount;
   if (this->GreyMapFile.empty() && this->GreyMap == "Linear")
   {

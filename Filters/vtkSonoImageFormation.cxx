@@ -52,8 +52,9 @@ int vtkSonoImageFormation::FillInputPortInformation(int port, vtkInformation* in
 sono::EchoSettings vtkSonoImageFormation::Settings(const sono::ProbeField& probe, double samplingMHz) const
 {
   auto settings = sono::settingsIn<sono::EchoSettings>(*this->Parameters);
-  settings.centreFrequencyMHz = probe.centreFrequencyMHz;
-  settings.fractionalBandwidth = probe.fractionalBandwidth;
+  settings.centreFrequencyMHz = probe.receivedMHz();
+  settings.fractionalBandwidth = probe.receivedBandwidth();
+  settings.imagingMode = probe.imagingMode;
   settings.aperture = probe.aperture();
   settings.samplingMHz = samplingMHz;
   settings.depthMm = probe.geometry.depthMm;

@@ -77,9 +77,11 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   static_cast<sono::ProbeSettings&>(probe) = this->PresetFile.empty()
                                                ? sono::settingsIn<sono::ProbeSettings>(*this->Parameters)
                                                : sono::readProbePreset(presetPath(this->PresetFile));
-  const sono::ScanGeometry& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters).geometry;
-  probe.geometry.compoundFans = this->Preview ? 1 : given.compoundFans;
-  probe.geometry.compoundSpanDeg = given.compoundSpanDeg;
+  const auto& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters);
+  probe.geometry.compoundFans = this->Preview ? 1 : given.geometry.compoundFans;
+  probe.geometry.compoundSpanDeg = given.geometry.compoundSpanDeg;
+  probe.imagingMode = given.imagingMode;
+  probe.facePressureKPa = given.facePressureKPa;
   probe.geometry.validate();
   probe.preview = this->Preview;
   probe.prepares = this->PrepareInteraction;

@@ -44,6 +44,11 @@ public:
     MATRIX = 3,
     RADIAL = 4
   };
+  enum ImagingModes
+  {
+    FUNDAMENTAL = 0,
+    HARMONIC = 1
+  };
 
   ///@{
   /**
@@ -66,6 +71,8 @@ public:
   sonoParameter(ElementWidthMm, double);
   sonoParameter(CompoundFans, int);
   sonoParameter(CompoundSpanDeg, double);
+  sonoParameter(ImagingMode, int);
+  sonoParameter(FacePressureKPa, double);
   ///@}
 
   /**

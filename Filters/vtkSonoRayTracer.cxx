@@ -77,7 +77,7 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 
 double vtkSonoRayTracer::RfSamplingMHz(const sono::ProbeField& probe) const
 {
-  return probe.preview ? sono::interactiveSamplingMHz(this->SamplingMHz, probe.centreFrequencyMHz) : this->SamplingMHz;
+  return probe.preview ? sono::interactiveSamplingMHz(this->SamplingMHz, probe.receivedMHz()) : this->SamplingMHz;
 }
 
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
@@ -86,6 +86,8 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.pathsPerLine = probe.preview ? sono::interactivePaths(settings.pathsPerLine) : settings.pathsPerLine;
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
+  settings.imagingMode = probe.imagingMode;
+  settings.facePressureKPa = probe.facePressureKPa;
   settings.aperture = probe.aperture();
   settings.depthMm = probe.geometry.depthMm;
   settings.echoSampleMm = rfGrid(this->RfSamplingMHz(probe), settings.depthMm).sampleMm();

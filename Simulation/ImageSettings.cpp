@@ -2,6 +2,7 @@
 
 #include "Core/Error.h"
 #include "Echo/Pulse.h"
+#include "Image/Haze.h"
 
 #include <cmath>
 #include <string>
@@ -29,18 +30,21 @@ void ImageSettings::matchStages()
 {
   tracing.depthMm = geometry.depthMm;
   echo.depthMm = geometry.depthMm;
-  tracing.frequencyMHz = echo.centreFrequencyMHz;
+  tracing.frequencyMHz = echo.sentFrequencyMHz();
+  tracing.imagingMode = echo.imagingMode;
   tracing.aperture = echo.aperture;
   tracing.echoSampleMm = echo.sampleMm();
   bmode.frequencyMHz = echo.centreFrequencyMHz;
   bmode.pulseSigmaMm = sono::pulseSigmaMm(echo.centreFrequencyMHz, echo.fractionalBandwidth);
+  bmode.hazeGrowthPerMm = bodyWallGrowthPerMm(tracing.imagingMode, tracing.frequencyMHz, tracing.facePressureKPa);
   bmode.linesAcross = geometry.lineCount;
 }
 
 void ImageSettings::requireMatch() const
 {
   requireAlike(agree(tracing.depthMm, geometry.depthMm) && agree(echo.depthMm, geometry.depthMm), "the depth");
-  requireAlike(agree(tracing.frequencyMHz, echo.centreFrequencyMHz), "the frequency");
+  requireAlike(tracing.imagingMode == echo.imagingMode, "the imaging mode");
+  requireAlike(agree(tracing.frequencyMHz, echo.sentFrequencyMHz()), "the frequency");
   requireAlike(tracing.aperture == echo.aperture, "the aperture");
   requireAlike(agree(tracing.echoSampleMm, echo.sampleMm()), "the sampling of echoes");
 }

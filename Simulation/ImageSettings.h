@@ -21,8 +21,8 @@ struct ImageSettings
   BModeSettings bmode;
   double pixelMm = 0.23;
 
-  /// Takes depth and lines from the geometry, and frequency, bandwidth, aperture and sampling from the RF, for all
-  /// stages.
+  /// Takes depth and lines from the geometry, and mode, frequency, bandwidth, aperture and sampling from the RF, for
+  /// all stages.
   void matchStages();
   /// Throws Error, naming it, when the stages disagree about one of these.
   void requireMatch() const;

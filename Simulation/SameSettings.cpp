@@ -24,18 +24,19 @@ std::vector<double> parametersOf(const Settings& settings)
 
 auto rest(const TraceSettings& s)
 {
-  return std::tie(s.march, s.frequencyMHz, s.depthMm, s.aperture, s.echoSampleMm, s.interactive, s.seed);
+  return std::tie(s.march, s.frequencyMHz, s.imagingMode, s.facePressureKPa, s.depthMm, s.aperture, s.echoSampleMm,
+                  s.interactive, s.seed);
 }
 
 auto rest(const EchoSettings& s)
 {
-  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.samplingMHz, s.depthMm, s.aperture, s.field,
-                  s.arrayField, s.pulse, s.seed);
+  return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.imagingMode, s.samplingMHz, s.depthMm, s.aperture,
+                  s.field, s.arrayField, s.pulse, s.seed);
 }
 
 auto rest(const BModeSettings& s)
 {
-  return std::tie(s.greyMap, s.noiseSeed, s.frequencyMHz, s.pulseSigmaMm, s.linesAcross);
+  return std::tie(s.greyMap, s.noiseSeed, s.frequencyMHz, s.pulseSigmaMm, s.hazeGrowthPerMm, s.linesAcross);
 }
 
 auto all(const ProbePose& p)

@@ -9,6 +9,7 @@
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
 #include "SameSettings.h"
+#include "Trace/SecondHarmonic.h"
 #include "Trace/TraceSetup.h"
 
 #include <chrono>
@@ -189,6 +190,24 @@ void fetchPlane(const DevicePicture& device, PlaneImage& image)
   image.mask.assign(mask.begin(), mask.end());
 }
 
+/// One frequency's, whatever the mode.
+TracedResult traceTone(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                       const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  return runsOnDevice(settings) ? traceOnDevice(scene, lines, settings, targets, progress)
+                                : TracedResult(sono::trace(scene, lines, settings, progress, targets));
+}
+
+/// Both tones' traces meet on the host.
+TracedResult traceHarmonic(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                           const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  const TracedResult sent = traceTone(scene, lines, settings, targets, partOf(progress, 0.0, 0.5));
+  const TracedResult doubled = traceTone(scene, lines, doubledTone(settings), targets, partOf(progress, 0.5, 1.0));
+  return TracedResult(
+    secondHarmonic(sent.host(), doubled.host(), harmonicSources(scene, lines, settings), sentGains(settings)));
+}
+
 /// The map of nothing, as large as the layout.
 template<class Image>
 Image unknown(Image layout, std::size_t count)
@@ -276,8 +295,8 @@ TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSet
                               const std::vector<TargetSurface>& targets, const Progress& progress)
 {
   return last_->traced.get({ lines, settings, targets }, [&] {
-    return runsOnDevice(settings) ? traceOnDevice(needScene(), lines, settings, targets, progress)
-                                  : TracedResult(sono::trace(needScene(), lines, settings, progress, targets));
+    const auto make = settings.imagingMode == ImagingMode::Harmonic ? traceHarmonic : traceTone;
+    return make(needScene(), lines, settings, targets, progress);
   });
 }
 
@@ -466,7 +485,7 @@ void Simulator::begin(const ImageInput& input, bool wholeImage)
   const TraceSettings& tracing = input.settings.tracing;
   const auto& before = last_->traced.from;
   const int lineCount = input.settings.geometry.totalLineCount();
-  if (!scene_ || !before || !runsOnDevice(tracing) ||
+  if (!scene_ || !before || !runsOnDevice(tracing) || tracing.imagingMode == ImagingMode::Harmonic ||
       double(tracing.pathsPerLine) * tracing.maxCollisions * lineCount > bouncesBegun)
   {
     return;

@@ -88,7 +88,8 @@ public:
   BModeResult bmode(const ImageInput& input, const Progress& progress = {});
   ImageResult image(const ImageInput& input, const Progress& progress = {});
   /// Has a GPU begin what traced(), or with `wholeImage` image(), will be asked for, so that it is under way by then.
-  /// Does nothing on the CPU, nor where more is to be done than can be left to run without a stop.
+  /// Does nothing on the CPU, nor for a harmonic, whose traces meet on the host, nor where more is to be done than can
+  /// be left to run without a stop.
   void begin(const ImageInput& input, bool wholeImage);
   ///@}
 

@@ -58,8 +58,8 @@ BeamModel::BeamModel(const EchoSettings& settings, InterfaceModel model)
 {
   if (kind_ == BeamKind::Aperture)
   {
-    straight_ = apertureProfile(settings.aperture, settings.centreFrequencyMHz);
-    focusMm_ = focusDepthMm(settings.aperture, settings.centreFrequencyMHz);
+    straight_ = apertureProfile(settings.aperture, settings.centreFrequencyMHz, settings.imagingMode);
+    focusMm_ = focusDepthMm(settings.aperture, settings.sentFrequencyMHz());
     tabulateReach();
   }
   if (kind_ == BeamKind::Field)
@@ -171,11 +171,12 @@ Beam BeamModel::beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& r
     beam.arraySight = &*sightView_;
     beam.lateralCosine = float(std::sqrt(lateral2));
     beam.elevationalCosine = float(std::sqrt(1.0 - line.steeringElevational * line.steeringElevational / lateral2));
-    beam.gain = float(directivity(settings_.aperture, settings_.centreFrequencyMHz, line));
+    beam.gain = float(directivity(settings_.aperture, settings_.centreFrequencyMHz, line, settings_.imagingMode));
   }
   if (kind_ == BeamKind::Aperture)
   {
-    beam.profile = steeredProfile(straight_, settings_.aperture, settings_.centreFrequencyMHz, line);
+    beam.profile =
+      steeredProfile(straight_, settings_.aperture, settings_.centreFrequencyMHz, line, settings_.imagingMode);
   }
   return beam;
 }

@@ -29,6 +29,7 @@ ArrayAperture elementsOf(const EchoSettings& settings)
   }
   ArrayAperture elements;
   elements.centreFrequencyMHz = settings.centreFrequencyMHz;
+  elements.imagingMode = settings.imagingMode;
   elements.fractionalBandwidth = settings.fractionalBandwidth;
   elements.transmitFocusMm = orNever(whole.transmitFocusMm);
   elements.elevationFocusMm = orNever(whole.elevationFocusMm);

@@ -4,6 +4,7 @@
 #include "Core/Require.h"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 namespace sono {
@@ -40,6 +41,15 @@ void EchoSettings::validate() const
                  centreFrequencyMHz, "more than 0");
   requireInRange(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
                  "more than 0 and below 2");
+  if (imagingMode == ImagingMode::Harmonic && samplingMHz <= 2.0 * centreFrequencyMHz)
+  {
+    std::ostringstream sentence;
+    sentence << "the second harmonic lies at " << centreFrequencyMHz
+             << " MHz, not below half the sampling frequency of " << samplingMHz << " MHz: raise Sampling (MHz) above "
+             << 2.0 * centreFrequencyMHz
+             << ", lower the probe's Centre Frequency, or set its Imaging Mode to Fundamental";
+    throw Error(sentence.str());
+  }
   requireInRange(
     samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
     "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");

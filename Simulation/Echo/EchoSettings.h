@@ -23,10 +23,13 @@ enum class BeamForm
 struct EchoSettings
 {
   Device device = Device::Auto;
-  double centreFrequencyMHz = 2.5;  ///< > 0, below half the sampling frequency
-  double fractionalBandwidth = 0.6; ///< at -6 dB, (0, 2)
-  double samplingMHz = 50.0;        ///< RF sampling frequency, at most 1000
-  double depthMm = 160.0;           ///< > 0
+  double centreFrequencyMHz = 2.5;  ///< that is received, > 0, below half the sampling frequency
+  double fractionalBandwidth = 0.6; ///< of what is received, at -6 dB, (0, 2)
+  /// Harmonic: half that frequency is sent, and the beam is made by the square of what is. A field and a pulse that are
+  /// given count as they are.
+  ImagingMode imagingMode = ImagingMode::Fundamental;
+  double samplingMHz = 50.0; ///< RF sampling frequency, at most 1000
+  double depthMm = 160.0;    ///< > 0
   /// Of the probe: where it is named, the beam is that of its Gaussians, which widen in depth and are weaker to the
   /// side. Amadou2024's lines are not.
   BeamAperture aperture;
@@ -97,6 +100,7 @@ struct EchoSettings
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
+  double sentFrequencyMHz() const { return sentMHz(imagingMode, centreFrequencyMHz); }
   /// Radial distance of two RF samples, mm.
   double sampleMm() const { return assumedSoundSpeedMmPerUs / (2.0 * samplingMHz); }
   int sampleCount() const;

@@ -33,8 +33,9 @@ struct BModeSettings
   double hazeVariationDb = 3.0;
   std::uint64_t noiseSeed = 1;
   double axialSmoothingMm = 0.0; ///< of the envelope, before any gain
-  double frequencyMHz = 2.5;     ///< centre of the pulse's band, > 0
+  double frequencyMHz = 2.5;     ///< centre of the band that is received, > 0
   double pulseSigmaMm = 0.2;     ///< standard deviation of the receive filter's pulse: the noise's grain along a line
+  double hazeGrowthPerMm = 0.0;  ///< of a harmonic picture, see bodyWallGrowthPerMm; 0: the haze is the fundamental's
   int linesAcross = 0;           ///< lines side by side; those that follow lie in other planes. 0: all
 
   template<class Self, class Visitor>

@@ -3,6 +3,7 @@
 #include "Core/ParallelFor.h"
 #include "Kernel/GreyLevel.h"
 #include "Kernel/NormalDeviate.h"
+#include "Trace/SecondHarmonic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,24 @@ constexpr double nodeMm = 0.25; // the level is straight in between
 // cells across 90 degrees, 2.6 mm across at 65 mm, as the speckle of real cavities (Data/docs/pictures.md).
 constexpr double cellMm = 0.8;
 constexpr double cellsAcross = 75.0;
+constexpr double bodyWallMm = 10.0; // chosen
+
+/// Between fat and muscle (Data/tissues.csv).
+Tissue bodyWall()
+{
+  Tissue wall;
+  wall.impedanceMRayl = 1.53;
+  wall.soundSpeedMPerS = 1515.0;
+  wall.nonlinearity = 5.4;
+  return wall;
+}
+
+/// What of the haze's power is there of a harmonic, at a depth.
+double grownShare(double growthPerMm, double depthMm)
+{
+  const double grown = growthPerMm * std::min(depthMm, bodyWallMm);
+  return grown * grown / 3.0;
+}
 
 /// A position among cells and the blend of the four nodes about it, of unit length.
 struct Blend
@@ -98,9 +117,21 @@ HazePower makeHaze(const BModeSettings& settings, int lineCount, int sampleCount
       const double level = neperPerDb * (settings.hazeDb - fallDbPerMm * depthMm);
       haze.power[std::size_t(line) * std::size_t(haze.nodeCount) + std::size_t(node)] =
         float(std::exp(level + spread * normal - 0.5 * spread * spread));
+      if (settings.hazeGrowthPerMm > 0.0)
+      {
+        haze.power[std::size_t(line) * std::size_t(haze.nodeCount) + std::size_t(node)] *=
+          float(grownShare(settings.hazeGrowthPerMm, depthMm));
+      }
     }
   });
   return haze;
+}
+
+double bodyWallGrowthPerMm(ImagingMode mode, double sentMHz, double facePressureKPa)
+{
+  const Tissue wall = bodyWall();
+  return mode == ImagingMode::Harmonic ? harmonicSourcePerMm(wall, wall.impedanceMRayl, { sentMHz, facePressureKPa })
+                                       : 0.0;
 }
 
 } // namespace sono

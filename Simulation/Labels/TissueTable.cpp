@@ -38,6 +38,7 @@ const Property properties[] = {
   { "backscatter_1MHz_per_cm_sr", &Tissue::backscatterPerCmSr, 0.0, 1.0, false, true },
   { "backscatter_exponent", &Tissue::backscatterExponent, 0.0, 6.0, false, true },
   { "fibre_anisotropy_dB", &Tissue::fibreAnisotropyDb, 0.0, 60.0, false, true },
+  { "nonlinearity", &Tissue::nonlinearity, 0.0, 20.0, false, true },
 };
 
 std::string rangeOf(const Property& property)

@@ -22,6 +22,7 @@ struct Tissue
   double backscatterPerCmSr = 1e-4;   ///< b1 of mu_b = b1 (f / MHz)^n, across its fibres, in [0, 1]; 1/(cm sr)
   double backscatterExponent = 1.4;   ///< n, in [0, 6]
   double fibreAnisotropyDb = 0.0;     ///< how much stronger across its fibres than along them, in [0, 60]
+  double nonlinearity = 4.5;          ///< beta = 1 + B/(2A), in [0, 20]: what the second harmonic grows by
   std::string source;                 ///< where the numbers come from
 };
 
@@ -44,9 +45,9 @@ class TissueTable
 public:
   /// Columns, in any order, by header: tissue, impedance_MRayl, sound_speed_m_per_s, attenuation_dB_per_cm_MHz,
   /// mu0, sigma0, mu1, tau, gamma, source; and, with the defaults above where a table lacks them, roughness_mm,
-  /// correlation_mm, backscatter_1MHz_per_cm_sr, backscatter_exponent, fibre_anisotropy_dB. Lines starting with '#' are
-  /// comments; fields may be quoted. Throws Error naming the file, the tissue and the column for a missing, non-finite
-  /// or out-of-range number.
+  /// correlation_mm, backscatter_1MHz_per_cm_sr, backscatter_exponent, fibre_anisotropy_dB, nonlinearity. Lines
+  /// starting with '#' are comments; fields may be quoted. Throws Error naming the file, the tissue and the column for
+  /// a missing, non-finite or out-of-range number.
   static TissueTable read(const std::string& path);
 
   /// Checks the ranges above and that the name is new; throws Error naming the tissue.

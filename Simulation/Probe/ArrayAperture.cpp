@@ -26,7 +26,7 @@ void require(const char* parameter, double value, bool good, const char* range)
 auto tied(const ArrayAperture& a)
 {
   return std::tie(a.elementCount, a.elementWidthMm, a.elementHeightMm, a.kerfMm, a.faceRadiusMm, a.transmitFocusMm,
-                  a.elevationFocusMm, a.apodization, a.centreFrequencyMHz, a.fractionalBandwidth,
+                  a.elevationFocusMm, a.apodization, a.imagingMode, a.centreFrequencyMHz, a.fractionalBandwidth,
                   a.attenuationDbPerCmMHz, a.soundSpeedMmPerUs, a.elevationCount);
 }
 

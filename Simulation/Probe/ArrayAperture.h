@@ -24,8 +24,9 @@ struct ArrayAperture
   double transmitFocusMm = 65.0;  ///< > 0, infinity: not focused
   double elevationFocusMm = 60.0; ///< > 0, infinity: no lens
   Apodization apodization = Apodization::Boxcar;
-  double centreFrequencyMHz = 3.6;    ///< > 0
-  double fractionalBandwidth = 0.0;   ///< of the echo at -6 dB, [0, 2); 0: one frequency
+  double centreFrequencyMHz = 3.6;                    ///< of the echo, > 0
+  ImagingMode imagingMode = ImagingMode::Fundamental; ///< Harmonic, of ArrayField alone: half of that is sent
+  double fractionalBandwidth = 0.0;                   ///< of the echo at -6 dB, [0, 2); 0: one frequency
   double attenuationDbPerCmMHz = 0.0; ///< one way, >= 0; leave at 0 where traced intensities carry it already
   double soundSpeedMmPerUs = 1.54;    ///< > 0
 

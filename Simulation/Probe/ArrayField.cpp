@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Probe/ApertureElements.h"
+#include "Probe/BeamAperture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,6 +74,7 @@ ArrayField::Axis ArrayField::elevationalAxis(const ArrayAperture& aperture, doub
 
 ArrayField::ArrayField(const ArrayAperture& aperture, double depthMm, const Progress& progress)
   : depthMm_(depthMm)
+  , mode_(aperture.imagingMode)
 {
   aperture.validate();
   if (!(depthMm > 0.0 && depthMm <= 1000.0))
@@ -81,10 +83,11 @@ ArrayField::ArrayField(const ArrayAperture& aperture, double depthMm, const Prog
   }
   frequencyMHz_ = beamFrequencyMHz(aperture);
   wavelengthMm_ = aperture.soundSpeedMmPerUs / frequencyMHz_;
-  focusMm_ = std::min({ aperture.transmitFocusMm, depthMm,
-                        std::isinf(aperture.transmitFocusMm)
-                          ? 0.25 * aperture.widthMm() * aperture.widthMm() / wavelengthMm_ + wavelengthMm_
-                          : aperture.transmitFocusMm });
+  focusMm_ =
+    std::min({ aperture.transmitFocusMm, depthMm,
+               std::isinf(aperture.transmitFocusMm)
+                 ? 0.25 * aperture.widthMm() * aperture.widthMm() * sentMHz(mode_, 1.0 / wavelengthMm_) + wavelengthMm_
+                 : aperture.transmitFocusMm });
   lateralAxis_ = lateralAxis(aperture, wavelengthMm_);
   elevationalAxis_ = elevationalAxis(aperture, wavelengthMm_);
   normalise(lateralAxis_);
@@ -109,7 +112,9 @@ std::complex<double> ArrayField::twoWay(const Axis& axis, double alongMm, double
   {
     return 0.0;
   }
+  const bool isHarmonic = mode_ == ImagingMode::Harmonic;
   const double k = 2.0 * pi / wavelengthMm_;
+  const double sentK = sentMHz(mode_, k); // goes with the frequency
   const double nearestMm = 0.25 * wavelengthMm_;
   const double axialMm = std::sqrt(rangeMm * rangeMm - alongMm * alongMm);
   const double stepMm = axis.apertureMm / double(axis.pieces.size());
@@ -131,16 +136,28 @@ std::complex<double> ArrayField::twoWay(const Axis& axis, double alongMm, double
     }
     const double r = std::max(std::sqrt(dx * dx + dz * dz), nearestMm);
     const double sine = (dx * p.normalAxial - dz * p.normalAlong) / r;
-    const double size = p.weight * sinc(0.5 * k * axis.pieceMm * sine) / std::sqrt(r);
+    const auto sizeAt = [&](double number) {
+      return p.weight * sinc(0.5 * number * axis.pieceMm * sine) / std::sqrt(r);
+    };
+    const double size = sizeAt(k);
     const auto lengthMm = [&](double focusMm) { // of path that the delay makes up for
       return std::isinf(focusMm) ? -p.delayAxialMm : std::hypot(p.delayAlongMm, focusMm - p.delayAxialMm) - focusMm;
     };
     const double transmitMm = lengthMm(axis.transmitFocusMm);
-    transmit += std::polar(size, k * (r - rangeMm - transmitMm));
+    transmit += std::polar(isHarmonic ? sizeAt(sentK) : size, sentK * (r - rangeMm - transmitMm));
     if (axis.isArray)
     {
       receive += std::polar(size * share, k * (r - rangeMm - lengthMm(rangeMm)));
     }
+    else if (isHarmonic)
+    {
+      receive += std::polar(size, k * (r - rangeMm - transmitMm));
+    }
+  }
+  if (isHarmonic)
+  {
+    const double gain = std::abs(sentGainAlong(axis.apertureMm, axis.transmitFocusMm, 2.0 * wavelengthMm_, rangeMm));
+    return transmit * transmit / gain * receive * (axis.isArray ? std::sqrt(all / open) : 1.0) / axis.atFocus;
   }
   return (axis.isArray ? transmit * receive * std::sqrt(all / open) : transmit * transmit) / axis.atFocus;
 }

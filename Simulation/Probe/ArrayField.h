@@ -22,6 +22,9 @@ namespace sono {
 ///   f_e = f0 / (1 + (s_f / f0)^2)                                                                              (12.6)
 /// The lateral autocorrelation of speckle is then within 7 % of that of the elements' broadband sum.
 ///
+/// Of a harmonic, half the frequency is sent and its square counts, over the gain of the Gaussian beam on the axis
+/// (sentGain), with which J of SecondHarmonic.h counts on.
+///
 /// Values lie at depths from 0 to the last one, and at shares of the depth across: at most lambda / (12 D).
 class ArrayField
 {
@@ -80,6 +83,7 @@ private:
   double depthMm_;
   double frequencyMHz_;
   double wavelengthMm_;
+  ImagingMode mode_;
   double focusMm_;
   Axis lateralAxis_;
   Axis elevationalAxis_;

@@ -3,6 +3,7 @@
 #include "Core/SoundSpeed.h"
 
 #include <cmath>
+#include <limits>
 
 namespace sono {
 
@@ -11,9 +12,14 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double sigmaOfAperture = 0.376; // s = 0.376 lambda z / D of the product of two ways (12.1)
 
-ApertureAxis axisOf(double apertureMm, double focusMm, double wavelengthMm, bool lens)
+double waistMmOf(double apertureMm)
 {
-  const double waistMm = apertureMm / (sigmaOfAperture * 2.0 * pi); // (12.3)
+  return apertureMm / (sigmaOfAperture * 2.0 * pi); // (12.3)
+}
+
+ApertureAxis axisOf(double apertureMm, double focusMm, double wavelengthMm, bool lens, ImagingMode mode)
+{
+  const double waistMm = waistMmOf(apertureMm);
   const double spread = wavelengthMm / (pi * waistMm);
   const double narrowestMm = sigmaOfAperture * std::sqrt(2.0) * wavelengthMm;
   ApertureAxis axis{};
@@ -24,6 +30,13 @@ ApertureAxis axisOf(double apertureMm, double focusMm, double wavelengthMm, bool
   axis.perNarrowest2 = float(1.0 / (narrowestMm * narrowestMm));
   axis.lens = lens;
   axis.cosine2 = 1.0f;
+  if (mode == ImagingMode::Harmonic)
+  {
+    // Sent: half of W^2 (12.2) at twice the wavelength, that is W_a^2/2 and twice the spread here. A lens gives each
+    // way half of what both have together: 4/W_a^2 and 2/W_a^2 at the face, 1/s^2 and 2/s^2 at the focus, s its spread.
+    axis.waist2 *= lens ? 2.0f / 3.0f : 0.5f;
+    axis.spread2 *= lens ? 4.0f / 3.0f : 2.0f;
+  }
   return axis;
 }
 
@@ -42,27 +55,49 @@ double focusDepthMm(const BeamAperture& aperture, double frequencyMHz)
                                            : naturalMm;
 }
 
-ApertureProfile apertureProfile(const BeamAperture& aperture, double frequencyMHz)
+ApertureProfile apertureProfile(const BeamAperture& aperture, double frequencyMHz, ImagingMode mode)
 {
   const double wavelengthMm = assumedSoundSpeedMmPerUs / frequencyMHz;
   ApertureProfile profile{};
-  profile.lateral = axisOf(aperture.apertureMm, aperture.transmitFocusMm, wavelengthMm, false);
+  profile.lateral = axisOf(aperture.apertureMm, aperture.transmitFocusMm, wavelengthMm, false, mode);
   profile.elevational =
-    axisOf(aperture.elevationApertureMm, aperture.focusAcrossMm(), wavelengthMm, !aperture.elevationIsArray);
+    axisOf(aperture.elevationApertureMm, aperture.focusAcrossMm(), wavelengthMm, !aperture.elevationIsArray, mode);
   profile.gain = 1.0f;
-  profile.gain = 1.0f / profileAt(profile, float(focusDepthMm(aperture, frequencyMHz))).amplitude;
+  profile.gain = 1.0f / profileAt(profile, float(focusDepthMm(aperture, sentMHz(mode, frequencyMHz)))).amplitude;
   return profile;
 }
 
 ApertureProfile steeredProfile(const ApertureProfile& straight, const BeamAperture& aperture, double frequencyMHz,
-                               const ScanLine& line)
+                               const ScanLine& line, ImagingMode mode)
 {
   ApertureProfile profile = straight;
   const Vec2d cosine2 = apertureCosines2(line);
   profile.lateral.cosine2 = float(cosine2.x);
   profile.elevational.cosine2 = float(cosine2.y);
-  profile.gain *= float(directivity(aperture, frequencyMHz, line));
+  profile.gain *= float(directivity(aperture, frequencyMHz, line, mode));
   return profile;
+}
+
+std::complex<double> sentGainAlong(double apertureMm, double focusMm, double wavelengthMm, double depthMm)
+{
+  const double waistMm = waistMmOf(apertureMm);
+  return 1.0 /
+         std::sqrt(std::complex<double>(1.0 - depthMm / focusMm, -wavelengthMm * depthMm / (pi * waistMm * waistMm)));
+}
+
+std::complex<double> sentGain(const BeamAperture& aperture, double frequencyMHz, double depthMm)
+{
+  if (!aperture.isNamed())
+  {
+    return 1.0;
+  }
+  const double wavelengthMm = assumedSoundSpeedMmPerUs / frequencyMHz;
+  const auto along = [&](double apertureMm, double focusMm) {
+    const double orNeverMm = focusMm > 0.0 ? focusMm : std::numeric_limits<double>::infinity();
+    return sentGainAlong(apertureMm, orNeverMm, wavelengthMm, depthMm);
+  };
+  return along(aperture.apertureMm, aperture.transmitFocusMm) *
+         along(aperture.elevationApertureMm, aperture.focusAcrossMm());
 }
 
 Vec2d apertureCosines2(const ScanLine& line)
@@ -72,8 +107,13 @@ Vec2d apertureCosines2(const ScanLine& line)
   return { lateral2, 1.0 - line.steeringElevational * line.steeringElevational / lateral2 };
 }
 
-double directivity(const BeamAperture& aperture, double frequencyMHz, const ScanLine& line)
+double directivity(const BeamAperture& aperture, double frequencyMHz, const ScanLine& line, ImagingMode mode)
 {
+  if (mode == ImagingMode::Harmonic)
+  {
+    return directivity(aperture, sentMHz(mode, frequencyMHz), line) *
+           std::sqrt(directivity(aperture, frequencyMHz, line));
+  }
   const double perWavelength = aperture.elementWidthMm * frequencyMHz / assumedSoundSpeedMmPerUs;
   const double across = aperture.elevationIsArray ? sinc(perWavelength * line.steeringElevational) : 1.0;
   const double cosine2 =

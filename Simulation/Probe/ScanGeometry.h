@@ -3,6 +3,7 @@
 #include "Core/Parameters.h"
 #include "Kernel/PlaneScan.h"
 #include "Kernel/Vec.h"
+#include "Probe/ImagingMode.h"
 #include "Probe/ScanKinds.h"
 
 #include <string>
@@ -205,12 +206,17 @@ struct ProbeSettings : BeamAperture
   ScanGeometry geometry;
   double centreFrequencyMHz = 2.5;
   double fractionalBandwidth = 0.6; ///< at -6 dB
+  ImagingMode imagingMode = ImagingMode::Fundamental;
+  /// Of the harmonic alone. 500 kPa is chosen: a P4-2 that sends 1.8 MHz through 0.5 dB/(cm MHz) makes 0.8 MPa at its
+  /// focus of it, a mechanical index of 0.6.
+  double facePressureKPa = 500.0;
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
     visitPreset(self, visitor);
     ScanGeometry::visitCompounding(self.geometry, visitor);
+    visitMode(self, visitor);
   }
   template<class Self, class Visitor>
   static void visitPreset(Self& self, Visitor&& visitor)
@@ -229,6 +235,26 @@ struct ProbeSettings : BeamAperture
                                                  "between 0 and 2, no unit." });
   }
 
+  /// No preset says it.
+  template<class Self, class Visitor>
+  static void visitMode(Self& self, Visitor&& visitor)
+  {
+    visitor(self.imagingMode,
+            Parameter{ "imagingMode",
+                       "Imaging Mode",
+                       {},
+                       "What makes the picture: the sound that was sent, or its second harmonic, which grows on the "
+                       "way and comes back at twice the Centre Frequency. A scanner sends lower for that: 1.5 to 2 MHz "
+                       "into a heart.",
+                       { "Fundamental", "Harmonic" } });
+    visitor(self.facePressureKPa,
+            Parameter{ "facePressureKPa", "Face Pressure (kPa)", aboveUpTo(0, 10000),
+                       "Amplitude of the pressure at the transducer's face in kPa, above 0 up to 10,000; of the "
+                       "harmonic alone, which grows in proportion to it." });
+  }
+
+  double receivedMHz() const { return sono::receivedMHz(imagingMode, centreFrequencyMHz); }
+  double receivedBandwidth() const { return sono::receivedBandwidth(imagingMode, fractionalBandwidth); }
   /// The aperture, as image formation wants it.
   BeamAperture aperture() const;
 };

@@ -64,7 +64,10 @@ Tissue tissueOf(const Json& json)
   tissue.source = json.at("source");
   for (const TissueColumn& column : tissueColumns())
   {
-    tissue.*column.member = json.at(column.name);
+    double& number = tissue.*column.member;
+    // Files from before the second harmonic lack this one.
+    number =
+      column.member == &Tissue::nonlinearity ? json.value(column.name, number) : json.at(column.name).get<double>();
   }
   return tissue;
 }

@@ -12,6 +12,13 @@ void TraceSettings::validate() const
   requireInRange(aperture);
   requireInRange(lobeMinDeg < lobeMaxDeg, "lobeMinDeg", lobeMinDeg, "below lobeMaxDeg");
   requireInRange(frequencyMHz > 0.0 && std::isfinite(frequencyMHz), "frequency (MHz)", frequencyMHz, "more than 0");
+  requireInRange(facePressureKPa > 0.0 && std::isfinite(facePressureKPa), "face pressure (kPa)", facePressureKPa,
+                 "more than 0");
+  if (imagingMode == ImagingMode::Harmonic && model == InterfaceModel::Amadou2024)
+  {
+    throw Error("the interface model Amadou 2024 knows no second harmonic: set Interface Model to Acoustic, or the "
+                "probe's Imaging Mode to Fundamental");
+  }
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
   requireInRange(radialBinMm <= depthMm && depthMm / radialBinMm <= 1e5, "radialBinMm", radialBinMm,
                  "at most the depth and at least 1/100,000 of it");

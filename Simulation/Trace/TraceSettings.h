@@ -40,8 +40,11 @@ struct TraceSettings
   double lobeMinDeg = 0.0;    ///< a
   double lobeMaxDeg = 90.0;   ///< b, above a
   double frequencyMHz = 2.5;  ///< > 0; sets attenuation, how rough surfaces are, and the phase of boundary echoes
-  double depthMm = 160.0;     ///< > 0
-  BeamAperture aperture;      ///< of the probe: where it is named, paths start over it (see startApart)
+  /// Of the harmonic a Simulator traces that frequency and its double (see SecondHarmonic.h); trace() itself knows one.
+  ImagingMode imagingMode = ImagingMode::Fundamental;
+  double facePressureKPa = 500.0; ///< of the harmonic, > 0
+  double depthMm = 160.0;         ///< > 0
+  BeamAperture aperture;          ///< of the probe: where it is named, paths start over it (see startApart)
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   bool reverberation = true;    ///< of Acoustic: whether paths that have been reflected are heard
@@ -51,7 +54,7 @@ struct TraceSettings
   bool interactive = false; ///< for a probe that moves: what is prepared of the scene serves the next poses as well.
                             ///< The image is the same but for rounding, and does not depend on the way there
 
-  /// The parameters of the stage; depth, frequency, aperture and echo samples come from the probe and the RF.
+  /// The parameters of the stage; depth, frequency, mode, aperture and echo samples come from the probe and the RF.
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {

@@ -69,6 +69,9 @@ TEST(FilterDefaults, StagesAgreeOnWhatTheyShare)
   EXPECT_EQ(probe.centreFrequencyMHz, tracing.frequencyMHz);
   EXPECT_EQ(probe.centreFrequencyMHz, echo.centreFrequencyMHz);
   EXPECT_EQ(probe.fractionalBandwidth, echo.fractionalBandwidth);
+  EXPECT_EQ(probe.imagingMode, tracing.imagingMode);
+  EXPECT_EQ(probe.imagingMode, echo.imagingMode);
+  EXPECT_EQ(probe.facePressureKPa, tracing.facePressureKPa);
   EXPECT_EQ(probe.geometry.depthMm, tracing.depthMm);
   EXPECT_EQ(probe.geometry.depthMm, echo.depthMm);
 }
@@ -91,8 +94,8 @@ TEST(FilterDefaults, AParameterKeepsWhatItIsGiven)
 TEST(FilterDefaults, PulseEchoFieldEqualsArrayAperture)
 {
   const auto [elementCount, elementWidthMm, elementHeightMm, kerfMm, faceRadiusMm, transmitFocusMm, elevationFocusMm,
-              apodization, centreFrequencyMHz, fractionalBandwidth, attenuationDbPerCmMHz, soundSpeedMmPerUs,
-              elevationCount] = sono::ArrayAperture();
+              apodization, centreFrequencyMHz, imagingMode, fractionalBandwidth, attenuationDbPerCmMHz,
+              soundSpeedMmPerUs, elevationCount] = sono::ArrayAperture();
   vtkNew<vtkSonoPulseEchoField> field;
   EXPECT_STREQ(field->GetFileName(), "");
   EXPECT_EQ(field->GetElementCount(), elementCount);
@@ -107,6 +110,7 @@ TEST(FilterDefaults, PulseEchoFieldEqualsArrayAperture)
   EXPECT_EQ(field->GetAttenuationDbPerCmMHz(), attenuationDbPerCmMHz);
   // The settings have one frequency, the filter the preset's band, which TestField.py compares.
   EXPECT_EQ(fractionalBandwidth, 0.0);
+  EXPECT_EQ(imagingMode, sono::ImagingMode::Fundamental);
   EXPECT_EQ(elevationCount, 1); // the filter's is an array with a lens
   // The filter offers no choice of the sound speed, which is that of the echoes' depths.
   EXPECT_EQ(soundSpeedMmPerUs, sono::assumedSoundSpeedMmPerUs);

@@ -8,7 +8,8 @@ from chain import label_image, listen, make
 from sonovdb.vtkSonoFilters import vtkSonoLabelTable, vtkSonoSceneBuilder
 
 NUMBERS = ("impedance_MRayl", "sound_speed_m_per_s", "attenuation_dB_per_cm_MHz", "mu0", "sigma0", "mu1", "tau", "gamma",
-           "roughness_mm", "correlation_mm", "backscatter_1MHz_per_cm_sr", "backscatter_exponent", "fibre_anisotropy_dB")
+           "roughness_mm", "correlation_mm", "backscatter_1MHz_per_cm_sr", "backscatter_exponent", "fibre_anisotropy_dB",
+           "nonlinearity")
 
 
 class TestLabelTable(unittest.TestCase):
