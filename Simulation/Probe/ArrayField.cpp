@@ -2,7 +2,6 @@
 
 #include "Core/ParallelFor.h"
 #include "Probe/ApertureElements.h"
-#include "Probe/BeamAperture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,19 +98,15 @@ ArrayField::ArrayField(const ArrayAperture& aperture, double depthMm, const Prog
 
 void ArrayField::normalise(Axis& axis) const
 {
-  axis.atFocus = twoWay(axis, 0.0, focusMm_);
+  axis.atFocus = twoWay(axis, 0.0, focusMm_, onAxis(axis, focusMm_));
   if (!(std::abs(axis.atFocus) > 0.0))
   {
     throw Error("the field is zero at its focus; correct the foci.");
   }
 }
 
-std::complex<double> ArrayField::twoWay(const Axis& axis, double alongMm, double rangeMm) const
+ArrayField::Ways ArrayField::waysTo(const Axis& axis, double alongMm, double rangeMm) const
 {
-  if (std::abs(alongMm) > rangeMm)
-  {
-    return 0.0;
-  }
   const bool isHarmonic = mode_ == ImagingMode::Harmonic;
   const double k = 2.0 * pi / wavelengthMm_;
   const double sentK = sentMHz(mode_, k); // goes with the frequency
@@ -154,22 +149,36 @@ std::complex<double> ArrayField::twoWay(const Axis& axis, double alongMm, double
       receive += std::polar(size, k * (r - rangeMm - transmitMm));
     }
   }
-  if (isHarmonic)
+  return { transmit, receive, std::sqrt(all / open) };
+}
+
+double ArrayField::onAxis(const Axis& axis, double rangeMm) const
+{
+  return mode_ == ImagingMode::Harmonic ? std::abs(waysTo(axis, 0.0, rangeMm).transmit) : 1.0;
+}
+
+std::complex<double> ArrayField::twoWay(const Axis& axis, double alongMm, double rangeMm, double onAxis) const
+{
+  if (std::abs(alongMm) > rangeMm)
   {
-    const double gain = std::abs(sentGainAlong(axis.apertureMm, axis.transmitFocusMm, 2.0 * wavelengthMm_, rangeMm));
-    return transmit * transmit / gain * receive * (axis.isArray ? std::sqrt(all / open) : 1.0) / axis.atFocus;
+    return 0.0;
   }
-  return (axis.isArray ? transmit * receive * std::sqrt(all / open) : transmit * transmit) / axis.atFocus;
+  const Ways w = waysTo(axis, alongMm, rangeMm);
+  if (mode_ == ImagingMode::Harmonic)
+  {
+    return w.transmit * w.transmit / onAxis * w.receive * (axis.isArray ? w.opening : 1.0) / axis.atFocus;
+  }
+  return (axis.isArray ? w.transmit * w.receive * w.opening : w.transmit * w.transmit) / axis.atFocus;
 }
 
 std::complex<double> ArrayField::lateralAt(double lateralMm, double rangeMm) const
 {
-  return twoWay(lateralAxis_, lateralMm, rangeMm);
+  return twoWay(lateralAxis_, lateralMm, rangeMm, onAxis(lateralAxis_, rangeMm));
 }
 
 std::complex<double> ArrayField::elevationalAt(double elevationalMm, double rangeMm) const
 {
-  return twoWay(elevationalAxis_, elevationalMm, rangeMm);
+  return twoWay(elevationalAxis_, elevationalMm, rangeMm, onAxis(elevationalAxis_, rangeMm));
 }
 
 std::vector<float> ArrayField::tabulate(const Axis& axis, const Progress& progress) const
@@ -177,10 +186,11 @@ std::vector<float> ArrayField::tabulate(const Axis& axis, const Progress& progre
   std::vector<float> values(2 * std::size_t(rangeCount) * std::size_t(axis.count));
   parallelFor(rangeCount, progress, [&](int n) {
     const double rangeMm = std::max(n * depthMm_ / (rangeCount - 1), 0.25 * wavelengthMm_);
+    const double atAxis = onAxis(axis, rangeMm);
     float* to = values.data() + 2 * std::size_t(n) * std::size_t(axis.count);
     for (int i = 0; i < axis.count; ++i)
     {
-      const std::complex<double> w = twoWay(axis, i / axis.perUnit * std::max(rangeMm, axis.nearMm), rangeMm);
+      const std::complex<double> w = twoWay(axis, i / axis.perUnit * std::max(rangeMm, axis.nearMm), rangeMm, atAxis);
       *to++ = float(w.real());
       *to++ = float(w.imag());
     }

@@ -22,8 +22,8 @@ namespace sono {
 ///   f_e = f0 / (1 + (s_f / f0)^2)                                                                              (12.6)
 /// The lateral autocorrelation of speckle is then within 7 % of that of the elements' broadband sum.
 ///
-/// Of a harmonic, half the frequency is sent and its square counts, over the gain of the Gaussian beam on the axis
-/// (sentGain), with which J of SecondHarmonic.h counts on.
+/// Of a harmonic, half the frequency is sent and its square counts, over its modulus on the axis: along the axis the
+/// harmonic goes as what is sent and as J of SecondHarmonic.h says.
 ///
 /// Values lie at depths from 0 to the last one, and at shares of the depth across: at most lambda / (12 D).
 class ArrayField
@@ -76,7 +76,16 @@ private:
 
   static Axis lateralAxis(const ArrayAperture& aperture, double wavelengthMm);
   static Axis elevationalAxis(const ArrayAperture& aperture, double wavelengthMm);
-  std::complex<double> twoWay(const Axis& axis, double alongMm, double rangeMm) const;
+  struct Ways
+  {
+    std::complex<double> transmit;
+    std::complex<double> receive;
+    double opening; ///< of the reception, for what of the array is shut
+  };
+  Ways waysTo(const Axis& axis, double alongMm, double rangeMm) const;
+  /// What is sent along the axis, where twoWay wants it; 1 where it does not.
+  double onAxis(const Axis& axis, double rangeMm) const;
+  std::complex<double> twoWay(const Axis& axis, double alongMm, double rangeMm, double onAxis) const;
   void normalise(Axis& axis) const;
   std::vector<float> tabulate(const Axis& axis, const Progress& progress) const;
 

@@ -3,7 +3,6 @@
 #include "Core/SoundSpeed.h"
 
 #include <cmath>
-#include <limits>
 
 namespace sono {
 
@@ -78,13 +77,6 @@ ApertureProfile steeredProfile(const ApertureProfile& straight, const BeamApertu
   return profile;
 }
 
-std::complex<double> sentGainAlong(double apertureMm, double focusMm, double wavelengthMm, double depthMm)
-{
-  const double waistMm = waistMmOf(apertureMm);
-  return 1.0 /
-         std::sqrt(std::complex<double>(1.0 - depthMm / focusMm, -wavelengthMm * depthMm / (pi * waistMm * waistMm)));
-}
-
 std::complex<double> sentGain(const BeamAperture& aperture, double frequencyMHz, double depthMm)
 {
   if (!aperture.isNamed())
@@ -93,8 +85,9 @@ std::complex<double> sentGain(const BeamAperture& aperture, double frequencyMHz,
   }
   const double wavelengthMm = assumedSoundSpeedMmPerUs / frequencyMHz;
   const auto along = [&](double apertureMm, double focusMm) {
-    const double orNeverMm = focusMm > 0.0 ? focusMm : std::numeric_limits<double>::infinity();
-    return sentGainAlong(apertureMm, orNeverMm, wavelengthMm, depthMm);
+    const double waistMm = waistMmOf(apertureMm);
+    const double bend = focusMm > 0.0 ? 1.0 - depthMm / focusMm : 1.0;
+    return 1.0 / std::sqrt(std::complex<double>(bend, -wavelengthMm * depthMm / (pi * waistMm * waistMm)));
   };
   return along(aperture.apertureMm, aperture.transmitFocusMm) *
          along(aperture.elevationApertureMm, aperture.focusAcrossMm());

@@ -20,10 +20,8 @@ ApertureProfile apertureProfile(const BeamAperture& aperture, double frequencyMH
 ApertureProfile steeredProfile(const ApertureProfile& straight, const BeamAperture& aperture, double frequencyMHz,
                                const ScanLine& line, ImagingMode mode = ImagingMode::Fundamental);
 
-/// Pressure of the transmitted beam on its axis, 1 at the face, as one axis of the aperture makes it: 1 / sqrt(q),
-/// q = 1 - z/F - i lambda z/(pi W_a^2), so that |q| = W/W_a of (12.2). F may be infinite.
-std::complex<double> sentGainAlong(double apertureMm, double focusMm, double wavelengthMm, double depthMm);
-/// As both axes make it. Where no aperture is named, the plane wave's: 1. `frequencyMHz` is sent.
+/// Pressure of the transmitted beam on its axis, 1 at the face: per axis 1 / sqrt(q), q = 1 - z/F - i lambda z/(pi
+/// W_a^2), so that |q| = W/W_a of (12.2). Where no aperture is named, the plane wave's: 1. `frequencyMHz` is sent.
 std::complex<double> sentGain(const BeamAperture& aperture, double frequencyMHz, double depthMm);
 
 /// The depth where the transmitted beam, of `frequencyMHz`, is narrowest: that of the transmit focus, else of the

@@ -42,7 +42,7 @@ class TestHarmonic(unittest.TestCase):
         pictures = []
         for kpa in (500.0, 50.0):
             self.chain.probe.SetFacePressureKPa(kpa)
-            pictures.append(lines_of(self.chain.rf, "Envelope").copy())
+            pictures.append(lines_of(self.chain.formation, "Envelope").copy())
         np.testing.assert_array_equal(*pictures)
 
     def test_is_finer_along_the_line(self):
@@ -50,15 +50,15 @@ class TestHarmonic(unittest.TestCase):
             power = envelope[:, envelope.shape[1] // 4:] ** 2
             spectrum = (np.abs(np.fft.rfft(power - power.mean(axis=1, keepdims=True), axis=1)) ** 2).sum(axis=0)
             return (spectrum * np.arange(spectrum.size)).sum() / spectrum.sum()
-        fundamental = grain(lines_of(self.chain.rf, "Envelope").astype(float))
+        fundamental = grain(lines_of(self.chain.formation, "Envelope").astype(float))
         self.chain.probe.SetImagingMode(HARMONIC)
-        self.assertGreater(grain(lines_of(self.chain.rf, "Envelope").astype(float)), 1.1 * fundamental)
+        self.assertGreater(grain(lines_of(self.chain.formation, "Envelope").astype(float)), 1.1 * fundamental)
 
     def test_refuses_what_it_cannot_do(self):
         self.chain.probe.SetImagingMode(HARMONIC)
-        heard = listen(self.chain.rf)
+        heard = listen(self.chain.formation)
         self.chain.tracer.SetSamplingMHz(7.0)
-        self.chain.rf.Update()
+        self.chain.formation.Update()
         self.assertEqual(len(heard), 1)
         self.assertIn("second harmonic lies at 3.6 MHz, not below half the sampling frequency of 7 MHz", heard[0])
         self.chain.tracer.SetSamplingMHz(50.0)
