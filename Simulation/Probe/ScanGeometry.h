@@ -207,9 +207,9 @@ struct ProbeSettings : BeamAperture
   double centreFrequencyMHz = 2.5;
   double fractionalBandwidth = 0.6; ///< at -6 dB
   ImagingMode imagingMode = ImagingMode::Fundamental;
-  /// Of the harmonic alone. 500 kPa is chosen: a P4-2 that sends 1.8 MHz through 0.5 dB/(cm MHz) makes 0.8 MPa at its
-  /// focus of it, a mechanical index of 0.6.
-  double facePressureKPa = 500.0;
+  /// Of the harmonic alone. 1 MPa is chosen: a P4-2 that sends 1.8 MHz through 0.5 dB/(cm MHz) makes 1.5 MPa at its focus
+  /// of it, a mechanical index of 1.1.
+  double facePressureKPa = 1000.0;
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)

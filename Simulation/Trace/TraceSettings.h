@@ -42,9 +42,9 @@ struct TraceSettings
   double frequencyMHz = 2.5;  ///< > 0; sets attenuation, how rough surfaces are, and the phase of boundary echoes
   /// Of the harmonic a Simulator traces that frequency and its double (see SecondHarmonic.h); trace() itself knows one.
   ImagingMode imagingMode = ImagingMode::Fundamental;
-  double facePressureKPa = 500.0; ///< of the harmonic, > 0
-  double depthMm = 160.0;         ///< > 0
-  BeamAperture aperture;          ///< of the probe: where it is named, paths start over it (see startApart)
+  double facePressureKPa = 1000.0; ///< of the harmonic, > 0
+  double depthMm = 160.0;          ///< > 0
+  BeamAperture aperture;           ///< of the probe: where it is named, paths start over it (see startApart)
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   bool reverberation = true;    ///< of Acoustic: whether paths that have been reflected are heard

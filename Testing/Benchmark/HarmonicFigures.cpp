@@ -105,6 +105,7 @@ double harmonicGrowthErrorDb()
   s.geometry.depthMm = 100.0;
   s.echo.imagingMode = ImagingMode::Harmonic;
   s.echo.centreFrequencyMHz = 3.6;
+  s.tracing.facePressureKPa = 100.0;
   s.setDevice(Device::Cpu);
   s.matchStages();
   const TracedLines lines = simulator.traced(input).host();

@@ -3,7 +3,7 @@
 namespace sono {
 
 /// Largest error of a traced plane wave's second harmonic in liver, 1 to 100 mm deep, against the plane wave's solution
-/// with attenuation, dB: physics.md (14.1) and the way back. What p1 loses to it, 0.2 dB at 500 kPa, counts as error.
+/// with attenuation, dB: physics.md (14.1) and the way back. At 100 kPa, since that solution is one of weak harmonics.
 double harmonicGrowthErrorDb();
 
 /// How much less clutter of the body wall a cyst shows in the harmonic picture than in the fundamental one, dB, each

@@ -24,10 +24,10 @@ class TestHarmonic(unittest.TestCase):
         fundamental = lines_of(self.chain.tracer, "Intensity").copy()
         self.chain.probe.SetImagingMode(HARMONIC)
         harmonic = lines_of(self.chain.tracer, "Intensity")
-        lit = fundamental[:, :200].min(axis=1) > 0.0
-        share = harmonic[lit] / np.maximum(fundamental[lit], 1e-30)
-        self.assertTrue(lit.any())
-        self.assertLess(share[:, 0].max(), 0.01)
+        lit = fundamental > 1e-4
+        share = np.where(lit, harmonic / np.where(lit, fundamental, 1.0), 0.0)
+        self.assertGreater(lit.mean(), 0.2)
+        self.assertLess(share[:, :4].max(), 0.01)
         self.assertLess(share.max(), 1.0)
         self.assertTrue(np.isfinite(harmonic).all())
 
@@ -46,13 +46,16 @@ class TestHarmonic(unittest.TestCase):
         np.testing.assert_array_equal(*pictures)
 
     def test_is_finer_along_the_line(self):
-        def grain(envelope):
-            power = envelope[:, envelope.shape[1] // 4:] ** 2
-            spectrum = (np.abs(np.fft.rfft(power - power.mean(axis=1, keepdims=True), axis=1)) ** 2).sum(axis=0)
-            return (spectrum * np.arange(spectrum.size)).sum() / spectrum.sum()
-        fundamental = grain(lines_of(self.chain.formation, "Envelope").astype(float))
+        def steepness(envelope):
+            """Of speckle's level along the lines, where there is some."""
+            level = np.log(envelope[:, 300:2000].astype(float) + 1e-30)
+            return np.median(np.abs(np.diff(level, axis=1))[level[:, 1:] > -30.0])
+        fundamental = steepness(lines_of(self.chain.formation, "Envelope"))
         self.chain.probe.SetImagingMode(HARMONIC)
-        self.assertGreater(grain(lines_of(self.chain.formation, "Envelope").astype(float)), 1.1 * fundamental)
+        # The band is the root of 2 as wide.
+        ratio = steepness(lines_of(self.chain.formation, "Envelope")) / fundamental
+        self.assertGreater(ratio, 1.2)
+        self.assertLess(ratio, 1.6)
 
     def test_refuses_what_it_cannot_do(self):
         self.chain.probe.SetImagingMode(HARMONIC)
