@@ -97,7 +97,7 @@ public:
   /// goes through the stages together, bytes alone cross the bus, and the sink takes one group while the next is
   /// computed. A pose's picture differs from the one that is made alone by rounding at most, since all poses share one
   /// region of the scene. Throws Error also for a matrix, whose lines fill a volume, and naming the pose that does not
-  /// meet the label map. No result is kept.
+  /// meet the label map. No result is kept. Poses of a harmonic, whose traces meet on the host, run one by one.
   void sweep(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels, const SweepSink& sink,
              const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
 

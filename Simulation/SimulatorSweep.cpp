@@ -5,13 +5,10 @@
 #include "Echo/EchoSetup.h"
 #include "Kernel/TracePath.h"
 #include "Simulator.h"
-#include "Trace/SecondHarmonic.h"
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace sono {
 
@@ -42,32 +39,12 @@ double bytesPerImage(const TracedLines& traced, const RfLines& rf, int linesPerI
   return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
 }
 
-/// The frequencies that an image is traced at.
-std::vector<TraceSettings> tonesOf(const TraceSettings& settings)
-{
-  return settings.imagingMode == ImagingMode::Harmonic ? std::vector{ settings, doubledTone(settings) }
-                                                       : std::vector{ settings };
-}
-
-/// Brought down from the device.
-TracedLines fetchGroup(const DeviceTraced& traced, int lineCount, const TraceSettings& settings,
-                       const std::vector<TargetSurface>& targets)
-{
-  TracedLines lines = tracedLayout(lineCount, settings, targets);
-  FetchedTrace fetched = DeviceImager::instance().fetch(traced);
-  auto values = fetched.bins.begin();
-  TracedLines::visitBins(lines, [&](std::vector<float>& array, const char*) { array = std::move(*values++); });
-  lines.segments = fetched.segments;
-  return lines;
-}
-
-void sweepOnCpu(const std::shared_ptr<const Scene>& scene, const std::vector<ProbePose>& poses,
-                const ImageSettings& settings, bool withLabels, const SweepSink& sink, const Progress& progress,
-                const std::vector<TargetSurface>& targets)
+void sweepOneByOne(const std::shared_ptr<const Scene>& scene, const std::vector<ProbePose>& poses,
+                   const ImageSettings& settings, bool withLabels, const SweepSink& sink, const Progress& progress,
+                   const std::vector<TargetSurface>& targets)
 {
   Simulator each(scene); // whose results go with the sweep
   ImageInput input{ {}, settings, targets, nullptr };
-  input.settings.setDevice(Device::Cpu);
   for (std::size_t i = 0; i < poses.size(); ++i)
   {
     const double done = double(i) / double(poses.size());
@@ -87,6 +64,7 @@ void sweepOnCpu(const std::shared_ptr<const Scene>& scene, const std::vector<Pro
   }
 }
 
+/// A group of poses at a time.
 void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, const ImageSettings& settings,
                    bool withLabels, const SweepSink& sink, const Progress& progress,
                    const std::vector<TargetSurface>& targets)
@@ -98,19 +76,17 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
   const PlaneScan scan = planeScan(settings.geometry, rfOfOne.sampleCount, rfOfOne.sampleMm, settings.pixelMm);
   const PlaneScan offsets = planeScan(settings.geometry, tracedOfOne.binCount, tracedOfOne.binMm, settings.pixelMm);
-  const bool isHarmonic = settings.tracing.imagingMode == ImagingMode::Harmonic;
-  std::vector<std::shared_ptr<const TraceJob>> traceJobs; // of each tone
-  for (const TraceSettings& tone : tonesOf(settings.tracing))
+  std::shared_ptr<const TraceJob> traceJob;
   {
-    const TraceSetup setup(scene, lines, tone, targets, partOf(progress, 0.0, 0.3));
+    const TraceSetup setup(scene, lines, settings.tracing, targets, partOf(progress, 0.0, 0.3));
     requireEachMeets(setup, poses.size());
-    traceJobs.push_back(std::make_shared<const TraceJob>(makeTraceJob(setup, tone, perImage)));
+    traceJob = std::make_shared<const TraceJob>(makeTraceJob(setup, settings.tracing, perImage));
   }
   const Progress running = partOf(progress, 0.3, 1.0);
   DeviceImager& imager = DeviceImager::instance();
   const int together =
     std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
-  EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
+  const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
   std::shared_ptr<const BModeJob> bmodeJob; // made while the first lines are traced
   SweptPictures before;
   std::shared_ptr<DeviceImager::Download> download;
@@ -126,21 +102,10 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   {
     const int count = std::min(together, int(poses.size()) - first);
     const LineRange range{ first * perImage, count * perImage };
-    const auto traced = imager.trace(traceJobs.front(), range);
+    const auto traced = imager.trace(traceJob, range);
     // For the lines of one group at a time: the device has work while the next one's is made.
     const auto firstLine = lines.begin() + range.first;
     const std::vector<ScanLine> groupLines(firstLine, firstLine + range.count);
-    TracedLines harmonic;
-    if (isHarmonic) // the two tones meet on the host
-    {
-      const auto doubled = imager.trace(traceJobs.back(), range);
-      const auto down = [&](const DeviceTraced& tone) {
-        return fetchGroup(tone, range.count, settings.tracing, targets);
-      };
-      harmonic = secondHarmonic(down(*traced), down(*doubled), harmonicSources(scene, groupLines, settings.tracing),
-                                sentGains(settings.tracing));
-      sources.traced = &harmonic;
-    }
     const EchoSetup setup(sources, groupLines, settings.echo);
     const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));
     if (!bmodeJob)
@@ -148,7 +113,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
       bmodeJob =
         std::make_shared<const BModeJob>(makeBModeJob(settings.bmode, perImage, rfOfOne.sampleCount, rfOfOne.sampleMm));
     }
-    const auto rf = imager.formRf(echoJob, { 0, range.count }, isHarmonic ? nullptr : traced.get(), false);
+    const auto rf = imager.formRf(echoJob, { 0, range.count }, traced.get(), false);
     const auto picture = imager.convert(scan, imager.compress(bmodeJob, *rf, count));
     std::shared_ptr<const DeviceLabelSlice> labels;
     if (withLabels)
@@ -183,15 +148,16 @@ void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& 
     return;
   }
   const bool onDevice = runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda;
-  if (onDevice)
+  ImageSettings wanted = settings;
+  if (onDevice && settings.tracing.imagingMode == ImagingMode::Fundamental)
   {
-    ImageSettings withField = settings;
-    withField.echo = withBeam(settings.echo, partOf(progress, 0.0, 0.1));
-    sweepOnDevice(needScene(), poses, withField, withLabels, sink, partOf(progress, 0.1, 1.0), targets);
+    wanted.echo = withBeam(settings.echo, partOf(progress, 0.0, 0.1));
+    sweepOnDevice(needScene(), poses, wanted, withLabels, sink, partOf(progress, 0.1, 1.0), targets);
   }
   else
   {
-    sweepOnCpu(scene_, poses, settings, withLabels, sink, progress, targets);
+    wanted.setDevice(onDevice ? Device::Cuda : Device::Cpu);
+    sweepOneByOne(scene_, poses, wanted, withLabels, sink, progress, targets);
   }
 }
 

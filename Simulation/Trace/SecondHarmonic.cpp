@@ -3,6 +3,7 @@
 #include "Core/ParallelFor.h"
 #include "Probe/BeamAperture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -80,12 +81,12 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
       const std::size_t at = std::size_t(l) * bins + bin;
-      const double i1 = sent.intensity[at];
       const double i2 = doubled.intensity[at];
+      const double i1 = std::max(double(sent.intensity[at]), i2);
       std::complex<double> here;
       if (doubled.intensity[at] > leastIntensity)
       {
-        here = double(sourcesPerMm[at]) * i1 / std::sqrt(i2) * gains[bin] * doubled.binMm;
+        here = double(sourcesPerMm[at]) * std::min(i1 / std::sqrt(i2), 1.0) * gains[bin] * doubled.binMm;
       }
       const double amount = std::abs(grown + 0.5 * here); // in the middle of the bin
       grown += here;

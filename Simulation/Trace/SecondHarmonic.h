@@ -38,8 +38,11 @@ std::vector<std::complex<double>> sentGains(const TraceSettings& settings);
 ///   J(r) = I2(r) C / sqrt(1 + 8/3 u^2),   C(r) = |integral of S G I1 / sqrt(I2) dz|,   u = C sqrt(I2 / I1)     (14.4)
 /// the amplitude of echoes at twice the frequency, relative to that which a perfect mirror has of the frequency sent,
 /// for a beam whose amplitude goes with depth as the one sent (BeamModel's). u is p2/p1 as if p1 lost nothing; the root
-/// is what it loses, to the third order of Fubini's series, and keeps p2 below 0.61 p1. Both traces must be of the
-/// same lines and bins.
+/// is what it loses, to the third order of Fubini's series, and keeps p2 below 0.61 p1.
+///
+/// Both traces must be of the same lines and bins, and attenuation must grow no faster than with the frequency, as that
+/// of all tissues here. Then I2 <= I1 and, by Schwarz' inequality over the paths, I1^2 <= I2; where few paths say
+/// otherwise, in shadows, they are taken as if it were so.
 TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const std::vector<float>& sourcesPerMm,
                            const std::vector<std::complex<double>>& gains);
 
