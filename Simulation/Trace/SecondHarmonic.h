@@ -35,7 +35,7 @@ std::vector<float> harmonicSources(const Scene& scene, const std::vector<ScanLin
 std::vector<std::complex<double>> sentGains(const TraceSettings& settings);
 
 /// `doubled`, whose intensities, and errors with them, are multiplied by how much of the harmonic has grown there:
-///   J(r) = I2(r) C / sqrt(1 + 8/3 u^2),   C(r) = |integral of S G I1 / sqrt(I2) dz|,   u = C sqrt(I2 / I1)     (14.4)
+///   J(r) = I2(r) C / sqrt(1 + 8/3 u^2),   C(r) = |integral of S G I1 / sqrt(I2) dz|,   u = C sqrt(I2 / I1)     (14.5)
 /// the amplitude of echoes at twice the frequency, relative to that which a perfect mirror has of the frequency sent,
 /// for a beam whose amplitude goes with depth as the one sent (BeamModel's). u is p2/p1 as if p1 lost nothing; the root
 /// is what it loses, to the third order of Fubini's series, and keeps p2 below 0.61 p1.

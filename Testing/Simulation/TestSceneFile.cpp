@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 
 namespace fs = std::filesystem;
 using namespace sono;
@@ -137,6 +138,16 @@ TEST_F(SceneFiles, RoundTrip)
   writeScene(file("t.nvdb"), *back);
   expectSameScene(*readScene(file("t.nvdb")), scene);
   EXPECT_EQ(fs::file_size(file("s.nvdb")), fs::file_size(file("t.nvdb")));
+}
+
+TEST_F(SceneFiles, FromBeforeTheSecondHarmonicHaveItsDefault)
+{
+  const Scene scene(smallVolume(), smallTable(), "air");
+  scene.buildAll();
+  const std::string text = sceneText(scene);
+  const std::string older = std::regex_replace(text, std::regex("\"nonlinearity\":[^,}]*,"), "");
+  ASSERT_LT(older.size(), text.size());
+  EXPECT_EQ(parseSceneText("n.nvdb", older).tissues.find("fat")->nonlinearity, Tissue().nonlinearity);
 }
 
 TEST_F(SceneFiles, ScansDetailComesBack)
