@@ -88,6 +88,11 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
       {
         here = double(sourcesPerMm[at]) * std::min(i1 / std::sqrt(i2), 1.0) * gains[bin] * doubled.binMm;
       }
+      else
+      {
+        // What the next bin, which may be lit, must not be blended with: it would be lifted by tens of decibels.
+        doubled.attenuationNpPerMHz[at] = 0.0f;
+      }
       const double amount = std::abs(grown + 0.5 * here); // in the middle of the bin
       grown += here;
       const double ofSent2 = i1 > 0.0 ? amount * amount * i2 / i1 : 0.0;

@@ -42,7 +42,7 @@ std::vector<std::complex<double>> sentGains(const TraceSettings& settings);
 ///
 /// Both traces must be of the same lines and bins, and attenuation must grow no faster than with the frequency, as that
 /// of all tissues here. Then I2 <= I1 and, by Schwarz' inequality over the paths, I1^2 <= I2; where few paths say
-/// otherwise, in shadows, they are taken as if it were so.
+/// otherwise, in shadows, they are taken as if it were so. Where I2 is below -200 dB, B is 0.
 TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const std::vector<float>& sourcesPerMm,
                            const std::vector<std::complex<double>>& gains);
 

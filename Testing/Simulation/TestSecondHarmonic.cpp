@@ -153,6 +153,7 @@ TEST(SecondHarmonic, StaysFiniteInAShadow)
     const double z = middle(bin);
     const double way = z < 40.0 ? z : z > 60.0 ? z - 20.0 : 0.0;
     EXPECT_NEAR(made.intensity[std::size_t(bin)], 1e-3 * way, 1e-3 * (0.02 * way + 1e-9)) << z;
+    EXPECT_EQ(made.attenuationNpPerMHz[std::size_t(bin)], shadow(z) > 0.0 ? 0.01f * float(bin) : 0.0f) << z;
   }
 }
 
