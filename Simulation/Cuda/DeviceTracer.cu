@@ -67,7 +67,7 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
   }
   if (launch.depthOffset)
   {
-    timeLines<<<lines, flightThreads, 2 * (launch.binCount + 1) * sizeof(float), stream>>>(launch);
+    timeLines<<<lines, flightThreads, 0, stream>>>(launch);
   }
   kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
   const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;

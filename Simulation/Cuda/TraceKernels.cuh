@@ -402,8 +402,8 @@ constexpr int flightThreads = 256;
 template<class Targets>
 __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> launch)
 {
-  extern __shared__ float rangeMm[]; // at the ends of bins
-  float* lostNp = rangeMm + launch.binCount + 1;
+  float* rangeMm = launch.axisRange + std::size_t(blockIdx.x) * (launch.binCount + 1); // at the ends of bins
+  float* lostNp = launch.axisAmplitude + std::size_t(blockIdx.x) * (launch.binCount + 1);
   __shared__ double sums[flightThreads];
   __shared__ double lost[flightThreads];
   __shared__ TargetSpans spans;
@@ -454,9 +454,7 @@ __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> 
   __syncthreads();
   for (int b = threadIdx.x; b <= launch.binCount; b += flightThreads)
   {
-    const std::size_t at = std::size_t(blockIdx.x) * (launch.binCount + 1) + b;
-    launch.axisRange[at] = rangeMm[b];
-    launch.axisAmplitude[at] = expf(-0.5f * lostNp[b]);
+    lostNp[b] = expf(-0.5f * lostNp[b]);
   }
   for (int b = threadIdx.x; b < launch.binCount; b += flightThreads)
   {

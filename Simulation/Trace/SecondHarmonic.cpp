@@ -16,6 +16,23 @@ constexpr double depletion = 8.0 / 3.0;
 /// Below it, -200 dB, nothing is heard that grows there, and the quotient is of noise.
 constexpr float leastIntensity = 1e-10f;
 
+/// What reverberates has been reflected, a first multiple about halfway to where it is shown: behind that it is too
+/// weak to let its harmonic grow.
+void growReverberation(const std::vector<float>& growth, int line, TracedLines& doubled)
+{
+  const auto bins = std::size_t(doubled.binCount);
+  for (std::size_t bin = 0; bin < bins && !doubled.reverberation.empty(); ++bin)
+  {
+    doubled.reverberation[std::size_t(line) * bins + bin] *= growth[bin / 2];
+    doubled.reverberationError[std::size_t(line) * bins + bin] *= growth[bin / 2];
+  }
+  for (int s = 0; s < doubled.echoCount; ++s)
+  {
+    const auto bin = std::min(std::size_t(0.5 * s * doubled.echoSampleMm / doubled.binMm), bins - 1);
+    doubled.boundaryEcho[std::size_t(line) * std::size_t(doubled.echoCount) + std::size_t(s)] *= growth[bin];
+  }
+}
+
 } // namespace
 
 double harmonicSourcePerMm(const Tissue& tissue, double faceMRayl, const SentSound& sent)
@@ -78,6 +95,7 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
   const auto bins = std::size_t(doubled.binCount);
   parallelFor(doubled.lineCount, {}, [&](int l) {
     std::complex<double> grown;
+    std::vector<float> growth; // of each bin
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
       const std::size_t at = std::size_t(l) * bins + bin;
@@ -99,7 +117,9 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
       const auto factor = float(amount / std::sqrt(1.0 + depletion * ofSent2));
       doubled.intensity[at] *= factor;
       doubled.standardError[at] *= factor;
+      growth.push_back(factor);
     }
+    growReverberation(growth, l, doubled);
   });
   doubled.segments += sent.segments;
   return doubled;
