@@ -1,6 +1,7 @@
 #include "ReverberationFigures.h"
 
 #include "BeamScenes.h"
+#include "TargetScenes.h"
 #include "TestScenes.h"
 
 #include "Echo/Pulse.h"
@@ -225,8 +226,12 @@ StackErrors stackErrors(const std::string& name, const LayerStack& stack, double
   StackErrors worst;
   for (const HeardArrival& h : hearStack(name, stack, fractionalBandwidth, pathsPerLine, voxelMm))
   {
-    worst.rangeMm = std::max(worst.rangeMm, std::abs(h.heard.rangeMm - h.exact.rangeMm));
-    worst.amplitudeDb = std::max(worst.amplitudeDb, std::abs(decibels(h.heard.amplitude / h.exact.amplitude)));
+    const double error = decibels(h.heard.amplitude / h.exact.amplitude);
+    worst.amplitudeDb = std::max(worst.amplitudeDb, std::abs(error));
+    if (error > -20.0) // what is not heard lies nowhere
+    {
+      worst.rangeMm = std::max(worst.rangeMm, std::abs(h.heard.rangeMm - h.exact.rangeMm));
+    }
   }
   return worst;
 }
@@ -303,7 +308,7 @@ double tissueReverberationErrorDb(int pathsPerLine)
   return worst;
 }
 
-double mirrorImageErrorMm(int pathsPerLine)
+double mirrorImageErrorMm(int pathsPerLine, Diaphragm diaphragm)
 {
   const double speed = 1550.0; // the liver's
   const double slant = 25.0 * M_PI / 180.0;
@@ -313,13 +318,28 @@ double mirrorImageErrorMm(int pathsPerLine)
   const Vec3d image(50.0, 16.0, 85.0);
   const Vec3d sphere = image - 2.0 * glm::dot(image - onDiaphragm, normal) * normal;
   constexpr double radiusMm = 5.0;
+  const bool meshed = diaphragm == Diaphragm::Mesh;
+  const Tissue lung = fluid("lung", 0.18, 600.0, 40.0);
+  const auto labelAt = [&](const Vec3d& p) {
+    if (!meshed && glm::dot(p - onDiaphragm, normal) > 0.0)
+    {
+      return 1;
+    }
+    return glm::distance(p, sphere) < radiusMm ? 2 : 0;
+  };
   const auto scene =
     makeScene({ 200, 64, 200 }, Vec3d(0.5),
-              { fluid("liver", 1.65, speed, 0.1, 1e-9), fluid("lung", 0.18, 600.0, 40.0),
-                fluid("bright", 1.65, speed, 0.1, 1e-2) },
-              [&](const Vec3d& p) {
-                return glm::dot(p - onDiaphragm, normal) > 0.0 ? 1 : glm::distance(p, sphere) < radiusMm ? 2 : 0;
-              });
+              { fluid("liver", 1.65, speed, 0.1, 1e-9), lung, fluid("bright", 1.65, speed, 0.1, 1e-2) }, labelAt);
+  std::vector<TargetSurface> targets;
+  if (meshed)
+  {
+    targets.push_back(makeBox("mesh", lung, { -40, -14, 0 }, { 40, 14, 20 }));
+    const Vec3d along(normal.z, 0.0, -normal.x);
+    for (Vec3d& p : targets.back().pointsMm)
+    {
+      p = onDiaphragm + along * p.x + Vec3d(0.0, p.y, 0.0) + normal * p.z;
+    }
+  }
   EchoSettings echo;
   echo.depthMm = 105.0;
   const ImageSettings settings = settingsOf(echo, 0.0, pathsPerLine);
@@ -331,7 +351,7 @@ double mirrorImageErrorMm(int pathsPerLine)
     const double angle = l * stepDeg * M_PI / 180.0;
     lines.push_back(makeLine(origin, { std::sin(angle), 0.0, std::cos(angle) }));
   }
-  const TracedLines traced = trace(*scene, lines, settings.tracing);
+  const TracedLines traced = trace(*scene, lines, settings.tracing, {}, targets);
   const std::vector<double> power = meanPower(*scene, lines, traced, settings.echo, 16);
   const int samples = settings.echo.sampleCount();
   const Vec3d shown = origin + (image - origin) * (1000.0 * assumedSoundSpeedMmPerUs / speed);
@@ -357,10 +377,32 @@ double mirrorImageErrorMm(int pathsPerLine)
     return 1.8 * radiusMm;
   }
   const Vec3d seen = moment / sum;
-  std::fprintf(stderr, "mirror image: seen at %.3f, %.3f mm (lateral, axial), a mirror would show it at %.3f, %.3f\n",
-               seen.x - origin.x, seen.z - origin.z, shown.x - origin.x, shown.z - origin.z);
+  std::fprintf(
+    stderr,
+    "mirror image in a diaphragm of %s: seen at %.3f, %.3f mm (lateral, axial), a mirror would show it at %.3f, %.3f\n",
+    meshed ? "triangles" : "labels", seen.x - origin.x, seen.z - origin.z, shown.x - origin.x, shown.z - origin.z);
   return glm::distance(seen, shown);
 }
+
+namespace {
+
+/// Of the mean power of lines from one depth to another.
+double levelDb(const RfLines& rf, double fromMm, double toMm)
+{
+  const int first = int(fromMm / rf.sampleMm);
+  const int last = int(toMm / rf.sampleMm);
+  double power = 0.0;
+  for (int l = 0; l < rf.lineCount; ++l)
+  {
+    for (int n = first; n < last; ++n)
+    {
+      power += std::norm(rf.iq[std::size_t(l) * std::size_t(rf.sampleCount) + std::size_t(n)]);
+    }
+  }
+  return 0.5 * decibels(power / (double(rf.lineCount) * (last - first)));
+}
+
+} // namespace
 
 std::vector<ReverberationDrift> reverberationDrifts(const Scene& scene, const std::vector<ScanLine>& lines,
                                                     TraceSettings tracing, const EchoSettings& echo,
@@ -370,26 +412,18 @@ std::vector<ReverberationDrift> reverberationDrifts(const Scene& scene, const st
   std::vector<ReverberationDrift> drifts;
   for (double from = bandMm; from + bandMm <= echo.depthMm; from += bandMm)
   {
-    drifts.push_back({ from, from + bandMm, {}, 0.0 });
+    drifts.push_back({ from, from + bandMm, 0.0, {}, 0.0 });
   }
   for (const int paths : pathsPerLine)
   {
     tracing.pathsPerLine = paths;
     const TracedLines traced = trace(scene, lines, tracing);
-    const RfLines rf = formRf({ nullptr, &traced, nullptr }, lines, echo);
+    const RfLines whole = formRf(scene, lines, traced, echo);
+    const RfLines alone = formRf({ nullptr, &traced, nullptr }, lines, echo);
     for (ReverberationDrift& drift : drifts)
     {
-      const int first = int(drift.fromMm / rf.sampleMm);
-      const int last = int(drift.toMm / rf.sampleMm);
-      double power = 0.0;
-      for (int l = 0; l < rf.lineCount; ++l)
-      {
-        for (int n = first; n < last; ++n)
-        {
-          power += std::norm(rf.iq[std::size_t(l) * std::size_t(rf.sampleCount) + std::size_t(n)]);
-        }
-      }
-      drift.levelDb.push_back(0.5 * decibels(power / (double(rf.lineCount) * (last - first))));
+      drift.pictureDb = levelDb(whole, drift.fromMm, drift.toMm);
+      drift.levelDb.push_back(levelDb(alone, drift.fromMm, drift.toMm));
     }
   }
   for (ReverberationDrift& drift : drifts)

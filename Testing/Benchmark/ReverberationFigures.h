@@ -38,15 +38,23 @@ AlineErrors alineErrors(int pathsPerLine);
 /// after lung and face. The largest error of their levels against its own, dB.
 double tissueReverberationErrorDb(int pathsPerLine);
 
+/// What a diaphragm is made of: of labels the paths know the normal to a degree, of triangles exactly.
+enum class Diaphragm
+{
+  Labels,
+  Mesh
+};
+
 /// A sphere of bright tissue in front of a slanted diaphragm, behind which is lung: how far the middle of what is seen
 /// behind lies from where a mirror would show it, by the time that sound takes, mm.
-double mirrorImageErrorMm(int pathsPerLine);
+double mirrorImageErrorMm(int pathsPerLine, Diaphragm diaphragm);
 
 /// What of an image comes from several reflections at boundaries, by depth and number of paths.
 struct ReverberationDrift
 {
   double fromMm;
   double toMm;
+  double pictureDb;            ///< level of all that the lines show there
   std::vector<double> levelDb; ///< of the mean power, parallel to the numbers of paths; a perfect mirror's is 0
   double driftDb;              ///< largest less least
 };
