@@ -156,7 +156,8 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
   TracedLines::visitBins(lines, [&](std::vector<float>& array, const char*) { array = std::move(*values++); });
   lines.depthOffsetMm = std::move(*values++);
   lines.reverberation = std::move(*values++);
-  lines.reverberationError = std::move(*values);
+  lines.reverberationError = std::move(*values++);
+  lines.reverberationNpPerMHz = std::move(*values);
   lines.boundaryEcho = std::move(fetched.boundaryEcho);
   lines.segments = fetched.segments;
 }

@@ -43,6 +43,8 @@ TracedOnDevice DeviceEcho::given(int first) const
   traced.attenuation = given_.attenuation ? given_.attenuation + std::size_t(first) * given_.binCount : nullptr;
   traced.depthOffset = given_.depthOffset ? given_.depthOffset + std::size_t(first) * given_.binCount : nullptr;
   traced.reverberation = given_.reverberation ? given_.reverberation + std::size_t(first) * given_.binCount : nullptr;
+  traced.reverberationNp =
+    given_.reverberationNp ? given_.reverberationNp + std::size_t(first) * given_.binCount : nullptr;
   traced.echo = given_.echo ? given_.echo + std::size_t(first) * rangeCount_ : nullptr;
   return traced;
 }

@@ -13,10 +13,11 @@ namespace sono {
 /// Where the tracer's results lie on the device.
 struct TracedOnDevice
 {
-  const float* intensity = nullptr;     ///< lines x bins; null: 1 everywhere
-  const float* attenuation = nullptr;   ///< lines x bins: B, Np of amplitude per MHz; null: not known
-  const float* depthOffset = nullptr;   ///< lines x bins: TracedLines::depthOffsetMm; null: range is depth
-  const float* reverberation = nullptr; ///< lines x bins, by range; null: nothing does
+  const float* intensity = nullptr;       ///< lines x bins; null: 1 everywhere
+  const float* attenuation = nullptr;     ///< lines x bins: B, Np of amplitude per MHz; null: not known
+  const float* depthOffset = nullptr;     ///< lines x bins: TracedLines::depthOffsetMm; null: range is depth
+  const float* reverberation = nullptr;   ///< lines x bins, by range; null: nothing does
+  const float* reverberationNp = nullptr; ///< the same: its B
   int binCount = 0;
   float binMm = 1.0f;
   const EchoSum* echoSums = nullptr; ///< lines x echoCount x (re, im), on the RF's samples
@@ -173,7 +174,7 @@ private:
   float largestPoint_ = 0.0f;
   float pointScale_ = 1.0f;
 
-  DeviceArray<float> givenIntensity_, givenAttenuation_, givenDepthOffset_, givenReverberation_;
+  DeviceArray<float> givenIntensity_, givenAttenuation_, givenDepthOffset_, givenReverberation_, givenReverberationNp_;
   DeviceArray<float2> givenEcho_;
   TracedOnDevice given_;
 

@@ -264,6 +264,7 @@ std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<co
     made->view.depthOffset = job->rangeIsTime ? made->arrays.bins[depthOffsetArray].data() : nullptr;
     made->view.reverberation =
       job->rangeIsTime && job->view.reverberates ? made->arrays.bins[reverberationArray].data() : nullptr;
+    made->view.reverberationNp = made->view.reverberation ? made->arrays.bins[reverberationNpArray].data() : nullptr;
     made->view.binCount = job->binCount;
     made->view.binMm = job->binMm;
     made->view.echoSums = made->arrays.echo.data();

@@ -149,8 +149,13 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   arrays_[depthOffsetArray].resize(rangeIsTime_ ? lineCount * bins : 0);
   arrays_[reverberationArray].resize(reverberates_ ? lineCount * bins : 0);
   arrays_[reverberationErrorArray].resize(reverberates_ ? lineCount * bins : 0);
-  axisRange_.resize(rangeIsTime_ ? lineCount * (bins + 1) : 0);
+  arrays_[reverberationNpArray].resize(reverberates_ ? lineCount * bins : 0);
+  const std::size_t flights = bins * std::size_t(flightSteps(binMm_)) + 1;
+  axisRange_.resize(rangeIsTime_ ? lineCount * flights : 0);
   axisAmplitude_.resize(axisRange_.size());
+  axisAbsorbed_.resize(axisRange_.size());
+  reverberated_.resize(reverberates_ ? 2 * lineCount * bins : 0);
+  reverberated_.clear(stream);
   reverberation_.resize(reverberates_ ? lineCount * std::size_t(batches) * bins : 0);
   reverberation_.clear(stream);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
@@ -198,8 +203,13 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      echoScale_,
                      {},
                      rangeIsTime_ ? arrays_[depthOffsetArray].data() + skip * bins : nullptr,
-                     axisRange_.data() + (rangeIsTime_ ? skip * (bins + 1) : 0),
-                     axisAmplitude_.data() + (rangeIsTime_ ? skip * (bins + 1) : 0),
+                     axisRange_.data() + (rangeIsTime_ ? skip * flights : 0),
+                     axisAmplitude_.data() + (rangeIsTime_ ? skip * flights : 0),
+                     axisAbsorbed_.data() + (rangeIsTime_ ? skip * flights : 0),
+                     int(flights) - 1,
+                     binMm_ / float(flightSteps(binMm_)),
+                     reverberates_ ? reverberated_.data() + 2 * skip * bins : nullptr,
+                     reverberates_ ? arrays_[reverberationNpArray].data() + skip * bins : nullptr,
                      reverberates_ ? reverberation_.data() + skip * std::size_t(batches) * bins : nullptr,
                      reverberates_ ? arrays_[reverberationArray].data() + skip * bins : nullptr,
                      reverberates_ ? arrays_[reverberationErrorArray].data() + skip * bins : nullptr };

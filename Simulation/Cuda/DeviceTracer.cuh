@@ -51,7 +51,8 @@ private:
   DeviceArray<BinSums<float>> bins_;
   DeviceArray<BinSums<float>> shared_;
   std::array<DeviceArray<float>, binArrayCount> arrays_;
-  DeviceArray<float> axisRange_, axisAmplitude_;
+  DeviceArray<float> axisRange_, axisAmplitude_, axisAbsorbed_;
+  DeviceArray<EchoSum> reverberated_;
   DeviceArray<EchoSum> reverberation_;
   DeviceArray<EchoSum> echo_;
   DeviceArray<EchoSum> echoRest_;

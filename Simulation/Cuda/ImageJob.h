@@ -172,6 +172,7 @@ struct GivenTrace
   std::vector<float> attenuationNpPerMHz; ///< the same; empty: not known
   std::vector<float> depthOffsetMm;       ///< the same; empty: range is depth
   std::vector<float> reverberation;       ///< the same; empty: nothing does
+  std::vector<float> reverberationNpPerMHz;
   int binCount = 0;
   float binMm = 0.0f;
   std::vector<std::complex<float>> boundaryEcho; ///< lines x rangeCount, on the RF's samples; empty: none

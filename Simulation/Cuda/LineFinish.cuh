@@ -186,6 +186,48 @@ __device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeMap&
   return v;
 }
 
+/// The boundary echoes of paths and the speckle that reverberates at a sample of range, demodulated. Of Acoustic they
+/// have been attenuated by ways of their own.
+__device__ inline float2 reflectedAt(const FinishLaunch& launch, int line, int s)
+{
+  const TracedOnDevice& traced = launch.traced;
+  float2 v{ 0.0f, 0.0f };
+  const float level = launch.level ? launch.level[s] : 1.0f;
+  if (traced.echoSums && s < traced.echoCount)
+  {
+    const EchoSum* echo = traced.echoSums + 2 * (std::size_t(line) * traced.echoCount + s);
+    v.x += float((long long)(echo[0])) * traced.echoPerUnit * level;
+    v.y += float((long long)(echo[1])) * traced.echoPerUnit * level;
+  }
+  if (traced.echo)
+  {
+    const std::size_t at = std::size_t(line) * launch.rangeCount + s;
+    v.x += traced.echo[at].x;
+    v.y += traced.echo[at].y;
+  }
+  const float2 c = launch.carrier[s];
+  v = { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
+  if (!traced.reverberation)
+  {
+    return v;
+  }
+  const float* bins = traced.reverberation + std::size_t(line) * traced.binCount;
+  const float strength = levelAtRange(bins, traced.binCount, float(launch.binsPerSample), s);
+  if (strength > faintestReverberation)
+  {
+    const Vec2f noise = strength * launch.reverberationRms[s] * launch.noise.at(line % launch.linesPerImage, s);
+    v = { v.x + noise.x, v.y + noise.y };
+  }
+  if (traced.attenuation && (v.x != 0.0f || v.y != 0.0f))
+  {
+    const int bin = min(int(float(s) * float(launch.binsPerSample)), traced.binCount - 1);
+    const float taken = traced.reverberationNp[std::size_t(line) * traced.binCount + bin];
+    const float gain = downshiftGain(launch.downshift, shiftingExponent(launch.downshift, taken));
+    v = { gain * v.x, gain * v.y };
+  }
+  return v;
+}
+
 /// What is shown at a sample of range, and the boundary echoes, demodulated; where the frequency sinks, as strong as it
 /// then is and turned by the phase.
 __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
@@ -197,43 +239,32 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   const RangeMap map = rangeMap(launch, line);
   const TracedOnDevice& traced = launch.traced;
   const std::size_t at = std::size_t(line) * launch.rangeCount + s;
-  float2 v = map.offsetMm ? float2{ 0.0f, 0.0f } : summedAt(launch, line, s);
-  const float level = launch.level ? launch.level[s] : 1.0f;
-  if (traced.echoSums && s < traced.echoCount)
-  {
-    const EchoSum* echo = traced.echoSums + 2 * (std::size_t(line) * traced.echoCount + s);
-    v.x += float((long long)(echo[0])) * traced.echoPerUnit * level;
-    v.y += float((long long)(echo[1])) * traced.echoPerUnit * level;
-  }
-  if (traced.echo)
-  {
-    v.x += traced.echo[at].x;
-    v.y += traced.echo[at].y;
-  }
+  float2 v{ 0.0f, 0.0f };
   const float2 c = launch.carrier[s];
-  v = { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
   if (map.offsetMm)
   {
     const float2 near = shownBehind(launch, map, line, s, true);
     const float2 far = s > 0 ? shownBehind(launch, map, line, s - 1, false) : float2{ 0.0f, 0.0f };
-    v = { v.x + near.x + far.x, v.y + near.y + far.y };
+    v = { near.x + far.x, near.y + far.y };
   }
-  if (traced.reverberation)
+  else
   {
-    const float strength = levelAtRange(traced.reverberation + std::size_t(line) * traced.binCount, traced.binCount,
-                                        float(launch.binsPerSample), s);
-    if (strength > faintestReverberation)
-    {
-      const Vec2f noise = strength * launch.reverberationRms[s] * launch.noise.at(line % launch.linesPerImage, s);
-      v = { v.x + noise.x, v.y + noise.y };
-    }
+    const float2 sum = summedAt(launch, line, s);
+    v = { sum.x * c.x - sum.y * c.y, sum.x * c.y + sum.y * c.x };
   }
-  if (launch.turns)
+  const bool sinks = launch.turns != nullptr;
+  if (sinks)
   {
     const float* bins = traced.attenuation + std::size_t(line) * traced.binCount;
     const float gain = downshiftGain(launch.downshift, exponentAt(launch, map, bins, s));
+    v = { gain * v.x, gain * v.y };
+  }
+  const float2 late = reflectedAt(launch, line, s);
+  v = { v.x + late.x, v.y + late.y };
+  if (sinks)
+  {
     const DownshiftAt turned = downshiftRotation(launch.turns[at]);
-    v = { gain * (v.x * turned.re - v.y * turned.im), gain * (v.x * turned.im + v.y * turned.re) };
+    v = { v.x * turned.re - v.y * turned.im, v.x * turned.im + v.y * turned.re };
   }
   return v;
 }

@@ -375,6 +375,7 @@ EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage)
     given.attenuationNpPerMHz = traced.attenuationNpPerMHz;
     given.depthOffsetMm = traced.depthOffsetMm;
     given.reverberation = traced.reverberation;
+    given.reverberationNpPerMHz = traced.reverberationNpPerMHz;
     given.binCount = traced.binCount;
     given.binMm = float(traced.binMm);
     for (int l = 0; l < job.lineCount && traced.echoCount > 0; ++l)

@@ -51,17 +51,22 @@ struct TraceLaunch
   float radPerMm;
   float echoScale;
   float* arrays[pathArrayCount];
-  float* depthOffset;       // lines x bins; null: range is depth
-  float* axisRange;         // lines x (bins + 1), see StraightWay
-  float* axisAmplitude;     // the same
+  float* depthOffset;   // lines x bins; null: range is depth
+  float* axisRange;     // lines x (bins + 1), see StraightWay
+  float* axisAmplitude; // the same
+  float* axisAbsorbed;
+  int flightCount; // steps of the axis, and their length
+  float flightMm;
+  EchoSum* reverberated;    // lines x bins x (weight, weight times Np), as `reverberation`
+  float* reverberationNp;   // lines x bins
   EchoSum* reverberation;   // lines x batches x bins, amplitudes times echoScale; null: nothing reverberates
   float* reverberationMean; // lines x bins
   float* reverberationError;
 
   __device__ StraightWay wayOf(int line) const
   {
-    const std::size_t first = std::size_t(line) * (binCount + 1);
-    return { axisRange + first, axisAmplitude + first, binCount, binMm };
+    const std::size_t first = std::size_t(line) * (flightCount + 1);
+    return { axisRange + first, axisAmplitude + first, axisAbsorbed + first, flightCount, flightMm };
   }
   __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
 };
@@ -186,6 +191,12 @@ struct LaneSink : PathSink
       const Arrival arrival =
         boundaryArrival(launch.view, launch.wayOf(line), launch.lines[line], beam, path, boundary);
       addEcho<ManyPaths>(launch, line, arrival.rangeMm, arrival.amplitude);
+      const int bin = int(fmaxf(0.0f, arrival.rangeMm) / launch.binMm);
+      if (arrival.amplitude != 0.0f && bin < launch.binCount)
+      {
+        addReverberated(launch.reverberated + 2 * (std::size_t(line) * launch.binCount + bin),
+                        fabsf(arrival.amplitude) / boundaryPerSpeckle, arrival.absorbedNp, launch.echoScale);
+      }
     }
   }
   /// Whether the last segment falls into a bin: there is room for one.
@@ -265,6 +276,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   }
   EchoSum* reverberation =
     launch.reverberation + (std::size_t(line) * launch.batches + std::size_t(batch)) * launch.binCount;
+  EchoSum* reverberated = launch.reverberated + 2 * std::size_t(line) * launch.binCount;
   const std::uint32_t lineKey = launch.keyOf(line);
   for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
@@ -305,7 +317,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
       const StagedSegment& segment = staged[__ffs(int(waiting)) - 1];
       if (segment.reverberates)
       {
-        reverberateByWarp(segment, launch.binMm, launch.echoScale, lane, reverberation);
+        reverberateByWarp(segment, launch.binMm, launch.echoScale, lane, reverberation, reverberated);
       }
       else
       {
@@ -392,6 +404,9 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
     const MeanAndError all = meanAndError(hasPaths ? launch.batches : 0, meanReverberation);
     launch.reverberationMean[at] = all.mean;
     launch.reverberationError[at] = all.error;
+    const double weight = double((long long)(launch.reverberated[2 * at]));
+    const double taken = double((long long)(launch.reverberated[2 * at + 1]));
+    launch.reverberationNp[at] = weight > 0.0 ? float(taken / (weight * launch.frequencyMHz)) : 0.0f;
   }
 }
 
@@ -402,65 +417,72 @@ constexpr int flightThreads = 256;
 template<class Targets>
 __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> launch)
 {
-  float* rangeMm = launch.axisRange + std::size_t(blockIdx.x) * (launch.binCount + 1); // at the ends of bins
-  float* lostNp = launch.axisAmplitude + std::size_t(blockIdx.x) * (launch.binCount + 1);
-  __shared__ double sums[flightThreads];
-  __shared__ double lost[flightThreads];
+  __shared__ double sums[3][flightThreads];
   __shared__ TargetSpans spans;
+  const std::size_t row = std::size_t(blockIdx.x) * (launch.flightCount + 1);
+  float* values[3] = { launch.axisRange + row, launch.axisAmplitude + row, launch.axisAbsorbed + row };
   const TraceLine& line = launch.lines[blockIdx.x];
   if (threadIdx.x == 0)
   {
     spans = targetSpans(launch.view, launch.space, line);
+    for (float* value : values)
+    {
+      value[0] = 0.0f;
+    }
   }
   __syncthreads();
-  const int each = (launch.binCount + flightThreads - 1) / flightThreads;
-  const int first = min(int(threadIdx.x) * each, launch.binCount);
-  const int last = min(first + each, launch.binCount);
-  double own = 0.0;
-  double ownLost = 0.0;
-  for (int b = first; b < last; ++b)
+  const int each = (launch.flightCount + flightThreads - 1) / flightThreads;
+  const int first = min(int(threadIdx.x) * each, launch.flightCount);
+  const int last = min(first + each, launch.flightCount);
+  double own[3] = {};
+  for (int s = first; s < last; ++s)
   {
-    const FlightBin bin = flightBin(launch.view, launch.space, line, spans, launch.binMm, b);
-    own += double(bin.rangeMm);
-    ownLost += double(bin.lostNp);
-    rangeMm[b + 1] = float(own);
-    lostNp[b + 1] = float(ownLost);
+    const FlightStep step = flightStep(launch.view, launch.space, line, spans, launch.flightMm, s);
+    own[0] += double(step.rangeMm);
+    own[1] += double(step.lostNp);
+    own[2] += double(step.absorbedNp);
+    for (int v = 0; v < 3; ++v)
+    {
+      values[v][s + 1] = float(own[v]);
+    }
   }
-  sums[threadIdx.x] = own;
-  lost[threadIdx.x] = ownLost;
+  for (int v = 0; v < 3; ++v)
+  {
+    sums[v][threadIdx.x] = own[v];
+  }
   __syncthreads();
   for (int step = 1; step < flightThreads; step *= 2)
   {
-    const bool hasBefore = int(threadIdx.x) >= step;
-    const double before = hasBefore ? sums[threadIdx.x - step] : 0.0;
-    const double lostBefore = hasBefore ? lost[threadIdx.x - step] : 0.0;
+    double before[3];
+    for (int v = 0; v < 3; ++v)
+    {
+      before[v] = int(threadIdx.x) >= step ? sums[v][threadIdx.x - step] : 0.0;
+    }
     __syncthreads();
-    sums[threadIdx.x] += before;
-    lost[threadIdx.x] += lostBefore;
+    for (int v = 0; v < 3; ++v)
+    {
+      sums[v][threadIdx.x] += before[v];
+    }
     __syncthreads();
   }
-  const double before = sums[threadIdx.x] - own;
-  const double lostBefore = lost[threadIdx.x] - ownLost;
-  for (int b = first; b < last; ++b)
+  for (int v = 0; v < 3; ++v)
   {
-    rangeMm[b + 1] = float(before + double(rangeMm[b + 1]));
-    lostNp[b + 1] = float(lostBefore + double(lostNp[b + 1]));
-  }
-  if (threadIdx.x == 0)
-  {
-    rangeMm[0] = 0.0f;
-    lostNp[0] = 0.0f;
+    const double before = sums[v][threadIdx.x] - own[v];
+    for (int s = first; s < last; ++s)
+    {
+      values[v][s + 1] = float(before + double(values[v][s + 1]));
+    }
   }
   __syncthreads();
-  for (int b = threadIdx.x; b <= launch.binCount; b += flightThreads)
+  for (int s = threadIdx.x; s <= launch.flightCount; s += flightThreads)
   {
-    lostNp[b] = expf(-0.5f * lostNp[b]);
+    values[1][s] = expf(-0.5f * values[1][s]);
   }
   for (int b = threadIdx.x; b < launch.binCount; b += flightThreads)
   {
     const float wanted = float(b) * launch.binMm;
     launch.depthOffset[std::size_t(blockIdx.x) * launch.binCount + b] =
-      depthOfRange(rangeMm, launch.binCount, launch.binMm, wanted) - wanted;
+      depthOfRange(values[0], launch.flightCount, launch.flightMm, wanted) - wanted;
   }
 }
 

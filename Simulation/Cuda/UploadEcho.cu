@@ -408,6 +408,8 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
     {
       givenReverberation_.upload(job.given->reverberation, stream, traffic);
       given_.reverberation = givenReverberation_.data();
+      givenReverberationNp_.upload(job.given->reverberationNpPerMHz, stream, traffic);
+      given_.reverberationNp = givenReverberationNp_.data();
     }
     given_.binCount = job.given->binCount;
     given_.binMm = job.given->binMm;

@@ -80,9 +80,18 @@ __device__ inline void depositByWarp(const StagedSegment s, float binMm, int lan
   }
 }
 
+/// How much of what reverberates the media have taken, weighted: integers, of which a hundredth does for it, so that no
+/// boundary's weight overflows.
+__device__ inline void addReverberated(unsigned long long* sums, float weight, float absorbedNp, float scale)
+{
+  const float units = 0.01f * scale * weight;
+  atomicAdd(sums, (unsigned long long)(__float2ll_rn(units)));
+  atomicAdd(sums + 1, (unsigned long long)(__float2ll_rn(units * absorbedNp)));
+}
+
 /// The same for the level of what reverberates, by range: sums of integers, since warps share them.
 __device__ inline void reverberateByWarp(const StagedSegment& s, float binMm, float scale, int lane,
-                                         unsigned long long* sums)
+                                         unsigned long long* sums, unsigned long long* reverberated)
 {
   const float inverseMu = 1.0f / s.beam.mu;
   for (int b = s.binLow + lane; b <= s.binHigh; b += warpLanes)
@@ -91,6 +100,8 @@ __device__ inline void reverberateByWarp(const StagedSegment& s, float binMm, fl
     const float to = fminf(s.high, float(b + 1) * binMm);
     const float level = meanOver(s.beam, from, to, inverseMu) * fmaxf(0.0f, to - from) / binMm;
     atomicAdd(sums + b, (unsigned long long)(__float2ll_rn(level * scale)));
+    addReverberated(reverberated + 2 * b, level,
+                    s.beam.absorbed + s.beam.decay * (0.5f * (from + to) - s.beam.r0) * inverseMu, scale);
   }
 }
 

@@ -52,6 +52,7 @@ void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& 
   if (traced.binCount < 1 || !(traced.binMm > 0.0) ||
       traced.intensity.size() != lines.size() * std::size_t(traced.binCount) || traced.echoCount < 0 ||
       !(traced.attenuationNpPerMHz.empty() || traced.attenuationNpPerMHz.size() == traced.intensity.size()) ||
+      !(traced.reverberationNpPerMHz.empty() || traced.reverberationNpPerMHz.size() == traced.intensity.size()) ||
       !(traced.reverberation.empty() || traced.reverberation.size() == traced.intensity.size()) ||
       !(traced.depthOffsetMm.empty() || traced.depthOffsetMm.size() == traced.intensity.size()) ||
       (traced.echoCount > 0 && !(traced.echoSampleMm > 0.0)) ||

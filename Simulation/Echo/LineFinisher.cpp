@@ -88,6 +88,25 @@ void LineFinisher::applyIntensity(int line, LineSum& sum) const
   }
 }
 
+/// As weak as a pulse is that has been attenuated like it; the little that its frequency differs from that of what is
+/// heard directly does not show in the envelope.
+void LineFinisher::sinkReverberation(int line, float* re, float* im) const
+{
+  if (!downshift_ || traced_->reverberationNpPerMHz.empty())
+  {
+    return;
+  }
+  const float* bins = traced_->reverberationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  const float binsPerSample = float(sampleMm_ / traced_->binMm);
+  for (int s = 0; s < int(carrierRe_.size()); ++s)
+  {
+    const int bin = std::min(int(float(s) * binsPerSample), traced_->binCount - 1);
+    const float gain = downshiftGain(*downshift_, shiftingExponent(*downshift_, bins[bin]));
+    re[s] *= gain;
+    im[s] *= gain;
+  }
+}
+
 bool LineFinisher::sinks(int line) const
 {
   if (!downshift_)
@@ -242,16 +261,24 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   {
     demodulate(sum, re.data() + half, im.data() + half);
   }
+  // Of Acoustic these have been reflected, and attenuated by ways of their own.
+  std::vector<float> lateRe(carrierRe_.size(), 0.0f);
+  std::vector<float> lateIm(carrierRe_.size(), 0.0f);
   if (traced_ && traced_->echoCount > 0)
   {
-    demodulate(boundaryEchoes(line), re.data() + half, im.data() + half);
+    demodulate(boundaryEchoes(line), lateRe.data(), lateIm.data());
   }
   if (traced_ && !traced_->reverberation.empty())
   {
-    addReverberation(line, re.data() + half, im.data() + half);
+    addReverberation(line, lateRe.data(), lateIm.data());
+    sinkReverberation(line, lateRe.data(), lateIm.data());
   }
   if (!sinks(line))
   {
+    std::transform(lateRe.begin(), lateRe.end(), re.begin() + std::ptrdiff_t(half), re.begin() + std::ptrdiff_t(half),
+                   std::plus<float>());
+    std::transform(lateIm.begin(), lateIm.end(), im.begin() + std::ptrdiff_t(half), im.begin() + std::ptrdiff_t(half),
+                   std::plus<float>());
     pulse_.convolve(re.data(), im.data(), samples_, iq);
     return;
   }
@@ -267,8 +294,8 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   for (std::size_t s = 0; s < exponent.size(); ++s)
   {
     const float gain = downshiftGain(*downshift_, exponent[s]);
-    const float a = gain * re[half + s];
-    const float b = gain * im[half + s];
+    const float a = gain * re[half + s] + lateRe[s];
+    const float b = gain * im[half + s] + lateIm[s];
     re[half + s] = a * turned[s].re - b * turned[s].im;
     im[half + s] = a * turned[s].im + b * turned[s].re;
   }

@@ -50,6 +50,7 @@ private:
   void demodulate(const LineSum& sum, float* re, float* im) const;
   void showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const;
   void addReverberation(int line, float* re, float* im) const;
+  void sinkReverberation(int line, float* re, float* im) const;
   bool sinks(int line) const;
   std::vector<float> exponents(int line) const;
 

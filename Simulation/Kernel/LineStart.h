@@ -63,7 +63,7 @@ SONO_HD inline bool enterSpace(const Space& space, const TraceLine& line, float 
     path.ray.cell[axis] = line.axis[axis] > 0.0f ? 0 : size[axis] - 1;
   }
   path.length = near;
-  path.rangeMm = near;
+  path.rangeMm = near - line.aheadMm;
   return true;
 }
 
@@ -138,7 +138,11 @@ SONO_HD inline TraceLine pathLine(const TraceView& view, const TraceLine& line, 
   const Vec3f elevation = line.elevation * (2.0f * u.azimuth - 1.0f);
   return { line.origin + lateral + elevation,
            glm::normalize(line.axis - lateral * view.perTransmitFocus - elevation * view.perElevationFocus),
-           Vec3f(0.0f), Vec3f(0.0f), line.face };
+           Vec3f(0.0f),
+           Vec3f(0.0f),
+           line.face,
+           0.5f * (glm::dot(lateral, lateral) * view.perTransmitFocus +
+                   glm::dot(elevation, elevation) * view.perElevationFocus) };
 }
 
 /// How much coupling a path met.

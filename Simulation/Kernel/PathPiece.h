@@ -33,9 +33,16 @@ SONO_HD inline float remainingLength(float depthMm, const TraceLine& line, const
   return larger(0.0f, smaller(t, timely));
 }
 
+/// A path that has been reflected is heard by its time: where its medium is fast, it may go further.
 SONO_HD inline float remainingLength(const TraceView& view, const TraceLine& line, const PathState& path)
 {
-  return remainingLength(view.depthMm, line, path.ray.position, path.ray.direction, path.length);
+  float length = path.length;
+  if (path.reflections > 0 && view.model == InterfaceModel::Acoustic)
+  {
+    const float slow = smaller(1.0f, view.media[path.tissue].rangePerMm);
+    length = 2.0f * view.depthMm - (2.0f * view.depthMm - path.rangeMm) / slow;
+  }
+  return remainingLength(view.depthMm, line, path.ray.position, path.ray.direction, length);
 }
 
 SONO_HD inline bool sameAcoustics(const TraceMedium& a, const TraceMedium& b)

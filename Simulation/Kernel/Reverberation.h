@@ -12,28 +12,32 @@
 
 namespace sono {
 
-/// The way straight back along a line's axis, by depth, at multiples of a bin.
+/// The way straight back along a line's axis, by depth, at multiples of a step: [0, steps].
 struct StraightWay
 {
-  const float* rangeMm = nullptr;   ///< [0, bins], see TimeOfFlight.h
-  const float* amplitude = nullptr; ///< root of the intensity that arrives unreflected
-  int bins = 0;
-  float binMm = 1.0f;
+  const float* rangeMm = nullptr;    ///< see TimeOfFlight.h
+  const float* amplitude = nullptr;  ///< root of the intensity that arrives unreflected
+  const float* absorbedNp = nullptr; ///< what the media have taken of the intensity
+  int steps = 0;
+  float stepMm = 1.0f;
 };
 
 struct StraightWayAt
 {
   float rangeMm;
   float amplitude;
+  float absorbedNp;
 };
 
-SONO_HD inline StraightWayAt wayBackFrom(const StraightWay& way, float depthMm)
+/// From a depth; what is lost at a boundary within the same step counts where the place is `behind` it.
+SONO_HD inline StraightWayAt wayBackFrom(const StraightWay& way, float depthMm, bool behind)
 {
-  const float position = larger(0.0f, smaller(depthMm / way.binMm, float(way.bins)));
-  const int bin = int(smaller(position, float(way.bins - 1)));
-  const float share = position - float(bin);
-  return { way.rangeMm[bin] + (way.rangeMm[bin + 1] - way.rangeMm[bin]) * share,
-           way.amplitude[bin] + (way.amplitude[bin + 1] - way.amplitude[bin]) * share };
+  const float position = larger(0.0f, smaller(depthMm / way.stepMm, float(way.steps)));
+  const int step = int(smaller(position, float(way.steps - 1)));
+  const float share = position - float(step);
+  const int known = behind ? step + 1 : step;
+  return { way.rangeMm[step] + (way.rangeMm[step + 1] - way.rangeMm[step]) * share, way.amplitude[known],
+           way.absorbedNp[known] };
 }
 
 /// How far beside its axis a line hears what comes straight back, standard deviation in mm, and how wide a bundle of
@@ -64,6 +68,7 @@ SONO_HD inline BeamSegment tissueEcho(const StraightWay& way, const TraceLine& a
   echo.mu = s.rangePerMm;
   echo.intensity = s.intensity * s.scatter;
   echo.decay = s.decayPerMm;
+  echo.absorbed = s.absorbed;
   const float cosine = glm::dot(s.direction, axis.axis);
   if (s.reflections % 2 != 0 || cosine < 0.5f)
   {
@@ -74,13 +79,14 @@ SONO_HD inline BeamSegment tissueEcho(const StraightWay& way, const TraceLine& a
     echo.intensity *= 2.0f;
     return echo;
   }
-  const StraightWayAt back = wayBackFrom(way, glm::dot(s.start - axis.origin, axis.axis));
+  const StraightWayAt back = wayBackFrom(way, glm::dot(s.start - axis.origin, axis.axis), true);
   const float mean = 0.5f * (1.0f + cosine);
   echo.r0 = 0.5f * (s.rangeMm + back.rangeMm);
   echo.mu = s.rangePerMm * mean;
   // Twice for the two senses of the loop, twice for the paths that show their own way.
   echo.intensity = 4.0f * fabsf(s.amplitude) * back.amplitude * s.scatter * heardAside(axis, own, s.start, s.lengthMm);
   echo.decay = s.decayPerMm * mean;
+  echo.absorbed = 0.5f * (s.absorbed + back.absorbedNp);
   return echo;
 }
 
@@ -88,8 +94,12 @@ SONO_HD inline BeamSegment tissueEcho(const StraightWay& way, const TraceLine& a
 struct Arrival
 {
   float rangeMm = 0.0f;
-  float amplitude = 0.0f; ///< against a perfect mirror's; 0: none
+  float amplitude = 0.0f;  ///< against a perfect mirror's; 0: none
+  float absorbedNp = 0.0f; ///< what the media have taken, two-way exponent of the amplitude
 };
+
+/// A boundary's echo of so much weighs as the speckle of level 1 where it is asked how much its sound was attenuated.
+constexpr float boundaryPerSpeckle = 1e-3f;
 
 /// The echo of a boundary straight back, for a path that has been reflected: (13.2) with (13.3). A line takes it where
 /// a path comes back nearly as it would from mirrors across the axis.
@@ -121,9 +131,10 @@ SONO_HD inline Arrival boundaryArrival(const TraceView& view, const StraightWay&
   const RoughBoundary rough = roughBoundary(view, from, to);
   const float coherent =
     rough.alpha > 0.0f ? sqrtf(coherentShare(rough, boundary.cosine, boundary.reflection.cosRefracted, true)) : 1.0f;
-  const StraightWayAt back = wayBackFrom(way, depthMm);
+  const StraightWayAt back = wayBackFrom(way, depthMm, false);
   const float late = (boundary.surface.t - boundary.restart) * from.rangePerMm;
   arrival.rangeMm = 0.5f * (path.rangeMm + late + back.rangeMm);
+  arrival.absorbedNp = 0.5f * (path.absorbed + back.absorbedNp);
   arrival.amplitude = path.amplitude * back.amplitude * boundary.reflection.amplitude * coherent * heard;
   return arrival;
 }

@@ -90,60 +90,52 @@ SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const
   return tissue == view.outsideTissue ? -1 : tissue;
 }
 
-/// What a bin of depth adds to the way along the axis: its range, and the exponent of the intensity that is left of
+/// What a step of depth adds to the way along the axis: its range, and the exponent of the intensity that is left of
 /// what goes straight on, across boundaries as if they lay across the axis.
-struct FlightBin
+struct FlightStep
 {
-  float rangeMm = 0.0f;
-  float lostNp = 0.0f;
+  float rangeMm;
+  float lostNp;
+  float absorbedNp; ///< of that, by the medium
 };
 
 template<class Space>
-SONO_HD inline FlightBin flightBin(const TraceView& view, const Space& space, const TraceLine& line,
-                                   const TargetSpans& spans, float binMm, int bin)
+SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, const TraceLine& line,
+                                     const TargetSpans& spans, float stepMm, int step)
 {
-  const int steps = flightSteps(binMm);
-  const float stepMm = binMm / float(steps);
-  FlightBin sum;
-  int before = bin > 0 ? mediumOnAxis(view, space, line, spans, (float(bin * steps) - 0.5f) * stepMm) : -1;
-  for (int s = 0; s < steps; ++s)
+  const int medium = mediumOnAxis(view, space, line, spans, (float(step) + 0.5f) * stepMm);
+  if (medium < 0)
   {
-    const int medium = mediumOnAxis(view, space, line, spans, (float(bin * steps + s) + 0.5f) * stepMm);
-    if (medium < 0)
-    {
-      sum.rangeMm += stepMm;
-      continue;
-    }
-    const TraceMedium& m = view.media[medium];
-    sum.rangeMm += stepMm * m.rangePerMm;
-    sum.lostNp += stepMm * m.decayPerMm;
-    if (before >= 0 && before != medium)
-    {
-      const float z = view.media[before].impedance;
-      const float r = (m.impedance - z) / (m.impedance + z);
-      sum.lostNp -= logf(larger(1.0f - r * r, 1e-12f));
-    }
-    before = medium;
+    return { stepMm, 0.0f, 0.0f };
+  }
+  const TraceMedium& m = view.media[medium];
+  FlightStep sum{ stepMm * m.rangePerMm, stepMm * m.decayPerMm, stepMm * m.decayPerMm };
+  const int before = step > 0 ? mediumOnAxis(view, space, line, spans, (float(step) - 0.5f) * stepMm) : -1;
+  if (before >= 0 && before != medium)
+  {
+    const float z = view.media[before].impedance;
+    const float r = (m.impedance - z) / (m.impedance + z);
+    sum.lostNp -= logf(larger(1.0f - r * r, 1e-12f));
   }
   return sum;
 }
 
-/// Depth at a range, by the ranges at multiples of `binMm` of depth, [0, bins], which rise. Beyond the last the
+/// Depth at a range, by the ranges at multiples of a step of depth, [0, steps], which rise. Beyond the last the
 /// scanner's assumption holds.
-SONO_HD inline float depthOfRange(const float* rangeMm, int bins, float binMm, float wantedMm)
+SONO_HD inline float depthOfRange(const float* rangeMm, int steps, float stepMm, float wantedMm)
 {
-  if (wantedMm >= rangeMm[bins])
+  if (wantedMm >= rangeMm[steps])
   {
-    return float(bins) * binMm + (wantedMm - rangeMm[bins]);
+    return float(steps) * stepMm + (wantedMm - rangeMm[steps]);
   }
   int low = 0;
-  int high = bins;
+  int high = steps;
   while (high - low > 1)
   {
     const int middle = (low + high) / 2;
     (rangeMm[middle] <= wantedMm ? low : high) = middle;
   }
-  return (float(low) + (wantedMm - rangeMm[low]) / (rangeMm[low + 1] - rangeMm[low])) * binMm;
+  return (float(low) + (wantedMm - rangeMm[low]) / (rangeMm[low + 1] - rangeMm[low])) * stepMm;
 }
 
 /// How a line's depths lie on its ranges: depth less range, mm, at multiples of a bin of range, straight in between.

@@ -69,6 +69,7 @@ SONO_HD inline bool survivesRoulette(const TraceView& view, const PathKey& key, 
   if (path.reflections == 0 || view.model != InterfaceModel::Acoustic)
   {
     const bool survives = u * view.rouletteIntensity < path.intensity;
+    path.amplitude *= path.intensity > 0.0f ? view.rouletteIntensity / path.intensity : 0.0f;
     path.intensity = view.rouletteIntensity;
     return survives;
   }

@@ -32,6 +32,7 @@ struct TraceLine
   Vec3f lateral = Vec3f(0.0f);
   Vec3f elevation = Vec3f(0.0f);
   Vec3f face = Vec3f(0.0f); ///< unit normal of the transducer's face, into the body
+  float aheadMm = 0.0f;     ///< of a path's own: how far its place on the aperture sends before the middle, to focus
 };
 
 /// Everything a path needs beside the space it runs through, trivially copyable.

@@ -45,6 +45,8 @@ LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double
   : binCount_(binCount)
   , sums_(sums)
   , reverberation_(std::size_t(binCount), 0.0)
+  , reverberated_(std::size_t(binCount), 0.0)
+  , reverberatedWeight_(std::size_t(binCount), 0.0)
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
@@ -106,6 +108,18 @@ std::vector<double> LineTally::takeReverberation(int paths)
   for (double& mean : means)
   {
     mean /= paths;
+  }
+  return means;
+}
+
+std::vector<double> LineTally::takeReverberatedNp()
+{
+  std::vector<double> means(reverberated_.size(), 0.0);
+  for (std::size_t b = 0; b < means.size(); ++b)
+  {
+    means[b] = reverberatedWeight_[b] > 0.0 ? reverberated_[b] / reverberatedWeight_[b] : 0.0;
+    reverberated_[b] = 0.0;
+    reverberatedWeight_[b] = 0.0;
   }
   return means;
 }
@@ -183,7 +197,10 @@ void LineTally::addReverberation(const PathSegment& s)
   {
     const float from = std::max(low, float(b) * binMm_);
     const float to = std::min(high, float(b + 1) * binMm_);
-    reverberation_[std::size_t(b)] += double(meanOver(g, from, to, inverseMu) * larger(0.0f, to - from) / binMm_);
+    const double level = double(meanOver(g, from, to, inverseMu) * larger(0.0f, to - from) / binMm_);
+    reverberation_[std::size_t(b)] += level;
+    reverberated_[std::size_t(b)] += level * double(g.absorbed + g.decay * (0.5f * (from + to) - g.r0) * inverseMu);
+    reverberatedWeight_[std::size_t(b)] += level;
   }
 }
 
@@ -203,6 +220,13 @@ void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
   {
     const Arrival arrival = boundaryArrival(*view_, way_, *axis_, line_, path, boundary);
     addEcho(arrival.rangeMm, arrival.amplitude);
+    const auto bin = std::size_t(larger(0.0f, arrival.rangeMm) / binMm_);
+    if (bin < reverberated_.size())
+    {
+      const double weight = double(std::fabs(arrival.amplitude) / boundaryPerSpeckle);
+      reverberated_[bin] += weight * double(arrival.absorbedNp);
+      reverberatedWeight_[bin] += weight;
+    }
   }
 }
 

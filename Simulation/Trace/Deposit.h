@@ -42,6 +42,8 @@ public:
   std::vector<BinSums<double>> takeBins(int paths);
   /// Level of what reverberated in each bin of range, mean of `paths` paths, and forgets it.
   std::vector<double> takeReverberation(int paths);
+  /// Of all that reverberated in each bin: the mean of what the media have taken, Np, by its level; and forgets it.
+  std::vector<double> takeReverberatedNp();
   /// Adds the boundary echoes to a line's samples and forgets them.
   void takeEchoes(std::complex<float>* samples);
 
@@ -56,6 +58,8 @@ private:
   std::array<std::vector<float>, binSumCount> bins_;     ///< of the paths since the last fold
   std::array<std::vector<double>, binSumCount> binSums_; ///< of those before
   std::vector<double> reverberation_;                    ///< of the paths since it was taken
+  std::vector<double> reverberated_;                     ///< level times Np
+  std::vector<double> reverberatedWeight_;
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;

@@ -39,6 +39,13 @@ struct AxisWay
 {
   std::vector<float> rangeMm;
   std::vector<float> amplitude;
+  std::vector<float> absorbedNp;
+  float stepMm = 1.0f;
+
+  StraightWay view() const
+  {
+    return { rangeMm.data(), amplitude.data(), absorbedNp.data(), int(rangeMm.size()) - 1, stepMm };
+  }
 };
 
 /// Follows the line's axis by time, and writes where ranges lie on it.
@@ -52,23 +59,27 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   }
   const TraceView& view = setup.view;
   const TraceLine& axis = setup.lines[std::size_t(line)];
-  const float binMm = float(out.binMm);
+  const int steps = out.binCount * flightSteps(float(out.binMm));
+  way.stepMm = float(out.binMm) / float(flightSteps(float(out.binMm)));
   const TargetSpans spans = targetSpans(view, space, axis);
   double range = 0.0;
   double lost = 0.0;
-  for (int b = 0; b <= out.binCount; ++b)
+  double absorbed = 0.0;
+  for (int s = 0; s <= steps; ++s)
   {
     way.rangeMm.push_back(float(range));
     way.amplitude.push_back(float(std::exp(-0.5 * lost)));
-    const FlightBin bin = flightBin(view, space, axis, spans, binMm, b);
-    range += double(bin.rangeMm);
-    lost += double(bin.lostNp);
+    way.absorbedNp.push_back(float(absorbed));
+    const FlightStep step = flightStep(view, space, axis, spans, way.stepMm, s);
+    range += double(step.rangeMm);
+    lost += double(step.lostNp);
+    absorbed += double(step.absorbedNp);
   }
   float* offset = out.depthOffsetMm.data() + std::size_t(line) * std::size_t(out.binCount);
   for (int b = 0; b < out.binCount; ++b)
   {
-    const float wanted = float(b) * binMm;
-    offset[b] = depthOfRange(way.rangeMm.data(), out.binCount, binMm, wanted) - wanted;
+    const float wanted = float(b) * float(out.binMm);
+    offset[b] = depthOfRange(way.rangeMm.data(), steps, way.stepMm, wanted) - wanted;
   }
   return way;
 }
@@ -81,7 +92,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
   const AxisWay way = followAxis(space, setup, index, out);
-  tally.begin(view, line, { way.rangeMm.data(), way.amplitude.data(), out.binCount, float(out.binMm) });
+  tally.begin(view, line, way.view());
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
   tally.setEchoWeight(1.0f);
   LineStart start;
@@ -139,6 +150,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       reverberation.push_back(tally.takeReverberation(last - first));
     }
   }
+  const std::vector<double> absorbed = tally.takeReverberatedNp();
   for (int b = 0; !reverberation.empty() && b < out.binCount; ++b)
   {
     const auto meanOf = [&](int batch) { return reverberation[std::size_t(batch)][std::size_t(b)]; };
@@ -146,6 +158,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     const std::size_t at = std::size_t(index) * std::size_t(out.binCount) + std::size_t(b);
     out.reverberation[at] = bin.mean;
     out.reverberationError[at] = bin.error;
+    out.reverberationNpPerMHz[at] = float(absorbed[std::size_t(b)] / setup.frequencyMHz);
   }
   tally.takeEchoes(echoes);
   writeBins(shared, means, setup.frequencyMHz, index, out);
@@ -202,6 +215,7 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   {
     out.reverberation.clear();
     out.reverberationError.clear();
+    out.reverberationNpPerMHz.clear();
   }
 
   tbb::enumerable_thread_specific<LineTally> tallies([&] {

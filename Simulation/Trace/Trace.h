@@ -44,6 +44,8 @@ struct TracedLines
   /// soft tissue's of 5e-4 /(cm sr) at intensity 1, and its Monte-Carlo standard error (13.2). Empty: nothing does.
   std::vector<float> reverberation;
   std::vector<float> reverberationError;
+  /// The same as attenuationNpPerMHz of what reverberates, boundary echoes included.
+  std::vector<float> reverberationNpPerMHz;
   int echoCount = 0;                                         ///< 0: none, as of Acoustic without reverberation
   double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm
   std::vector<std::complex<float>> boundaryEcho;             ///< lineCount x echoCount
@@ -67,6 +69,7 @@ struct TracedLines
     visitor(self.depthOffsetMm, "DepthOffsetMm", TracedAxis::RangeBins);
     visitor(self.reverberation, "Reverberation", TracedAxis::RangeBins);
     visitor(self.reverberationError, "ReverberationError", TracedAxis::RangeBins);
+    visitor(self.reverberationNpPerMHz, "ReverberationNpPerMHz", TracedAxis::RangeBins);
     visitor(self.boundaryEcho, "BoundaryEcho", TracedAxis::EchoSamples);
   }
 };

@@ -55,6 +55,7 @@ enum BinArray
   depthOffsetArray = pathArrayCount,
   reverberationArray,
   reverberationErrorArray,
+  reverberationNpArray,
   binArrayCount
 };
 

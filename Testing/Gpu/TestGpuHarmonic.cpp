@@ -42,7 +42,7 @@ TEST(GpuHarmonic, ASweepsPicturesAreThoseOfItsPoses)
     {
       Simulator alone(borrowed(&thorax()));
       const ImageInput one{ poses[std::size_t(seen)], input.settings, {}, nullptr };
-      const ScanPicture picture = alone.picture(alone.image(one), one.pose, false);
+      const ScanPicture picture = alone.picture(alone.image(one));
       const std::size_t first = std::size_t(n) * picture.grey.size;
       int differing = 0;
       for (std::size_t p = 0; p < picture.grey.size; ++p)

@@ -65,15 +65,17 @@ void findDepthOffsets(const DoubleInput& input, const kernel::TraceView& view, c
                       const kernel::TraceLine& line, double* offset)
 {
   const double binMm = input.settings.at("radialBinMm");
+  const int each = kernel::flightSteps(binMm);
+  const double stepMm = binMm / each;
   const kernel::TargetSpans spans = kernel::targetSpans(view, space, line);
   std::vector<double> rangeMm{ 0.0 };
-  for (int b = 0; b < input.binCount; ++b)
+  for (int s = 0; s < input.binCount * each; ++s)
   {
-    rangeMm.push_back(rangeMm.back() + kernel::flightBin(view, space, line, spans, binMm, b).rangeMm);
+    rangeMm.push_back(rangeMm.back() + kernel::flightStep(view, space, line, spans, stepMm, s).rangeMm);
   }
   for (int b = 0; b < input.binCount; ++b)
   {
-    offset[b] = kernel::depthOfRange(rangeMm.data(), input.binCount, binMm, b * binMm) - b * binMm;
+    offset[b] = kernel::depthOfRange(rangeMm.data(), input.binCount * each, stepMm, b * binMm) - b * binMm;
   }
 }
 
