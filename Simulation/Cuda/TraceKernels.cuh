@@ -191,11 +191,14 @@ struct LaneSink : PathSink
       const Arrival arrival =
         boundaryArrival(launch.view, launch.wayOf(line), launch.lines[line], beam, path, boundary);
       addEcho<ManyPaths>(launch, line, arrival.rangeMm, arrival.amplitude);
-      const int bin = int(fmaxf(0.0f, arrival.rangeMm) / launch.binMm);
-      if (arrival.amplitude != 0.0f && bin < launch.binCount)
+      for (int side = 0; side < 2 && arrival.amplitude != 0.0f; ++side) // an echo may end a bin and begin the next
       {
-        addReverberated(launch.reverberated + 2 * (std::size_t(line) * launch.binCount + bin),
-                        fabsf(arrival.amplitude) / boundaryPerSpeckle, arrival.absorbedNp, launch.echoScale);
+        const int bin = int(fmaxf(0.0f, arrival.rangeMm / launch.binMm + (side == 0 ? -0.5f : 0.5f)));
+        if (bin < launch.binCount)
+        {
+          addReverberated(launch.reverberated + 2 * (std::size_t(line) * launch.binCount + bin),
+                          fabsf(arrival.amplitude) / boundaryPerSpeckle, arrival.absorbedNp, launch.echoScale);
+        }
       }
     }
   }

@@ -22,15 +22,19 @@ std::vector<float> errorsByRange(const TracedLines& traced)
 {
   const std::size_t bins = std::size_t(traced.binCount);
   const float binMm = float(traced.binMm);
-  const auto at = [&](const std::vector<float>& values, std::size_t line, float position) {
-    if (values.empty())
-    {
-      return 0.0f;
-    }
-    const float inside = std::clamp(position, 0.0f, float(bins - 1));
+  struct Place
+  {
+    std::size_t bin;
+    std::size_t next;
+    float share;
+  };
+  const auto placeOf = [&](std::size_t line, float mm) {
+    const float inside = std::clamp(mm / binMm - 0.5f, 0.0f, float(bins - 1));
     const std::size_t bin = line * bins + std::size_t(inside);
-    const std::size_t next = std::min(bin + 1, line * bins + bins - 1);
-    return values[bin] + (inside - std::floor(inside)) * (values[next] - values[bin]);
+    return Place{ bin, std::min(bin + 1, line * bins + bins - 1), inside - std::floor(inside) };
+  };
+  const auto at = [](const std::vector<float>& values, const Place& p) {
+    return values.empty() ? 0.0f : values[p.bin] + p.share * (values[p.next] - values[p.bin]);
   };
   std::vector<float> samples(2 * traced.intensity.size());
   for (std::size_t line = 0; line < std::size_t(traced.lineCount); ++line)
@@ -40,11 +44,15 @@ std::vector<float> errorsByRange(const TracedLines& traced)
     for (std::size_t s = 0; s < 2 * bins; ++s)
     {
       const float rangeMm = 0.5f * binMm * float(s);
-      const float depth = (map.offsetMm ? map.depthOf(rangeMm) : rangeMm) / binMm - 0.5f;
-      const float range = rangeMm / binMm - 0.5f;
-      samples[2 * line * bins + s] =
-        errorPercent(at(traced.intensity, line, depth), at(traced.standardError, line, depth),
-                     at(traced.reverberation, line, range), at(traced.reverberationError, line, range));
+      const Place depth = placeOf(line, map.offsetMm ? map.depthOf(rangeMm) : rangeMm);
+      const Place range = placeOf(line, rangeMm);
+      const float other = at(traced.reverberation, range);
+      const float otherError = at(traced.reverberationError, range);
+      const auto percent = [&](std::size_t bin) {
+        return errorPercent(traced.intensity[bin], traced.standardError[bin], other, otherError);
+      };
+      const float near = percent(depth.bin);
+      samples[2 * line * bins + s] = near + depth.share * (percent(depth.next) - near);
     }
   }
   return samples;

@@ -220,12 +220,16 @@ void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
   {
     const Arrival arrival = boundaryArrival(*view_, way_, *axis_, line_, path, boundary);
     addEcho(arrival.rangeMm, arrival.amplitude);
-    const auto bin = std::size_t(larger(0.0f, arrival.rangeMm) / binMm_);
-    if (bin < reverberated_.size())
+    // An echo may end a bin and begin the next.
+    for (const float beside : { -0.5f, 0.5f })
     {
-      const double weight = double(std::fabs(arrival.amplitude) / boundaryPerSpeckle);
-      reverberated_[bin] += weight * double(arrival.absorbedNp);
-      reverberatedWeight_[bin] += weight;
+      const auto bin = std::size_t(larger(0.0f, arrival.rangeMm / binMm_ + beside));
+      if (bin < reverberated_.size())
+      {
+        const double weight = double(std::fabs(arrival.amplitude) / boundaryPerSpeckle);
+        reverberated_[bin] += weight * double(arrival.absorbedNp);
+        reverberatedWeight_[bin] += weight;
+      }
     }
   }
 }

@@ -47,6 +47,7 @@ ImageSettings settingsOf(const EchoSettings& echo, double face, int pathsPerLine
   settings.geometry.depthMm = echo.depthMm;
   settings.tracing.pathsPerLine = pathsPerLine;
   settings.tracing.maxCollisions = mostCollisions;
+  settings.tracing.reverberation = true;
   settings.tracing.faceReflection = face;
 
   settings.matchStages();

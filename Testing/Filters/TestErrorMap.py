@@ -68,7 +68,7 @@ class TestErrorMap(unittest.TestCase):
         self.chain.tracer.SetPathsPerLine(200)
         bins = np.arange(60, 340, 20)
         intensities, percents = [], []
-        for seed in range(1, 61):
+        for seed in range(1, 241):
             self.chain.tracer.SetPathSeed(seed)
             intensities.append(traced_lines(self.chain)[0][6, bins])
             self.map.Update()

@@ -76,6 +76,7 @@ TEST(GpuStages, TheIntensityAndItsErrorAgree)
 {
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
+  s.tracing.reverberation = true;
   for (const BeamAperture& aperture : { BeamAperture(), namedAperture() })
   {
     s.echo.aperture = aperture;

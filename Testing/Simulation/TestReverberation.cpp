@@ -35,6 +35,7 @@ std::unique_ptr<Scene> layeredScene(const std::vector<Layer>& layers, double bac
     tissues.back().backscatterPerCmSr = backscatterPerCmSr;
     tissues.back().backscatterExponent = 0.0;
     tissues.back().scattererProbability = 1.0;
+    tissues.back().scattererMean = 1.0;
   }
   const auto layerAt = [&](const Vec3d& p) {
     std::size_t layer = 0;
@@ -62,6 +63,7 @@ TraceSettings settings(int paths)
   s.pathsPerLine = paths;
   s.maxCollisions = 30;
   s.faceReflection = 0.0;
+  s.reverberation = true;
   return s;
 }
 
