@@ -153,6 +153,7 @@ TEST(BoundaryHits, LieOnASphere)
   }
   TraceSettings s = plainSettings();
   s.depthMm = 75.0;
+  s.reverberation = true;
   int count = 0;
   double offset = 0.0;
   double degrees = 0.0;

@@ -24,6 +24,7 @@ TEST(TraceError, StandardErrorIsTheSpreadOverThirtySeeds)
     for (const int paths : { 100, 256 })
     {
       TraceSettings s = busySettings();
+      s.reverberation = true; // branches are drawn then
       s.sampling = sampling;
       s.pathsPerLine = paths;
       std::vector<double> sum;
@@ -63,6 +64,7 @@ TEST(TraceError, LowDiscrepancyNeedsFewerPaths)
   for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
   {
     TraceSettings s = busySettings();
+    s.reverberation = true; // branches are drawn then
     s.pathsPerLine = 1024;
     s.sampling = sampling;
     const TracedLines traced = trace(*scene, lines, s);
@@ -132,7 +134,10 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
   const PathSegment segment{ Vec3f(0.1f, 0.0f, 1.3f), Vec3f(0.0f, 0.0f, 1.0f), 20.0f, 0.3f, 0.01f, 0.0f };
   const auto leave = [&](int count, std::vector<std::complex<float>>& echoes) {
     LineTally tally(30, 1.0, binSumCount, 2000, 0.0154, 1.6);
-    tally.start(line, 100.0f);
+    TraceView view;
+    view.model = InterfaceModel::Amadou2024; // whose boundaries echo by paths
+    view.coherenceMm = 100.0f;
+    tally.begin(view, line, {});
     tally.setEchoWeight(1.0f / float(count));
     for (int i = 0; i < count; ++i)
     {
