@@ -168,8 +168,8 @@ SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ra
 }
 
 /// The chance with which a path is reflected. Reverberation is heard by its amplitude, so weak boundaries reflect more
-/// paths than their R, each of which counts less: a quarter of |r|, so that what a path stands for is at most four times
-/// what there is; and |r| once a path has been reflected, for then nothing but reverberation is left to it.
+/// paths than their R, each of which counts less: a quarter of |r|, so that what a path stands for is at most four
+/// times what there is; and |r| once a path has been reflected, for then nothing but reverberation is left to it.
 SONO_HD inline float reflectionChance(const Reflection& r, bool reverberates, bool wasReflected)
 {
   if (r.total)

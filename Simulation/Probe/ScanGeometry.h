@@ -207,8 +207,8 @@ struct ProbeSettings : BeamAperture
   double centreFrequencyMHz = 2.5;
   double fractionalBandwidth = 0.6; ///< at -6 dB
   ImagingMode imagingMode = ImagingMode::Fundamental;
-  /// Of the harmonic alone. 1 MPa is chosen: a P4-2 that sends 1.8 MHz through 0.5 dB/(cm MHz) makes 1.5 MPa at its focus
-  /// of it, a mechanical index of 1.1.
+  /// Of the harmonic alone. 1 MPa is chosen: a P4-2 that sends 1.8 MHz through 0.5 dB/(cm MHz) makes 1.5 MPa at its
+  /// focus of it, a mechanical index of 1.1.
   double facePressureKPa = 1000.0;
 
   template<class Self, class Visitor>

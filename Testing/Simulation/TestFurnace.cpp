@@ -31,7 +31,7 @@ struct LastPiece : PathSink
 struct Balance
 {
   double total = 0.0;
-  double error = 0.0; ///< of the total: paths stand for more or less than one
+  double error = 0.0;   ///< of the total: paths stand for more or less than one
   double back = 0.0;    ///< through the plane of the transducer
   double border = 0.0;  ///< through the rest of the border
   double late = 0.0;    ///< still on the way when the recording ends
