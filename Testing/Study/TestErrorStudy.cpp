@@ -29,13 +29,12 @@ double errorAgainstExact(const BenchScene& stack, int paths)
   return intensityError(makeBenchImage(stack, tracing, Precision::Single), exactStackImage(stack));
 }
 
-TEST(ErrorStudy, TheStackConvergesToItsFiniteSum)
+TEST(ErrorStudy, TheStackLeavesNothingToChance)
 {
+  // All paths are transmitted: one is as good as many.
   const BenchScene stack = makeBenchScene("stack");
-  const double many = errorAgainstExact(stack, 40000);
-  // A hundred times as many paths: a tenth of the error.
-  EXPECT_NEAR(errorAgainstExact(stack, 400) / many, 10.0, 4.0);
-  EXPECT_LT(many, 1e-3);
+  EXPECT_LT(errorAgainstExact(stack, 1), 1e-5);
+  EXPECT_LT(errorAgainstExact(stack, 4000), 1e-5);
   // The energy that enters is the energy of the first bins.
   EXPECT_NEAR(stackLine(stack.tracing).intensity.front(), 1.0, 0.05);
 }
@@ -184,8 +183,10 @@ TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
         tracing.pathsPerLine = 100;
         const Difference d = singleAgainstDouble(bench, tracing);
         EXPECT_TRUE(d.finite) << with;
-        EXPECT_GT(d.noise, 1e-4) << with;
-        EXPECT_LT(d.of.intensity, 0.02 * d.noise) << with;
+        // Smooth boundaries leave nothing to chance in Acoustic: there its own digits are what counts.
+        const bool noisy = name == "rib" || model == InterfaceModel::Amadou2024;
+        EXPECT_EQ(d.noise > 1e-4, noisy) << with;
+        EXPECT_LT(d.of.intensity, noisy ? 0.02 * d.noise : 1e-6) << with;
         EXPECT_LT(d.of.rf, 1e-3) << with;
         EXPECT_LT(d.of.decibels, 0.01) << with;
         EXPECT_GT(d.of.intensity, 0.0) << with; // two precisions indeed
