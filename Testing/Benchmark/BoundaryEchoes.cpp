@@ -2,6 +2,8 @@
 
 #include "Stage.h"
 
+#include "Kernel/TimeOfFlight.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -103,12 +105,28 @@ std::map<std::pair<int, int>, std::vector<Crossing>> crossings(const Scene& scen
   return found;
 }
 
-double medianEnvelopeDb(const RfLines& rf, const std::vector<float>& envelope, const std::vector<Crossing>& places)
+/// Where a depth is shown: the offset there hardly changes from one range to the next.
+double rangeOf(const TracedLines& traced, const Crossing& c)
+{
+  const float* offsetMm = traced.depthOffsetMm.data() + std::size_t(c.line) * std::size_t(traced.binCount);
+  const RangeMap map{ offsetMm, traced.binCount, float(1.0 / traced.binMm) };
+  double rangeMm = c.depthMm;
+  for (int i = 0; i < 4; ++i)
+  {
+    rangeMm += c.depthMm - double(map.depthOf(float(rangeMm)));
+  }
+  return rangeMm;
+}
+
+double medianEnvelopeDb(const TracedLines& traced, const RfLines& rf, const std::vector<float>& envelope,
+                        const std::vector<Crossing>& places)
 {
   std::vector<double> levels;
   for (const Crossing& c : places)
   {
-    for (int s = int(std::ceil((c.depthMm - besideMm) / rf.sampleMm)); s * rf.sampleMm < c.depthMm + besideMm; ++s)
+    const double rangeMm = rangeOf(traced, c);
+    const int last = std::min(rf.sampleCount - 1, int((rangeMm + besideMm) / rf.sampleMm));
+    for (int s = int(std::ceil((rangeMm - besideMm) / rf.sampleMm)); s <= last; ++s)
     {
       const float e = envelope[std::size_t(c.line) * std::size_t(rf.sampleCount) + std::size_t(s)];
       levels.push_back(20.0 * std::log10(std::max(double(e), 1e-15)));
@@ -137,11 +155,12 @@ std::vector<BoundaryDrift> boundaryDrifts(const Scene& scene, const std::vector<
   for (const int paths : pathsPerLine)
   {
     tracing.pathsPerLine = paths;
-    const RfLines rf = formRf(scene, lines, trace(scene, lines, tracing), echo);
+    const TracedLines traced = trace(scene, lines, tracing);
+    const RfLines rf = formRf(scene, lines, traced, echo);
     const std::vector<float> envelope = rf.envelope();
     for (std::size_t b = 0; b < drifts.size(); ++b)
     {
-      drifts[b].medianDb.push_back(medianEnvelopeDb(rf, envelope, places[b]));
+      drifts[b].medianDb.push_back(medianEnvelopeDb(traced, rf, envelope, places[b]));
     }
   }
   for (BoundaryDrift& drift : drifts)

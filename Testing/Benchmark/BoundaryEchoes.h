@@ -19,8 +19,8 @@ struct BoundaryDrift
 };
 
 /// For each pair of tissues that touch along the lines at no more than 25 degrees from the perpendicular, in at least
-/// `leastCrossings` places: the median of the envelope within 0.5 mm of these places, for each number of paths.
-/// Coupling has no boundaries.
+/// `leastCrossings` places: the median of the envelope within 0.5 mm of where these places are shown, for each number
+/// of paths. Coupling has no boundaries.
 std::vector<BoundaryDrift> boundaryDrifts(const Scene& scene, const std::vector<ScanLine>& lines, TraceSettings tracing,
                                           const EchoSettings& echo, const std::vector<int>& pathsPerLine,
                                           int leastCrossings);
