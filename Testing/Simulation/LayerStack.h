@@ -95,7 +95,7 @@ struct Arrival
   double amplitude;        ///< with its sign, as if nothing were absorbed
   double exponentNpPerMHz; ///< absorbed on its way
   bool primary;            ///< a boundary's own echo
-  std::int64_t routes;     ///< orders of the same pieces, which arrive at once
+  double routes;           ///< orders of the same pieces, which arrive at once
 
   double at(double frequencyMHz) const { return amplitude * std::exp(-frequencyMHz * exponentNpPerMHz); }
 };
@@ -120,7 +120,7 @@ inline std::vector<Arrival> everyArrival(const LayerStack& stack, double frequen
   struct Ways
   {
     double amplitude = 0.0;
-    std::int64_t count = 0;
+    double count = 0.0; ///< more than fit into an integer
   };
   std::vector<Arrival> arrivals;
   const auto add = [](std::map<Place, Ways>& places, const Place& place, const Ways& from, double factor) {
@@ -128,7 +128,7 @@ inline std::vector<Arrival> everyArrival(const LayerStack& stack, double frequen
     to.amplitude += from.amplitude * factor;
     to.count += from.count;
   };
-  std::map<Place, Ways> here{ { { std::vector<int>(std::size_t(stack.boundaries()), 0), 0, true }, { 1.0, 1 } } };
+  std::map<Place, Ways> here{ { { std::vector<int>(std::size_t(stack.boundaries()), 0), 0, true }, { 1.0, 1.0 } } };
   while (!here.empty())
   {
     std::map<Place, Ways> next;
