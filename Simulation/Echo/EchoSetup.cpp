@@ -75,10 +75,11 @@ const EchoSettings& checked(const EchoSources& sources, const std::vector<ScanLi
   return settings;
 }
 
+/// Nothing where it is known that nothing reverberates.
 ReverberationSpeckle speckleOf(const EchoSettings& settings, InterfaceModel model, const BeamModel& beams,
-                               const std::vector<ScanLine>& lines)
+                               const std::vector<ScanLine>& lines, const TracedLines* traced)
 {
-  if (model != InterfaceModel::Acoustic)
+  if (model != InterfaceModel::Acoustic || (traced && traced->reverberation.empty()))
   {
     return {};
   }
@@ -95,7 +96,8 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   , model(sources.traced ? sources.traced->model : sources.model)
   , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
   , beams(settings, model)
-  , finisher(settings, model, sources.traced, level ? &*level : nullptr, speckleOf(settings, model, beams, lines))
+  , finisher(settings, model, sources.traced, level ? &*level : nullptr,
+             speckleOf(settings, model, beams, lines, sources.traced))
 {
   const bool isAcoustic = model == InterfaceModel::Acoustic;
   if (sources.scene && isAcoustic)

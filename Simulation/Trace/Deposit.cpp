@@ -185,19 +185,18 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
 void LineTally::addReverberation(const PathSegment& s)
 {
   const BeamSegment g = tissueEcho(way_, *axis_, line_, s);
-  const auto [low, high] = depthSpan(g, s.length, binMm_ * float(binCount_));
-  if (!(high > low) || g.intensity == 0.0f)
+  const DepthSpan span = depthSpan(g, s.length, binMm_ * float(binCount_));
+  if (!(span.high > span.low) || g.intensity == 0.0f)
   {
     return;
   }
   const float inverseMu = 1.0f / g.mu;
-  const int last = binCount_ - 1;
-  const int binHigh = std::min(int(high / binMm_), last);
-  for (int b = std::min(int(low / binMm_), last); b <= binHigh; ++b)
+  const BinSpan covered = binSpan(span, binMm_);
+  for (int b = covered.first; b <= covered.last; ++b)
   {
-    const float from = std::max(low, float(b) * binMm_);
-    const float to = std::min(high, float(b + 1) * binMm_);
-    const double level = double(meanOver(g, from, to, inverseMu) * larger(0.0f, to - from) / binMm_);
+    const float from = larger(span.low, float(b) * binMm_);
+    const float to = smaller(span.high, float(b + 1) * binMm_);
+    const double level = double(meanOver(g, from, to, inverseMu) * (to - from) / binMm_);
     reverberation_[std::size_t(b)] += level;
     reverberated_[std::size_t(b)] += level * double(g.absorbed + g.decay * (0.5f * (from + to) - g.r0) * inverseMu);
     reverberatedWeight_[std::size_t(b)] += level;
