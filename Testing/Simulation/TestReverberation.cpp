@@ -1,4 +1,4 @@
-#include "TestScenes.h"
+#include "LayeredScene.h"
 
 #include "Echo/FormRf.h"
 #include "Trace/Trace.h"
@@ -16,36 +16,16 @@ using namespace sono::test;
 
 namespace {
 
-struct Layer
+/// Smooth layers.
+std::unique_ptr<Scene> smoothLayers(const std::vector<Layer>& layers, double backscatterPerCmSr = 0.0)
 {
-  double endMm;
-  double impedance;
-  double speed;
-  double attenuation;
-};
-
-std::unique_ptr<Scene> layeredScene(const std::vector<Layer>& layers, double backscatterPerCmSr = 0.0)
-{
-  std::vector<Tissue> tissues;
-  for (std::size_t i = 0; i < layers.size(); ++i)
-  {
-    tissues.push_back(
-      makeTissue("layer" + std::to_string(i), layers[i].impedance, layers[i].speed, layers[i].attenuation));
-    tissues.back().roughnessMm = 0.0;
-    tissues.back().backscatterPerCmSr = backscatterPerCmSr;
-    tissues.back().backscatterExponent = 0.0;
-    tissues.back().scattererProbability = 1.0;
-    tissues.back().scattererMean = 1.0;
-  }
-  const auto layerAt = [&](const Vec3d& p) {
-    std::size_t layer = 0;
-    while (layer + 1 < layers.size() && p.z > layers[layer].endMm)
-    {
-      ++layer;
-    }
-    return int(layer);
-  };
-  return makeScene({ 40, 40, int(std::lround(2.0 * layers.back().endMm)) }, Vec3d(0.5), tissues, layerAt);
+  return layeredScene(layers, [=](Tissue& tissue) {
+    tissue.roughnessMm = 0.0;
+    tissue.backscatterPerCmSr = backscatterPerCmSr;
+    tissue.backscatterExponent = 0.0;
+    tissue.scattererProbability = 1.0;
+    tissue.scattererMean = 1.0;
+  });
 }
 
 const std::vector<ScanLine>& line()
@@ -93,7 +73,7 @@ double decibels(double amplitude)
 
 TEST(Reverberation, FourLayersEchoAsTheExactSumOverAllWays)
 {
-  const auto scene = layeredScene({ { 20.0, 1.50, 1480.0, 0.0 },
+  const auto scene = smoothLayers({ { 20.0, 1.50, 1480.0, 0.0 },
                                     { 32.0, 1.90, 1650.0, 0.0 },
                                     { 50.0, 1.30, 1450.0, 0.0 },
                                     { 90.0, 2.40, 1800.0, 0.0 } });
@@ -117,7 +97,7 @@ TEST(Reverberation, FourLayersEchoAsTheExactSumOverAllWays)
 TEST(Reverberation, ALinesOfAPlateAndTheFace)
 {
   // Gas behind 20 mm of tissue: at n d, r^n r_t^(n - 1) with n times the attenuation.
-  const auto scene = layeredScene({ { 20.0, 1.6, 1540.0, 0.5 }, { 60.0, 0.0004, 340.0, 0.0 } });
+  const auto scene = smoothLayers({ { 20.0, 1.6, 1540.0, 0.5 }, { 60.0, 0.0004, 340.0, 0.0 } });
   TraceSettings s = settings(1000);
   s.faceReflection = 0.5;
   const TracedLines traced = trace(*scene, line(), s);
@@ -133,7 +113,7 @@ TEST(Reverberation, ALinesOfAPlateAndTheFace)
 TEST(Reverberation, TissueIsRepeatedBehindTheMirror)
 {
   // Lossless tissue of 5e-4 /(cm sr) in front of gas: its own way d + (d - z), and with a face straight back, 2 r r_t.
-  const auto scene = layeredScene({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
+  const auto scene = smoothLayers({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
   TraceSettings s = settings(2000);
   s.faceReflection = 0.4;
   const TracedLines traced = trace(*scene, line(), s);
@@ -148,7 +128,7 @@ TEST(Reverberation, TissueIsRepeatedBehindTheMirror)
 TEST(Reverberation, SpeckleHasTheLevelOfItsTissue)
 {
   // What the gas mirrors is as strong as the tissue itself.
-  const auto scene = layeredScene({ { 40.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
+  const auto scene = smoothLayers({ { 40.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
   TraceSettings s = settings(500);
   s.depthMm = 80.0;
   EchoSettings e;
@@ -178,7 +158,7 @@ TEST(Reverberation, SpeckleHasTheLevelOfItsTissue)
 
 TEST(Reverberation, OffPathsEndWhereTheyAreReflected)
 {
-  const auto scene = layeredScene({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 3.0, 1540.0, 0.0 } });
+  const auto scene = smoothLayers({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 3.0, 1540.0, 0.0 } });
   TraceSettings s = settings(200);
   s.reverberation = false;
   const TracedLines traced = trace(*scene, line(), s);
@@ -196,7 +176,7 @@ TEST(Reverberation, OffPathsEndWhereTheyAreReflected)
 
 TEST(Reverberation, PerfectMirrorsEndByTheDepth)
 {
-  const auto scene = layeredScene({ { 2.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } });
+  const auto scene = smoothLayers({ { 2.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } });
   TraceSettings s = settings(100);
   s.faceReflection = 1.0;
   s.maxCollisions = 1000;

@@ -1,5 +1,5 @@
+#include "LayeredScene.h"
 #include "TargetScenes.h"
-#include "TestScenes.h"
 
 #include "Echo/FormRf.h"
 #include "Image/ErrorMap.h"
@@ -22,39 +22,11 @@ namespace {
 
 constexpr double assumedSpeed = 1540.0;
 
-struct Layer
-{
-  double endMm;
-  double impedance;
-  double speed;
-  double attenuation;
-};
-
 /// Boundaries of shared/PHYSICS.md 13 at 20, 32 and 50 mm.
 const std::vector<Layer> stack{ { 20.0, 1.50, 1480.0, 0.3 },
                                 { 32.0, 1.90, 1650.0, 0.8 },
                                 { 50.0, 1.30, 1450.0, 0.6 },
                                 { 90.0, 2.40, 1800.0, 1.0 } };
-
-/// Layers across z.
-std::unique_ptr<Scene> layeredScene(const std::vector<Layer>& layers)
-{
-  std::vector<Tissue> tissues;
-  for (std::size_t i = 0; i < layers.size(); ++i)
-  {
-    tissues.push_back(
-      makeTissue("layer" + std::to_string(i), layers[i].impedance, layers[i].speed, layers[i].attenuation));
-  }
-  const auto layerAt = [&](const Vec3d& p) {
-    std::size_t layer = 0;
-    while (layer + 1 < layers.size() && p.z > layers[layer].endMm)
-    {
-      ++layer;
-    }
-    return int(layer);
-  };
-  return makeScene({ 40, 40, int(std::lround(2.0 * layers.back().endMm)) }, Vec3d(0.5), tissues, layerAt);
-}
 
 /// Where a depth is shown, in closed form.
 double shownAt(const std::vector<Layer>& layers, double depthMm)
