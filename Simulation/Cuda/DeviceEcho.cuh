@@ -79,6 +79,7 @@ private:
     DeviceArray<BeamPiece> pieces; ///< of each chunk
   };
   void uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
+  void drawSpeckle(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& traffic);
   static void uploadFieldSight(const std::optional<SightJob>& job, Sight& sight, cudaStream_t stream, Traffic& traffic);
   void uploadSight(const std::optional<SightJob>& job, const std::vector<Beam>& beams, float brickMm, Sight& sight,
@@ -109,9 +110,10 @@ private:
   DeviceArray<float2> carrier_;
   double carrierRadPerSample_ = 0.0; ///< of that carrier
   DeviceArray<float> level_;
-  int linesPerImage_ = 1;
+  int linesPerImage_ = 0;
   ReverberationNoise noise_;
-  DeviceArray<float> reverberationRms_;
+  std::vector<float> reverberationRms_;
+  DeviceArray<float2> reverberationSpeckle_; ///< of the two: linesPerImage x rangeCount
   std::optional<Downshift> downshift_;
   BeamFieldView field_{};
   SharedVector<float> fieldSource_;

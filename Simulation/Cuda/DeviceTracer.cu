@@ -72,6 +72,11 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
   kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
   const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
+  if (launch.reverberation)
+  {
+    sumSpread<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch);
+    finishReverberation<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, lines);
+  }
   check(cudaGetLastError(), "tracing");
 }
 
@@ -154,10 +159,17 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   axisRange_.resize(rangeIsTime_ ? lineCount * flights : 0);
   axisAmplitude_.resize(axisRange_.size());
   axisAbsorbed_.resize(axisRange_.size());
-  reverberated_.resize(reverberates_ ? 2 * lineCount * bins : 0);
-  reverberated_.clear(stream);
-  reverberation_.resize(reverberates_ ? lineCount * std::size_t(batches) * bins : 0);
+  const std::size_t reverberant = reverberates_ ? lineCount * bins : 0;
+  absorbed_.resize(4 * reverberant);
+  absorbed_.clear(stream);
+  const std::size_t reverberations =
+    reverberates_ ? reverberationSumCount * std::size_t(batches) * std::size_t(TissueBins(binCount_, binMm_).count) : 0;
+  reverberation_.resize(lineCount * reverberations);
   reverberation_.clear(stream);
+  spread_.resize(2 * reverberant);
+  ownLevel_.resize(reverberant);
+  straightPower_.resize(reverberant);
+  cellMm_.resize(reverberant);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echoRest_.resize(manyPaths ? echo_.size() : 0);
   segments_.resize(1);
@@ -208,9 +220,15 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      axisAbsorbed_.data() + (rangeIsTime_ ? skip * flights : 0),
                      int(flights) - 1,
                      binMm_ / float(flightSteps(binMm_)),
-                     reverberates_ ? reverberated_.data() + 2 * skip * bins : nullptr,
-                     reverberates_ ? arrays_[reverberationNpArray].data() + skip * bins : nullptr,
-                     reverberates_ ? reverberation_.data() + skip * std::size_t(batches) * bins : nullptr,
+                     absorbed_.data() + (reverberates_ ? 2 * skip * bins : 0),
+                     absorbed_.data() + (reverberates_ ? 2 * (lineCount + skip) * bins : 0),
+                     arrays_[reverberationNpArray].data() + (reverberates_ ? skip * bins : 0),
+                     reverberates_ ? reverberation_.data() + skip * reverberations : nullptr,
+                     cellMm_.data() + (reverberates_ ? skip * bins : 0),
+                     ownLevel_.data() + (reverberates_ ? skip * bins : 0),
+                     spread_.data() + (reverberates_ ? skip * bins : 0),
+                     spread_.data() + (reverberates_ ? (lineCount + skip) * bins : 0),
+                     straightPower_.data() + (reverberates_ ? skip * bins : 0),
                      reverberates_ ? arrays_[reverberationArray].data() + skip * bins : nullptr,
                      reverberates_ ? arrays_[reverberationErrorArray].data() + skip * bins : nullptr };
       for (std::size_t array = 0; array < pathArrayCount; ++array)

@@ -4,6 +4,7 @@
 #include "Cuda/ImageJob.h"
 #include "Kernel/TracePath.h"
 #include "Trace/TracedBin.h"
+#include "Trace/TracedReverberation.h"
 
 #include <array>
 
@@ -52,8 +53,10 @@ private:
   DeviceArray<BinSums<float>> shared_;
   std::array<DeviceArray<float>, binArrayCount> arrays_;
   DeviceArray<float> axisRange_, axisAmplitude_, axisAbsorbed_;
-  DeviceArray<EchoSum> reverberated_;
+  DeviceArray<EchoSum> absorbed_;
   DeviceArray<EchoSum> reverberation_;
+  DeviceArray<SpreadSums> spread_;
+  DeviceArray<float> straightPower_, ownLevel_, cellMm_;
   DeviceArray<EchoSum> echo_;
   DeviceArray<EchoSum> echoRest_;
   DeviceArray<std::uint64_t> segments_;

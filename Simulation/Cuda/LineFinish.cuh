@@ -17,9 +17,8 @@ struct FinishLaunch
   const EchoSum* surfaces; // (re, im) of surfaces, intensity included; or null
   float surfacePerUnit;
   TracedOnDevice traced;
-  const float* level; // of boundaries at each sample, or null
-  ReverberationNoise noise;
-  const float* reverberationRms; // of each sample of range
+  const float* level;    // of boundaries at each sample, or null
+  const float2* speckle; // that reverberates, at level 1: linesPerImage x rangeCount
   int linesPerImage;
   Downshift downshift;
   const float* turns; // lines x rangeCount, of the downshift's phase; null: the frequency stays
@@ -215,8 +214,8 @@ __device__ inline float2 reflectedAt(const FinishLaunch& launch, int line, int s
   const float strength = levelAtRange(bins, traced.binCount, float(launch.binsPerSample), s);
   if (strength > faintestReverberation)
   {
-    const Vec2f noise = strength * launch.reverberationRms[s] * launch.noise.at(line % launch.linesPerImage, s);
-    v = { v.x + noise.x, v.y + noise.y };
+    const float2 noise = launch.speckle[std::size_t(line % launch.linesPerImage) * launch.rangeCount + s];
+    v = { v.x + strength * noise.x, v.y + strength * noise.y };
   }
   if (traced.attenuation && (v.x != 0.0f || v.y != 0.0f))
   {

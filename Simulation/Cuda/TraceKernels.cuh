@@ -4,6 +4,7 @@
 #include "Cuda/WarpDeposit.cuh"
 #include "Kernel/TimeOfFlight.h"
 #include "Trace/PathBatches.h"
+#include "Trace/TracedReverberation.h"
 
 #include <cuda_runtime.h>
 
@@ -57,9 +58,16 @@ struct TraceLaunch
   float* axisAbsorbed;
   int flightCount; // steps of the axis, and their length
   float flightMm;
-  EchoSum* reverberated;    // lines x bins x (weight, weight times Np), as `reverberation`
-  float* reverberationNp;   // lines x bins
-  EchoSum* reverberation;   // lines x batches x bins, amplitudes times echoScale; null: nothing reverberates
+  EchoSum* absorbedByTissue;     // lines x bins x (weight, weight times Np), of TissueBins
+  EchoSum* absorbedToBoundaries; // the same
+  float* reverberationNp;        // lines x bins
+  EchoSum*
+    reverberation;    // lines x batches x TissueBins x ReverberationSum, times echoScale; null: nothing reverberates
+  float* cellMm;      // lines x bins: of TissueBins, see resolutionCell
+  float* ownLevel;    // lines x bins
+  SpreadSums* spread; // lines x bins: of each bin, then of those around
+  SpreadSums* spreadAround;
+  float* straightPower;     // lines x bins
   float* reverberationMean; // lines x bins
   float* reverberationError;
 
@@ -67,6 +75,12 @@ struct TraceLaunch
   {
     const std::size_t first = std::size_t(line) * (flightCount + 1);
     return { axisRange + first, axisAmplitude + first, axisAbsorbed + first, flightCount, flightMm };
+  }
+  __device__ TissueBins tissueBins() const { return TissueBins(binCount, binMm); }
+  __device__ EchoSum* batchReverberation(int line, int batch) const
+  {
+    return reverberation +
+           (std::size_t(line) * batches + std::size_t(batch)) * reverberationSumCount * tissueBins().count;
   }
   __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
 };
@@ -122,9 +136,10 @@ struct CommonSink : PathSink
   __device__ void segment(const PathSegment& piece)
   {
     ++segments;
-    depositByWarp(stage(beamSegment(launch.lines[line], piece, launch.view.coherenceMm), piece.length, launch.binMm,
-                        launch.binCount, false),
-                  launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
+    StagedSegment staged;
+    stage(beamSegment(launch.lines[line], piece, launch.view.coherenceMm), piece.length, launch.binMm, launch.binCount,
+          staged);
+    depositByWarp(staged, launch.binMm, lane, launch.shared + std::size_t(line) * launch.binCount);
   }
   __device__ void echo(const Vec3f& point, float amplitude)
   {
@@ -175,10 +190,14 @@ struct LaneSink : PathSink
   __device__ void segment(const PathSegment& piece)
   {
     ++segments;
-    const bool reverberates = piece.reflections > 0 && launch.view.model == InterfaceModel::Acoustic;
-    const BeamSegment seen = reverberates ? tissueEcho(launch.wayOf(line), launch.lines[line], beam, piece)
-                                          : beamSegment(beam, piece, launch.view.coherenceMm);
-    staged = stage(seen, piece.length, launch.binMm, launch.binCount, reverberates);
+    if (piece.reflections > 0 && launch.view.model == InterfaceModel::Acoustic)
+    {
+      stage(tissueEcho(launch.wayOf(line), launch.lines[line], beam, piece), piece.length, launch.tissueBins(), staged);
+    }
+    else
+    {
+      stage(beamSegment(beam, piece, launch.view.coherenceMm), piece.length, launch.binMm, launch.binCount, staged);
+    }
   }
   __device__ void echo(const Vec3f& point, float amplitude)
   {
@@ -196,8 +215,8 @@ struct LaneSink : PathSink
         const int bin = int(fmaxf(0.0f, arrival.rangeMm / launch.binMm + (side == 0 ? -0.5f : 0.5f)));
         if (bin < launch.binCount)
         {
-          addReverberated(launch.reverberated + 2 * (std::size_t(line) * launch.binCount + bin),
-                          fabsf(arrival.amplitude) / boundaryPerSpeckle, arrival.absorbedNp, launch.echoScale);
+          addAbsorbed(launch.absorbedToBoundaries + 2 * (std::size_t(line) * launch.binCount + bin),
+                      launch.echoScale * fabsf(arrival.amplitude) / boundaryPerSpeckle, arrival.absorbedNp);
         }
       }
     }
@@ -277,10 +296,10 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
       launch.sums[warpRow + b] = {};
     }
   }
-  EchoSum* reverberation =
-    launch.reverberation + (std::size_t(line) * launch.batches + std::size_t(batch)) * launch.binCount;
-  EchoSum* reverberated = launch.reverberated + 2 * std::size_t(line) * launch.binCount;
   const std::uint32_t lineKey = launch.keyOf(line);
+  const std::size_t lineBins = std::size_t(line) * launch.binCount;
+  const ReverberationRow reverberation{ launch.batchReverberation(line, batch), launch.absorbedByTissue + 2 * lineBins,
+                                        launch.cellMm + lineBins, lineKey, launch.tissueBins() };
   for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
     scrambles[b] = makeScramble(launch.view, lineKey, std::uint32_t(batch), b);
@@ -315,18 +334,12 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     __syncwarp();
     unsigned waiting = __ballot_sync(allLanes, sink.holdsSegment());
     untilFold -= __popc(waiting);
-    for (; waiting; waiting &= waiting - 1)
+    const unsigned reverberating = waiting & __ballot_sync(allLanes, staged[lane].reverberates != 0u);
+    for (waiting &= ~reverberating; waiting; waiting &= waiting - 1)
     {
-      const StagedSegment& segment = staged[__ffs(int(waiting)) - 1];
-      if (segment.reverberates)
-      {
-        reverberateByWarp(segment, launch.binMm, launch.echoScale, lane, reverberation, reverberated);
-      }
-      else
-      {
-        depositByWarp(segment, launch.binMm, lane, bins);
-      }
+      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
     }
+    reverberateByWarp(staged, reverberating, reverberation, launch.echoScale, lane);
     if (ManyPaths && untilFold <= 0)
     {
       foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
@@ -399,18 +412,85 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   }
   if (launch.reverberation)
   {
+    const TissueBins tissueBins = launch.tissueBins();
+    const int tissueBin = b / tissueBins.each;
     const auto meanReverberation = [&](int batch) {
-      const EchoSum sum = launch.reverberation[(std::size_t(line) * launch.batches + batch) * launch.binCount + b];
+      const EchoSum* sums = launch.batchReverberation(line, batch) + reverberationSumCount * tissueBin;
       const PathRange range = batchRange(launch.paths, launch.batches, batch);
-      return double((long long)(sum)) / (double(launch.echoScale) * double(range.last - range.first));
+      const double perUnit = 1.0 / (double(launch.echoScale) * double(range.last - range.first));
+      ReverberationSums means;
+      for (int sum = 0; sum < reverberationSumCount; ++sum)
+      {
+        means.of[sum] = double((long long)(sums[sum])) * perUnit;
+      }
+      return means;
     };
-    const MeanAndError all = meanAndError(hasPaths ? launch.batches : 0, meanReverberation);
-    launch.reverberationMean[at] = all.mean;
-    launch.reverberationError[at] = all.error;
-    const double weight = double((long long)(launch.reverberated[2 * at]));
-    const double taken = double((long long)(launch.reverberated[2 * at + 1]));
-    launch.reverberationNp[at] = weight > 0.0 ? float(taken / (weight * launch.frequencyMHz)) : 0.0f;
+    const ReverberationMeans means = reverberationMeans(hasPaths ? launch.batches : 0, meanReverberation);
+    launch.ownLevel[at] = means.ownLevel;
+    launch.straightPower[at] = means.straightPower;
+    launch.spread[at] = { means.cellPower, means.ownLevel * means.ownLevel };
+    launch.reverberationError[at] = means.error;
+    const auto absorbed = [&](const EchoSum* sums, int bin) {
+      const EchoSum* of = sums + 2 * (std::size_t(line) * launch.binCount + bin);
+      return AbsorbedSums{ double((long long)(of[0])), double((long long)(of[1])) };
+    };
+    const float takenNp = absorbedNp(absorbed(launch.absorbedByTissue, tissueBins.absorptionBin(tissueBin)),
+                                     absorbed(launch.absorbedToBoundaries, b));
+    launch.reverberationNp[at] = float(double(takenNp) / launch.frequencyMHz);
   }
+}
+
+/// What is known of spreading, of the bins around each.
+template<class Targets>
+__global__ void sumSpread(TraceLaunch<Targets> launch)
+{
+  const int b = blockIdx.x * blockDim.x + threadIdx.x;
+  if (b >= launch.binCount)
+  {
+    return;
+  }
+  const std::size_t first = std::size_t(blockIdx.y) * launch.binCount;
+  const int reach = spreadBins(launch.binMm);
+  SpreadSums around;
+  for (int n = max(0, b - reach); n <= min(launch.binCount - 1, b + reach); ++n)
+  {
+    around.cellPower += launch.spread[first + n].cellPower;
+    around.power += launch.spread[first + n].power;
+  }
+  launch.spreadAround[first + b] = around;
+}
+
+/// The levels of what reverberates, of a line's bins and of the lines beside it in its image, as far as the launch has
+/// them.
+template<class Targets>
+__global__ void finishReverberation(TraceLaunch<Targets> launch, int lines)
+{
+  const int b = blockIdx.x * blockDim.x + threadIdx.x;
+  const int line = blockIdx.y;
+  if (b >= launch.binCount)
+  {
+    return;
+  }
+  const int inImage = (launch.firstInImage + line) % launch.linesPerImage;
+  const int firstOfImage = max(0, line - inImage);
+  const int lastOfImage = min(lines, line - inImage + launch.linesPerImage) - 1;
+  SpreadSums around;
+  for (int l = max(firstOfImage, line - spreadLines); l <= min(lastOfImage, line + spreadLines); ++l)
+  {
+    const SpreadSums& sums = launch.spreadAround[std::size_t(l) * launch.binCount + b];
+    around.cellPower += sums.cellPower;
+    around.power += sums.power;
+  }
+  const int from = max(firstOfImage, line - straightLines);
+  const int to = min(lastOfImage, line + straightLines);
+  float straight = 0.0f;
+  for (int l = from; l <= to; ++l)
+  {
+    straight += launch.straightPower[std::size_t(l) * launch.binCount + b] / float(to - from + 1);
+  }
+  const float unspread = resolutionCell(launch.view, launch.lines[line], (float(b) + 0.5f) * launch.binMm).unspread;
+  launch.reverberationMean[std::size_t(line) * launch.binCount + b] =
+    reverberationLevel(around, unspread, launch.ownLevel[std::size_t(line) * launch.binCount + b], straight);
 }
 
 constexpr int flightThreads = 256;
@@ -480,6 +560,12 @@ __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> 
   for (int s = threadIdx.x; s <= launch.flightCount; s += flightThreads)
   {
     values[1][s] = expf(-0.5f * values[1][s]);
+  }
+  const TissueBins tissueBins = launch.tissueBins();
+  for (int b = threadIdx.x; launch.reverberation && b < tissueBins.count; b += flightThreads)
+  {
+    launch.cellMm[std::size_t(blockIdx.x) * launch.binCount + b] =
+      resolutionCell(launch.view, line, (float(b) + 0.5f) * tissueBins.mm).sideMm;
   }
   for (int b = threadIdx.x; b < launch.binCount; b += flightThreads)
   {

@@ -12,6 +12,17 @@ namespace sono {
 
 namespace {
 
+/// A line's samples of noise, times their rms.
+__global__ void drawSamples(ReverberationNoise noise, const float* rms, int samples, float2* speckle)
+{
+  const int s = int(blockIdx.x * blockDim.x + threadIdx.x);
+  if (s < samples)
+  {
+    const Vec2f value = rms[s] * noise.at(int(blockIdx.y), s);
+    speckle[std::size_t(blockIdx.y) * std::size_t(samples) + std::size_t(s)] = { value.x, value.y };
+  }
+}
+
 /// An ellipse around a rectangle is so much larger.
 constexpr float aroundRectangle = 1.4143f;
 
@@ -292,6 +303,30 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   surfaceScale_ = 536870912.0f / std::max(1.0f, float(echo.beam.largestWeight));
 }
 
+/// The speckle that reverberates belongs to the probe and is the same for every image.
+void DeviceEcho::drawSpeckle(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
+{
+  if (linesPerImage_ == job.linesPerImage && noise_ == job.noise && reverberationRms_ == job.reverberationRms)
+  {
+    return;
+  }
+  reverberationRms_.clear(); // stays so when the upload fails
+  DeviceArray<float> rms;
+  rms.upload(job.reverberationRms, stream, traffic);
+  const std::size_t samples = job.reverberationRms.size();
+  reverberationSpeckle_.resize(std::size_t(job.linesPerImage) * samples);
+  if (samples > 0)
+  {
+    drawSamples<<<dim3(unsigned((samples + 127) / 128), unsigned(job.linesPerImage)), 128, 0, stream>>>(
+      job.noise, rms.data(), int(samples), reverberationSpeckle_.data());
+    check(cudaGetLastError(), "drawing speckle");
+    check(cudaStreamSynchronize(stream), "drawing speckle");
+  }
+  linesPerImage_ = job.linesPerImage;
+  noise_ = job.noise;
+  reverberationRms_ = job.reverberationRms;
+}
+
 void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
 {
   const double radPerSample = job.radPerMm * job.sampleMm;
@@ -325,9 +360,7 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
   pulse_.upload(pulse, stream, traffic);
   uploadCarrier(job, stream, traffic);
   level_.upload(job.boundaryLevel, stream, traffic);
-  linesPerImage_ = job.linesPerImage;
-  noise_ = job.noise;
-  reverberationRms_.upload(job.reverberationRms, stream, traffic);
+  drawSpeckle(job, stream, traffic);
   downshift_ = job.downshift;
   uploadBeam(job.beam, stream, traffic);
   sceneBeams_.upload(job.sceneBeams, stream, traffic);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "Kernel/Reverberation.h"
 #include "Trace/TracedBin.h"
+#include "Trace/TracedReverberation.h"
 
 #include <cuda_runtime.h>
 
@@ -14,41 +16,57 @@ constexpr int warpLanes = 32;
 /// shared memory.
 struct StagedSegment
 {
-  BeamSegment beam;
+  struct Direct
+  {
+    BeamSegment beam;
+    float scale; ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
+  };
+  union
+  {
+    Direct direct;
+    TissueEcho echo; ///< where it reverberates
+  };
   float low;
   float high;
-  int binLow;
   int binHigh;
-  float scale; ///< of a bin's value at its middle, 0: the coherence weight is not smooth enough for that
-  bool reverberates;
+  unsigned binLow : 31;
+  unsigned reverberates : 1;
 };
 
-__device__ inline StagedSegment stage(const BeamSegment& seen, float length, float binMm, int binCount,
-                                      bool reverberates)
+/// Which bins it covers.
+__device__ inline void stageSpan(const DepthSpan& span, float binMm, bool reverberates, StagedSegment& staged)
 {
-  StagedSegment staged;
-  staged.beam = seen;
-  staged.reverberates = reverberates;
-  const DepthSpan span = depthSpan(staged.beam, length, binMm * float(binCount));
   staged.low = span.low;
   staged.high = span.high;
   const BinSpan covered = binSpan(span, binMm);
-  staged.binLow = covered.first;
+  staged.binLow = unsigned(covered.first);
   staged.binHigh = covered.last;
-  // At a bin's middle w is within step^2 / 12 C0^2 of its mean: here 1e-4.
-  const float step = binMm / fabsf(staged.beam.mu);
-  const float half = 0.5f * staged.beam.decay * step;
-  const bool smooth = step < 0.035f * staged.beam.coherence && half < 0.3f;
-  staged.scale = smooth ? seen.intensity * (1.0f + half * half * (1.0f / 6.0f)) / binMm : 0.0f;
-  return staged;
+  staged.reverberates = reverberates ? 1u : 0u;
 }
 
-__device__ inline void addToBin(const StagedSegment& s, float value, float at, BinSums<float>& bin)
+__device__ inline void stage(const BeamSegment& seen, float length, float binMm, int binCount, StagedSegment& staged)
+{
+  stageSpan(depthSpan(seen.r0, seen.mu, length, binMm * float(binCount)), binMm, false, staged);
+  staged.direct.beam = seen;
+  // At a bin's middle w is within step^2 / 12 C0^2 of its mean: here 1e-4.
+  const float step = binMm / fabsf(seen.mu);
+  const float half = 0.5f * seen.decay * step;
+  const bool smooth = step < 0.035f * seen.coherence && half < 0.3f;
+  staged.direct.scale = smooth ? seen.intensity * (1.0f + half * half * (1.0f / 6.0f)) / binMm : 0.0f;
+}
+
+__device__ inline void stage(const TissueEcho& echo, float length, const TissueBins& bins, StagedSegment& staged)
+{
+  stageSpan(depthSpan(echo.r0, echo.mu, length, echo.level != 0.0f ? bins.endMm() : 0.0f), bins.mm, true, staged);
+  staged.echo = echo;
+}
+
+__device__ inline void addToBin(const BeamSegment& beam, float value, float at, BinSums<float>& bin)
 {
 #pragma unroll
   for (int sum = 0; sum < binSumCount; ++sum)
   {
-    bin.of[sum] += value * binFactor(sum, s.beam, at, 1.0f);
+    bin.of[sum] += value * binFactor(sum, beam, at, 1.0f);
   }
 }
 
@@ -56,16 +74,19 @@ __device__ inline void addToBin(const StagedSegment& s, float value, float at, B
 /// segments.
 __device__ inline void depositByWarp(const StagedSegment s, float binMm, int lane, BinSums<float>* __restrict__ bins)
 {
-  int b = s.binLow + ((lane - s.binLow) & (warpLanes - 1));
-  const float inverseMu = 1.0f / s.beam.mu;
-  if (s.scale > 0.0f)
+  const BeamSegment& beam = s.direct.beam;
+  const int first = int(s.binLow);
+  int b = first + ((lane - first) & (warpLanes - 1));
+  const float inverseMu = 1.0f / beam.mu;
+  if (s.direct.scale > 0.0f)
   {
     float from = fmaxf(s.low, float(b) * binMm);
     for (; b <= s.binHigh; b += warpLanes)
     {
       const float to = fminf(s.high, float(b + 1) * binMm);
-      const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
-      addToBin(s, s.scale * (to - from) * expNegative(-s.beam.decay * at) * beamWeightAt(s.beam, at), at, bins[b]);
+      const float at = (0.5f * (from + to) - beam.r0) * inverseMu;
+      addToBin(beam, s.direct.scale * (to - from) * expNegative(-beam.decay * at) * beamWeightAt(beam, at), at,
+               bins[b]);
       from = float(b + warpLanes) * binMm;
     }
     return;
@@ -75,33 +96,90 @@ __device__ inline void depositByWarp(const StagedSegment s, float binMm, int lan
   {
     const float from = fmaxf(s.low, float(b) * binMm);
     const float to = fminf(s.high, float(b + 1) * binMm);
-    const float at = (0.5f * (from + to) - s.beam.r0) * inverseMu;
-    addToBin(s, meanOver(s.beam, from, to, inverseMu) * (to - from) * perMm, at, bins[b]);
+    const float at = (0.5f * (from + to) - beam.r0) * inverseMu;
+    addToBin(beam, meanOver(beam, from, to, inverseMu) * (to - from) * perMm, at, bins[b]);
   }
 }
 
-/// How much of what reverberates the media have taken, weighted: integers, of which a hundredth does for it, so that no
-/// boundary's weight overflows.
-__device__ inline void addReverberated(unsigned long long* sums, float weight, float absorbedNp, float scale)
+__device__ inline void addUnits(unsigned long long& sum, float units)
 {
-  const float units = 0.01f * scale * weight;
-  atomicAdd(sums, (unsigned long long)(__float2ll_rn(units)));
-  atomicAdd(sums + 1, (unsigned long long)(__float2ll_rn(units * absorbedNp)));
+  atomicAdd(&sum, (unsigned long long)(__float2ll_rn(units)));
 }
 
-/// The same for the level of what reverberates, by range: sums of integers, since warps share them.
-__device__ inline void reverberateByWarp(const StagedSegment& s, float binMm, float scale, int lane,
-                                         unsigned long long* sums, unsigned long long* reverberated)
+/// Weights need not be exact: a hundredth of the unit keeps a boundary's from overflowing.
+constexpr float weightUnit = 0.01f;
+
+/// Adds to (weight, weight times Np).
+__device__ inline void addAbsorbed(unsigned long long* sums, float weightUnits, float absorbedNp)
 {
-  const float inverseMu = 1.0f / s.beam.mu;
-  for (int b = s.binLow + lane; b <= s.binHigh; b += warpLanes)
+  addUnits(sums[0], weightUnit * weightUnits);
+  addUnits(sums[1], weightUnit * weightUnits * absorbedNp);
+}
+
+/// Where a line's reverberation goes.
+struct ReverberationRow
+{
+  unsigned long long* batch;            ///< TissueBins x ReverberationSum
+  unsigned long long* absorbedByTissue; ///< bins x (weight, weight times Np)
+  const float* cellMm;                  ///< bins: see resolutionCell
+  std::uint32_t lineKey;
+  TissueBins bins;
+};
+
+/// Segments that reverberate are short, and what a bin takes is long: groups of lanes have a segment each, and lanes
+/// some bins at a time.
+constexpr int echoLanes = 8;
+constexpr int echoBins = 2;
+
+/// What reverberates of a segment, by range, by a group's lane. Sums of integers, since warps share them.
+__device__ inline void reverberateByLanes(const StagedSegment& s, const ReverberationRow& row, float scale, int lane)
+{
+  const DepthSpan span{ s.low, s.high };
+  for (int first = int(s.binLow) + lane; first <= s.binHigh; first += echoLanes * echoBins)
   {
-    const float from = fmaxf(s.low, float(b) * binMm);
-    const float to = fminf(s.high, float(b + 1) * binMm);
-    const float level = meanOver(s.beam, from, to, inverseMu) * fmaxf(0.0f, to - from) / binMm;
-    atomicAdd(sums + b, (unsigned long long)(__float2ll_rn(level * scale)));
-    addReverberated(reverberated + 2 * b, level,
-                    s.beam.absorbed + s.beam.decay * (0.5f * (from + to) - s.beam.r0) * inverseMu, scale);
+    BinEcho inBin[echoBins];
+#pragma unroll
+    for (int i = 0; i < echoBins; ++i)
+    {
+      const int b = min(first + i * echoLanes, row.bins.count - 1);
+      inBin[i] = echoInBin(s.echo, span, row.lineKey, b, row.bins.mm, __ldg(row.cellMm + b));
+    }
+#pragma unroll
+    for (int i = 0; i < echoBins; ++i)
+    {
+      const int b = first + i * echoLanes;
+      if (b > s.binHigh)
+      {
+        break;
+      }
+      const float units = scale * inBin[i].level * inBin[i].share;
+      const int sum = s.echo.straightBack ? straightPowerSum : (inBin[i].sign > 0.0f ? plusSum : minusSum);
+      addUnits(row.batch[reverberationSumCount * b + sum], s.echo.straightBack ? units * inBin[i].level : units);
+      if (b == row.bins.absorptionBin(b))
+      {
+        addAbsorbed(row.absorbedByTissue + 2 * b, units, inBin[i].absorbedNp);
+      }
+    }
+  }
+}
+
+/// The staged segments that `waiting` has a bit for.
+__device__ inline void reverberateByWarp(const StagedSegment* staged, unsigned waiting, const ReverberationRow& row,
+                                         float scale, int lane)
+{
+  while (waiting != 0u)
+  {
+    int mine = -1;
+#pragma unroll
+    for (int group = 0; group < warpLanes / echoLanes; ++group)
+    {
+      mine = group == lane / echoLanes && waiting != 0u ? __ffs(int(waiting)) - 1 : mine;
+      waiting &= waiting - 1u;
+    }
+    if (mine >= 0)
+    {
+      reverberateByLanes(staged[mine], row, scale, lane % echoLanes);
+    }
   }
 }
 

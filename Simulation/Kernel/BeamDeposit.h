@@ -47,12 +47,12 @@ struct DepthSpan
   float high;
 };
 
-SONO_HD inline DepthSpan depthSpan(const BeamSegment& g, float length, float endMm)
+SONO_HD inline DepthSpan depthSpan(float r0, float mu, float length, float endMm)
 {
-  const float r1 = g.r0 + g.mu * length;
-  const float low = larger(0.0f, smaller(g.r0, r1));
-  const float high = smaller(larger(g.r0, r1), endMm);
-  return high - low > 1e-6f && fabsf(g.mu) >= 1e-6f ? DepthSpan{ low, high } : DepthSpan{ 0.0f, 0.0f };
+  const float r1 = r0 + mu * length;
+  const float low = larger(0.0f, smaller(r0, r1));
+  const float high = smaller(larger(r0, r1), endMm);
+  return high - low > 1e-6f && fabsf(mu) >= 1e-6f ? DepthSpan{ low, high } : DepthSpan{ 0.0f, 0.0f };
 }
 
 /// The bins [first, last] that a span reaches into; none, last < first, where it is empty.

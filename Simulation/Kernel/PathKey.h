@@ -19,7 +19,7 @@ struct PathKey
 /// Every other path: see tissueEcho.
 SONO_HD inline bool showsStraightBack(const PathKey& key)
 {
-  return key.path % 2 != 0;
+  return (key.path + key.batch) % 2 != 0;
 }
 
 /// A batch has one scramble a bounce up to maxCollisions, and one for where its paths start.

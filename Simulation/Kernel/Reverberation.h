@@ -2,6 +2,7 @@
 
 #include "Kernel/BeamDeposit.h"
 #include "Kernel/PathState.h"
+#include "Kernel/ReverberationSpread.h"
 #include "Kernel/TraceView.h"
 
 #include <cmath>
@@ -40,9 +41,7 @@ SONO_HD inline StraightWayAt wayBackFrom(const StraightWay& way, float depthMm, 
            way.absorbedNp[known] };
 }
 
-/// How far beside its axis a line hears what comes straight back, standard deviation in mm, and how wide a bundle of
-/// rays it takes, a half width in mm, where the probe does not name its aperture. Chosen: about a beam's width.
-constexpr float heardAsideMm = 1.5f;
+/// How wide a bundle of rays a line takes, a half width in mm, where the probe does not name its aperture. Chosen.
 constexpr float unnamedHalfMm = 5.0f;
 
 /// Echoes against the tissue that all levels of reverberation refer to: soft tissue's 5e-4 /(cm sr).
@@ -57,18 +56,27 @@ SONO_HD inline float heardAside(const TraceLine& axis, const TraceLine& own, con
   return expNegative(-glm::dot(aside, aside) / (2.0f * heardAsideMm * heardAsideMm));
 }
 
-/// The echo of tissue along a segment of a path that has been reflected, by range: r0 + mu s, level I exp(-decay s)
-/// times that of the tissue. A path shows either its own way or, of an even number of reflections, the way straight
-/// back, at twice the level that it stands for.
-SONO_HD inline BeamSegment tissueEcho(const StraightWay& way, const TraceLine& axis, const TraceLine& own,
-                                      const PathSegment& s)
+/// The echo of tissue along a segment of a path that has been reflected, by range: r0 + mu s, an amplitude
+/// level exp(-decay s) against that of the tissue that reverberation refers to.
+struct TissueEcho
 {
-  BeamSegment echo{};
-  echo.r0 = s.rangeMm;
-  echo.mu = s.rangePerMm;
-  echo.intensity = s.intensity * s.scatter;
-  echo.decay = s.decayPerMm;
-  echo.absorbed = s.absorbed;
+  float r0;
+  float mu;
+  float level;
+  float decay;
+  float absorbed; ///< what the media have taken at its start, two-way exponent of the amplitude
+  Vec3f start;
+  Vec3f direction;
+  bool straightBack;
+};
+
+/// A path shows either its own way or, of an even number of reflections and on its way into the body, the way straight
+/// back, each for the paths that show the other as well.
+SONO_HD inline TissueEcho tissueEcho(const StraightWay& way, const TraceLine& axis, const TraceLine& own,
+                                     const PathSegment& s)
+{
+  TissueEcho echo{ s.rangeMm,   s.rangePerMm, s.intensity * s.scatter, s.decayPerMm, s.absorbed, s.start,
+                   s.direction, false };
   const float cosine = glm::dot(s.direction, axis.axis);
   if (s.reflections % 2 != 0 || cosine < 0.5f)
   {
@@ -76,18 +84,45 @@ SONO_HD inline BeamSegment tissueEcho(const StraightWay& way, const TraceLine& a
   }
   if (!s.straightBack)
   {
-    echo.intensity *= 2.0f;
+    echo.level *= 2.0f;
     return echo;
   }
   const StraightWayAt back = wayBackFrom(way, glm::dot(s.start - axis.origin, axis.axis), true);
   const float mean = 0.5f * (1.0f + cosine);
   echo.r0 = 0.5f * (s.rangeMm + back.rangeMm);
   echo.mu = s.rangePerMm * mean;
-  // Twice for the two senses of the loop, twice for the paths that show their own way.
-  echo.intensity = 4.0f * fabsf(s.amplitude) * back.amplitude * s.scatter * heardAside(axis, own, s.start, s.lengthMm);
+  // (13.6) for the two senses of the loop, twice for the paths that show their own way.
+  echo.level = sqrtf(8.0f * s.intensity * heardAside(axis, own, s.start, s.lengthMm)) * back.amplitude * s.scatter;
   echo.decay = s.decayPerMm * mean;
   echo.absorbed = 0.5f * (s.absorbed + back.absorbedNp);
+  echo.straightBack = true;
   return echo;
+}
+
+/// What such an echo leaves in a bin: amplitudes of own ways add up within a resolution cell, with the sign of its
+/// tissue; of ways straight back powers do (13.6).
+struct BinEcho
+{
+  float share;      ///< of the bin that it covers
+  float level;      ///< mean over that
+  float absorbedNp; ///< in its middle
+  float sign;       ///< of its cell
+};
+
+SONO_HD inline BinEcho echoInBin(const TissueEcho& echo, const DepthSpan& span, std::uint32_t line, int bin,
+                                 float binMm, float cellMm)
+{
+  const float from = larger(span.low, float(bin) * binMm);
+  const float to = smaller(span.high, float(bin + 1) * binMm);
+  const float inverseMu = 1.0f / echo.mu;
+  const float s0 = (from - echo.r0) * inverseMu;
+  const float s1 = (to - echo.r0) * inverseMu;
+  const float near = larger(0.0f, smaller(s0, s1));
+  const float step = larger(0.0f, larger(s0, s1) - near);
+  const float middle = near + 0.5f * step;
+  return { larger(0.0f, to - from) / binMm, echo.level * expNegative(-echo.decay * near) * meanDecay(echo.decay * step),
+           echo.absorbed + echo.decay * middle,
+           cellSign(echo.start + echo.direction * middle, echo.direction, cellMm, signDraw(line, bin)) };
 }
 
 /// An echo that arrives at a range, with its sign.
@@ -96,6 +131,29 @@ struct Arrival
   float rangeMm = 0.0f;
   float amplitude = 0.0f;  ///< against a perfect mirror's; 0: none
   float absorbedNp = 0.0f; ///< what the media have taken, two-way exponent of the amplitude
+};
+
+/// Echoes of tissue are kept by half a millimetre of range, of as many radial bins as that takes: a speckle's level
+/// needs no more.
+struct TissueBins
+{
+  int each; ///< radial bins in one of them
+  int count;
+  float mm;
+
+  SONO_HD TissueBins(int binCount, float binMm)
+    : each(binMm < 0.5f ? int(0.5f / binMm + 0.5f) : 1)
+    , count((binCount + each - 1) / each)
+    , mm(binMm * float(each))
+  {
+  }
+  SONO_HD float endMm() const { return mm * float(count); }
+  /// What the media have taken of them changes slowly: it is kept at one of four, that of its group.
+  SONO_HD int absorptionBin(int bin) const
+  {
+    const int middle = bin / 4 * 4 + 2;
+    return middle < count ? middle : count - 1;
+  }
 };
 
 /// A boundary's echo of so much weighs as the speckle of level 1 where it is asked how much its sound was attenuated.

@@ -12,6 +12,11 @@ struct ReverberationNoise
   std::uint64_t seed = 0;
   float nodesPerLine = 1.0f;
 
+  friend bool operator==(const ReverberationNoise& a, const ReverberationNoise& b)
+  {
+    return a.seed == b.seed && a.nodesPerLine == b.nodesPerLine;
+  }
+
   SONO_HD Vec2f at(int line, int sample) const
   {
     constexpr std::uint64_t ownStream = 0x7265766572623aull;

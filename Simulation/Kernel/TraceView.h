@@ -53,6 +53,8 @@ struct TraceView
   bool reverberates = true;       ///< Acoustic: paths that have been reflected go on; otherwise they end there
   float faceReflection = 0.0f;    ///< of the amplitude, by the transducer's face
   float faceRadiusMm = 10.0f;
+  float cellLateralPerMm = 0.0f; ///< how wide the line hears at a range, mm of each (see resolutionCell); 0: not known
+  float cellElevationPerMm = 0.0f;
   int maxCollisions = 7;
   float coherenceMm = 0.1f;
   float depthMm = 160.0f;

@@ -44,9 +44,11 @@ __attribute__((always_inline)) inline void depositWholeBins(const BeamSegment& g
 LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm)
   : binCount_(binCount)
   , sums_(sums)
-  , reverberation_(std::size_t(binCount), 0.0)
-  , reverberated_(std::size_t(binCount), 0.0)
-  , reverberatedWeight_(std::size_t(binCount), 0.0)
+  , tissueBins_(binCount, float(binMm))
+  , reverberation_(std::size_t(tissueBins_.count))
+  , absorbedByTissue_(std::size_t(tissueBins_.count))
+  , absorbedToBoundaries_(std::size_t(binCount))
+  , cellMm_(std::size_t(tissueBins_.count))
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
@@ -60,11 +62,16 @@ LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double
   }
 }
 
-void LineTally::begin(const TraceView& view, const TraceLine& axis, const StraightWay& way)
+void LineTally::begin(const TraceView& view, const TraceLine& axis, std::uint32_t lineKey, const StraightWay& way)
 {
   view_ = &view;
   axis_ = &axis;
   way_ = way;
+  lineKey_ = lineKey;
+  for (std::size_t b = 0; view.reverberates && b < cellMm_.size(); ++b)
+  {
+    cellMm_[b] = resolutionCell(view, axis, (float(b) + 0.5f) * tissueBins_.mm).sideMm;
+  }
   start(axis, view.coherenceMm);
 }
 
@@ -101,26 +108,30 @@ std::vector<BinSums<double>> LineTally::takeBins(int paths)
   return means;
 }
 
-std::vector<double> LineTally::takeReverberation(int paths)
+std::vector<ReverberationSums> LineTally::takeReverberation(int paths)
 {
-  std::vector<double> means(reverberation_.size(), 0.0);
+  std::vector<ReverberationSums> means(reverberation_.size());
   means.swap(reverberation_);
-  for (double& mean : means)
+  for (ReverberationSums& mean : means)
   {
-    mean /= paths;
+    for (double& sum : mean.of)
+    {
+      sum /= paths;
+    }
   }
   return means;
 }
 
-std::vector<double> LineTally::takeReverberatedNp()
+std::vector<float> LineTally::takeReverberatedNp()
 {
-  std::vector<double> means(reverberated_.size(), 0.0);
-  for (std::size_t b = 0; b < means.size(); ++b)
+  std::vector<float> means;
+  for (int b = 0; b < binCount_; ++b)
   {
-    means[b] = reverberatedWeight_[b] > 0.0 ? reverberated_[b] / reverberatedWeight_[b] : 0.0;
-    reverberated_[b] = 0.0;
-    reverberatedWeight_[b] = 0.0;
+    means.push_back(absorbedNp(absorbedByTissue_[std::size_t(tissueBins_.absorptionBin(b / tissueBins_.each))],
+                               absorbedToBoundaries_[std::size_t(b)]));
   }
+  std::fill(absorbedByTissue_.begin(), absorbedByTissue_.end(), AbsorbedSums());
+  std::fill(absorbedToBoundaries_.begin(), absorbedToBoundaries_.end(), AbsorbedSums());
   return means;
 }
 
@@ -167,7 +178,7 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
     return;
   }
   const BeamSegment g = beamSegment(line_, s, coherenceMm_);
-  const DepthSpan span = depthSpan(g, s.length, binMm_ * float(binCount_));
+  const DepthSpan span = depthSpan(g.r0, g.mu, s.length, binMm_ * float(binCount_));
   if (!(span.high > span.low))
   {
     return;
@@ -184,22 +195,31 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
 
 void LineTally::addReverberation(const PathSegment& s)
 {
-  const BeamSegment g = tissueEcho(way_, *axis_, line_, s);
-  const DepthSpan span = depthSpan(g, s.length, binMm_ * float(binCount_));
-  if (!(span.high > span.low) || g.intensity == 0.0f)
+  const TissueEcho echo = tissueEcho(way_, *axis_, line_, s);
+  const DepthSpan span = depthSpan(echo.r0, echo.mu, s.length, tissueBins_.endMm());
+  if (!(span.high > span.low) || echo.level == 0.0f)
   {
     return;
   }
-  const float inverseMu = 1.0f / g.mu;
-  const BinSpan covered = binSpan(span, binMm_);
+  const BinSpan covered = binSpan(span, tissueBins_.mm);
   for (int b = covered.first; b <= covered.last; ++b)
   {
-    const float from = larger(span.low, float(b) * binMm_);
-    const float to = smaller(span.high, float(b + 1) * binMm_);
-    const double level = double(meanOver(g, from, to, inverseMu) * (to - from) / binMm_);
-    reverberation_[std::size_t(b)] += level;
-    reverberated_[std::size_t(b)] += level * double(g.absorbed + g.decay * (0.5f * (from + to) - g.r0) * inverseMu);
-    reverberatedWeight_[std::size_t(b)] += level;
+    const BinEcho inBin = echoInBin(echo, span, lineKey_, b, tissueBins_.mm, cellMm_[std::size_t(b)]);
+    const double level = double(inBin.level * inBin.share);
+    ReverberationSums& sums = reverberation_[std::size_t(b)];
+    if (echo.straightBack)
+    {
+      sums.of[straightPowerSum] += level * double(inBin.level);
+    }
+    else
+    {
+      sums.of[inBin.sign > 0.0f ? plusSum : minusSum] += level;
+    }
+    if (b == tissueBins_.absorptionBin(b))
+    {
+      absorbedByTissue_[std::size_t(b)].weight += level;
+      absorbedByTissue_[std::size_t(b)].weightedNp += level * double(inBin.absorbedNp);
+    }
   }
 }
 
@@ -223,11 +243,11 @@ void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
     for (const float beside : { -0.5f, 0.5f })
     {
       const auto bin = std::size_t(larger(0.0f, arrival.rangeMm / binMm_ + beside));
-      if (bin < reverberated_.size())
+      if (bin < absorbedToBoundaries_.size())
       {
         const double weight = double(std::fabs(arrival.amplitude) / boundaryPerSpeckle);
-        reverberated_[bin] += weight * double(arrival.absorbedNp);
-        reverberatedWeight_[bin] += weight;
+        absorbedToBoundaries_[bin].weight += weight;
+        absorbedToBoundaries_[bin].weightedNp += weight * double(arrival.absorbedNp);
       }
     }
   }

@@ -5,6 +5,7 @@
 #include "Kernel/Reverberation.h"
 #include "Kernel/TraceView.h"
 #include "Trace/TracedBin.h"
+#include "Trace/TracedReverberation.h"
 
 #include <array>
 #include <complex>
@@ -22,8 +23,8 @@ public:
   /// `sums`: the first so many of the sums are kept, the others are 0 (see binSumsOf).
   LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm);
 
-  /// From now on paths are those of this line, whose arrays must outlive them.
-  void begin(const TraceView& view, const TraceLine& axis, const StraightWay& way);
+  /// From now on paths are those of this line, whose arrays must outlive them; `lineKey` is that of its PathKeys.
+  void begin(const TraceView& view, const TraceLine& axis, std::uint32_t lineKey, const StraightWay& way);
   /// From now on depths and distances are seen from this line.
   void start(const TraceLine& line, float coherenceMm);
 
@@ -40,10 +41,10 @@ public:
 
   /// What was left in each bin, of each of `paths` paths, and forgets it.
   std::vector<BinSums<double>> takeBins(int paths);
-  /// Level of what reverberated in each bin of range, mean of `paths` paths, and forgets it.
-  std::vector<double> takeReverberation(int paths);
-  /// Of all that reverberated in each bin: the mean of what the media have taken, Np, by its level; and forgets it.
-  std::vector<double> takeReverberatedNp();
+  /// What reverberated in each of the TissueBins, mean of `paths` paths, and forgets it.
+  std::vector<ReverberationSums> takeReverberation(int paths);
+  /// What the media have taken of what reverberated, Np, by radial bin, and forgets it.
+  std::vector<float> takeReverberatedNp();
   /// Adds the boundary echoes to a line's samples and forgets them.
   void takeEchoes(std::complex<float>* samples);
 
@@ -57,9 +58,11 @@ private:
   int sums_;
   std::array<std::vector<float>, binSumCount> bins_;     ///< of the paths since the last fold
   std::array<std::vector<double>, binSumCount> binSums_; ///< of those before
-  std::vector<double> reverberation_;                    ///< of the paths since it was taken
-  std::vector<double> reverberated_;                     ///< level times Np
-  std::vector<double> reverberatedWeight_;
+  TissueBins tissueBins_;
+  std::vector<ReverberationSums> reverberation_; ///< of the paths since it was taken
+  std::vector<AbsorbedSums> absorbedByTissue_;   ///< before its echoes
+  std::vector<AbsorbedSums> absorbedToBoundaries_;
+  std::vector<float> cellMm_; ///< see resolutionCell, in the middle of each bin
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;
@@ -69,6 +72,7 @@ private:
   const TraceView* view_ = nullptr;
   const TraceLine* axis_ = nullptr;
   StraightWay way_;
+  std::uint32_t lineKey_ = 0;
   TraceLine line_{};
   float coherenceMm_ = 0.0f;
   float echoWeight_ = 1.0f;

@@ -34,6 +34,75 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
   }
 }
 
+/// What lines leave of reverberation, lines x bins, until all are traced.
+struct TracedReverberation
+{
+  std::vector<float> ownLevel; ///< ReverberationMeans, as the next
+  std::vector<float> straightPower;
+  std::vector<SpreadSums> around; ///< over the bins around, of the same line
+
+  explicit TracedReverberation(std::size_t size)
+    : ownLevel(size)
+    , straightPower(size)
+    , around(size)
+  {
+  }
+};
+
+/// Of the means of a line's batches, and of what the media have taken.
+void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batches, const std::vector<float>& takenNp,
+                       double frequencyMHz, int line, TracedReverberation& kept, TracedLines& out)
+{
+  const std::size_t first = std::size_t(line) * std::size_t(out.binCount);
+  std::vector<SpreadSums> bins(takenNp.size());
+  const auto each = std::size_t(TissueBins(out.binCount, float(out.binMm)).each);
+  for (std::size_t b = 0; b < bins.size(); ++b)
+  {
+    const ReverberationMeans means =
+      reverberationMeans(int(batches.size()), [&](int batch) { return batches[std::size_t(batch)][b / each]; });
+    bins[b] = { means.cellPower, means.ownLevel * means.ownLevel };
+    kept.ownLevel[first + b] = means.ownLevel;
+    kept.straightPower[first + b] = means.straightPower;
+    out.reverberationError[first + b] = means.error;
+    out.reverberationNpPerMHz[first + b] = float(double(takenNp[b]) / frequencyMHz);
+  }
+  const int reach = spreadBins(float(out.binMm));
+  for (int b = 0; b < out.binCount; ++b)
+  {
+    SpreadSums& around = kept.around[first + std::size_t(b)];
+    for (int n = std::max(0, b - reach); n <= std::min(out.binCount - 1, b + reach); ++n)
+    {
+      around.cellPower += bins[std::size_t(n)].cellPower;
+      around.power += bins[std::size_t(n)].power;
+    }
+  }
+}
+
+/// The levels of a line's reverberation, of what it and the lines beside it have left.
+void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept, int line, TracedLines& out)
+{
+  const auto at = [&](int l, int b) { return std::size_t(l) * std::size_t(out.binCount) + std::size_t(b); };
+  const auto from = [&](int reach) { return std::max(0, line - reach); };
+  const auto to = [&](int reach) { return std::min(out.lineCount - 1, line + reach); };
+  for (int b = 0; b < out.binCount; ++b)
+  {
+    SpreadSums around;
+    for (int l = from(spreadLines); l <= to(spreadLines); ++l)
+    {
+      around.cellPower += kept.around[at(l, b)].cellPower;
+      around.power += kept.around[at(l, b)].power;
+    }
+    float straight = 0.0f;
+    for (int l = from(straightLines); l <= to(straightLines); ++l)
+    {
+      straight += kept.straightPower[at(l, b)] / float(to(straightLines) - from(straightLines) + 1);
+    }
+    const float rangeMm = (float(b) + 0.5f) * float(out.binMm);
+    const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
+    out.reverberation[at(line, b)] = reverberationLevel(around, unspread, kept.ownLevel[at(line, b)], straight);
+  }
+}
+
 /// A line's way along its axis, as StraightWay wants it.
 struct AxisWay
 {
@@ -87,18 +156,18 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
 /// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
 inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
-                        LineTally& tally, TracedLines& out)
+                        LineTally& tally, TracedReverberation& kept, TracedLines& out)
 {
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
   const AxisWay way = followAxis(space, setup, index, out);
-  tally.begin(view, line, way.view());
+  tally.begin(view, line, std::uint32_t(index), way.view());
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
   tally.setEchoWeight(1.0f);
   LineStart start;
   std::vector<BinSums<double>> shared(std::size_t(out.binCount), BinSums<double>{});
-  std::vector<std::vector<BinSums<double>>> means; // of batches
-  std::vector<std::vector<double>> reverberation;  // the same
+  std::vector<std::vector<BinSums<double>>> means;           // of batches
+  std::vector<std::vector<ReverberationSums>> reverberation; // the same
   if (!view.startsApart)
   {
     start = startLine(view, space, line, tally);
@@ -150,15 +219,9 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       reverberation.push_back(tally.takeReverberation(last - first));
     }
   }
-  const std::vector<double> absorbed = tally.takeReverberatedNp();
-  for (int b = 0; !reverberation.empty() && b < out.binCount; ++b)
+  if (!out.reverberation.empty())
   {
-    const auto meanOf = [&](int batch) { return reverberation[std::size_t(batch)][std::size_t(b)]; };
-    const MeanAndError bin = meanAndError(batches, meanOf);
-    const std::size_t at = std::size_t(index) * std::size_t(out.binCount) + std::size_t(b);
-    out.reverberation[at] = bin.mean;
-    out.reverberationError[at] = bin.error;
-    out.reverberationNpPerMHz[at] = float(absorbed[std::size_t(b)] / setup.frequencyMHz);
+    keepReverberation(reverberation, tally.takeReverberatedNp(), setup.frequencyMHz, index, kept, out);
   }
   tally.takeEchoes(echoes);
   writeBins(shared, means, setup.frequencyMHz, index, out);
@@ -166,15 +229,15 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
 
 SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index,
                                                          const YieldPoint& yieldPoint, LineTally& tally,
-                                                         TracedLines& out)
+                                                         TracedReverberation& kept, TracedLines& out)
 {
-  traceLineIn(setup.space(), setup, index, yieldPoint, tally, out);
+  traceLineIn(setup.space(), setup, index, yieldPoint, tally, kept, out);
 }
 
 void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yieldPoint, LineTally& tally,
-                        TracedLines& out)
+                        TracedReverberation& kept, TracedLines& out)
 {
-  traceLineIn(setup.nanoSpace(), setup, index, yieldPoint, tally, out);
+  traceLineIn(setup.nanoSpace(), setup, index, yieldPoint, tally, kept, out);
 }
 
 } // namespace
@@ -218,6 +281,7 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     out.reverberationNpPerMHz.clear();
   }
 
+  TracedReverberation kept(out.reverberation.size());
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
     return LineTally(out.binCount, out.binMm, binSumsOf(settings.model), out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);
@@ -225,13 +289,17 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   parallelFor(out.lineCount, tracing, [&](int i, const YieldPoint& yieldPoint) {
     if (settings.march == March::NanoVDB)
     {
-      traceLineByNanoVDB(setup, i, yieldPoint, tallies.local(), out);
+      traceLineByNanoVDB(setup, i, yieldPoint, tallies.local(), kept, out);
     }
     else
     {
-      traceLine(setup, i, yieldPoint, tallies.local(), out);
+      traceLine(setup, i, yieldPoint, tallies.local(), kept, out);
     }
   });
+  if (!out.reverberation.empty())
+  {
+    parallelFor(out.lineCount, {}, [&](int i) { writeReverberation(setup, kept, i, out); });
+  }
   for (const LineTally& tally : tallies)
   {
     out.segments += tally.segments();

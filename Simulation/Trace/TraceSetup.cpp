@@ -105,6 +105,9 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   if (settings.aperture.isNamed())
   {
     view.faceRadiusMm = float(0.5 * std::max(settings.aperture.apertureMm, settings.aperture.elevationApertureMm));
+    const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.frequencyMHz;
+    view.cellLateralPerMm = float(1.5 * wavelengthMm / settings.aperture.apertureMm);
+    view.cellElevationPerMm = float(1.5 * wavelengthMm / settings.aperture.elevationApertureMm);
   }
   view.maxCollisions = settings.maxCollisions;
   view.coherenceMm = float(settings.coherenceMm);

@@ -137,7 +137,7 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
     TraceView view;
     view.model = InterfaceModel::Amadou2024; // whose boundaries echo by paths
     view.coherenceMm = 100.0f;
-    tally.begin(view, line, {});
+    tally.begin(view, line, 0, {});
     tally.setEchoWeight(1.0f / float(count));
     for (int i = 0; i < count; ++i)
     {

@@ -85,7 +85,7 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
 {
   kernel::LineTally tally(input.binCount, input.settings.at("radialBinMm"), kernel::binSumsOf(view.model),
                           input.echoCount, input.echoSampleMm, input.frequencyMHz / kernel::assumedSoundSpeedMmPerUs);
-  tally.begin(view, line, {});
+  tally.begin(view, line, 0, {});
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
   std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;
   const std::vector<kernel::BinSums<double>> shared = tally.takeBins(1);

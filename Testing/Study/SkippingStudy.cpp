@@ -56,7 +56,7 @@ void traceLines(const TraceSetup& setup, const TraceSettings& tracing, const Sho
                   tracing.echoSampleMm, tracing.frequencyMHz / assumedSoundSpeedMmPerUs);
   for (std::size_t i = 0; i < setup.lines.size(); ++i)
   {
-    tally.begin(setup.view, setup.lines[i], {});
+    tally.begin(setup.view, setup.lines[i], std::uint32_t(i), {});
     LineStart start = startLine(setup.view, space, setup.lines[i], tally);
     for (int path = 0; path < setup.paths && start.meets; ++path)
     {
