@@ -168,10 +168,9 @@ __device__ inline float2 summedAt(const FinishLaunch& launch, int line, int d)
 
 /// What of the depths behind a sample of range, up to the next, is shown there, demodulated: of each what is `near`,
 /// or else what is left for the next.
-__device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeMap& map, int line, int s, bool near)
+__device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeStep& step, int line, int s, bool near)
 {
   float2 v{ 0.0f, 0.0f };
-  const RangeStep step = rangeStep(map, launch.sampleMm, s);
   const float2 c = launch.carrier[s];
   for (int d = step.first; d < min(step.end, launch.sumCount); ++d)
   {
@@ -242,9 +241,15 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   const float2 c = launch.carrier[s];
   if (map.offsetMm)
   {
-    const float2 near = shownBehind(launch, map, line, s, true);
-    const float2 far = s > 0 ? shownBehind(launch, map, line, s - 1, false) : float2{ 0.0f, 0.0f };
-    v = { near.x + far.x, near.y + far.y };
+    const float depth = depthInSamples(map, launch.sampleMm, s);
+    const RangeStep behind = stepBetween(depth, depthInSamples(map, launch.sampleMm, s + 1));
+    v = shownBehind(launch, behind, line, s, true);
+    if (s > 0)
+    {
+      const RangeStep before = stepBetween(depthInSamples(map, launch.sampleMm, s - 1), depth);
+      const float2 far = shownBehind(launch, before, line, s - 1, false);
+      v = { v.x + far.x, v.y + far.y };
+    }
   }
   else
   {

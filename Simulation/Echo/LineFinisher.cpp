@@ -162,9 +162,12 @@ void LineFinisher::showDepths(const RangeMap& map, const LineSum& sum, float* re
   const float sampleMm = float(sampleMm_);
   const float radPerSample = float(radPerMm_ * sampleMm_);
   const int count = int(carrierRe_.size());
+  float from = depthInSamples(map, sampleMm, 0);
   for (int s = 0; s < count; ++s)
   {
-    const RangeStep step = rangeStep(map, sampleMm, s);
+    const float to = depthInSamples(map, sampleMm, s + 1);
+    const RangeStep step = stepBetween(from, to);
+    from = to;
     const int last = std::min(step.end, int(sumCount_));
     for (int d = step.first; d < last; ++d)
     {

@@ -182,6 +182,7 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
         std::abs(behind.impedanceMRayl - before.impedanceMRayl) / (behind.impedanceMRayl + before.impedanceMRayl);
       out.logDiffuse = float(std::max(nothing, std::log(std::max(r, 1e-300))));
       out.roughness = float(coherentLoss(radPerMm * rougher(before, behind).roughnessMm, bandShare));
+      out.decayPerMm = float(decayPerMm(before, settings.centreFrequencyMHz));
       out.tau = float(behind.tau);
       out.gamma = float(behind.gamma);
       out.profile = profileOf[std::size_t(ownsRoughness ? a : b)];
@@ -257,7 +258,8 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, 
                            widestMm };
   for (const Tissue& t : media.all)
   {
-    key.insert(key.end(), { t.impedanceMRayl, t.soundSpeedMPerS, t.tau, t.gamma, t.roughnessMm, t.correlationMm });
+    key.insert(key.end(), { t.impedanceMRayl, t.soundSpeedMPerS, t.attenuationDbPerCmMHz, t.tau, t.gamma, t.roughnessMm,
+                            t.correlationMm });
   }
   using Kept = std::pair<std::vector<double>, std::shared_ptr<const SurfaceRows>>;
   constexpr std::size_t most = 8;

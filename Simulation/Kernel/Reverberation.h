@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Kernel/BeamDeposit.h"
+#include "Kernel/BentTable.h"
 #include "Kernel/PathState.h"
 #include "Kernel/ReverberationSpread.h"
 #include "Kernel/TraceView.h"
@@ -30,15 +31,19 @@ struct StraightWayAt
   float absorbedNp;
 };
 
-/// From a depth; what is lost at a boundary within the same step counts where the place is `behind` it.
+/// How far off a boundary may lie by rounding, here and on the line's axis.
+constexpr float roundedMm = 0.01f;
+
+/// From a depth; what is lost at a boundary there or within the same step counts where the place is `behind` it.
 SONO_HD inline StraightWayAt wayBackFrom(const StraightWay& way, float depthMm, bool behind)
 {
-  const float position = larger(0.0f, smaller(depthMm / way.stepMm, float(way.steps)));
-  const int step = int(smaller(position, float(way.steps - 1)));
-  const float share = position - float(step);
-  const int known = behind ? step + 1 : step;
-  return { way.rangeMm[step] + (way.rangeMm[step + 1] - way.rangeMm[step]) * share, way.amplitude[known],
-           way.absorbedNp[known] };
+  const float last = float(way.steps);
+  const float position = larger(0.0f, smaller(depthMm / way.stepMm, last));
+  const float rounded = roundedMm / way.stepMm;
+  const int step = int(smaller(position, last - 1.0f));
+  const float known = behind ? smaller(ceilf(position + rounded), last) : floorf(larger(position - rounded, 0.0f));
+  return { bentAt(way.rangeMm, way.steps, step, position - float(step)), way.amplitude[int(known)],
+           way.absorbedNp[int(known)] };
 }
 
 /// How wide a bundle of rays a line takes, a half width in mm, where the probe does not name its aperture. Chosen.

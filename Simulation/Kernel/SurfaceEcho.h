@@ -39,6 +39,7 @@ struct SurfaceRow
   float roughness;  ///< 2 (k h)^2, averaged over the band
   float tau;        ///< of the tissue behind: exponents of the intensity and of cos t
   float gamma;
+  float decayPerMm;    ///< in front: the intensity falls by exp(-decay l)
   float reach;         ///< tangent beyond which its diffuse echo does not count; < 0: it never does
   float coherentReach; ///< the same of its coherent echo, for the coarsest blobs
   float finestReach;   ///< and for the finest
@@ -95,8 +96,9 @@ struct SurfaceIntensity
   float perMm = 0.0f;
 };
 
-/// The intensity in front of a depth, by bins that lie whole in front of it; continuous.
-SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float frontMm)
+/// The intensity at a depth, by bins that lie whole before another, in front of it, and a medium from there on;
+/// continuous.
+SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float frontMm, float depthMm, float decayPerMm)
 {
   if (!intensity.bins)
   {
@@ -105,7 +107,9 @@ SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float f
   const float last = larger(0.0f, smaller(frontMm * intensity.perMm, float(intensity.count)) - 1.0f);
   const int bin = int(last);
   const float before = intensity.bins[bin > 0 ? bin - 1 : 0];
-  return before + (last - float(bin)) * (intensity.bins[bin] - before);
+  const float known = before + (last - float(bin)) * (intensity.bins[bin] - before);
+  const float restMm = depthMm - larger(0.5f, last - 0.5f) / intensity.perMm; // from between the middles of bins
+  return known * expNegative(-decayPerMm * larger(0.0f, restMm));
 }
 
 constexpr float surfaceFaintest = 1e-6f;    ///< echoes fainter than this against a perfect mirror are left out
@@ -119,7 +123,7 @@ constexpr float surfaceTangentSlack = 0.1f; ///< by so much the slope of a point
 /// What a line hears of a piece of a surface. Nothing where the intensity is 0.
 struct SurfaceHearing
 {
-  float lit;  ///< intensity in front of it, shaped by the tissue behind (section 1.3)
+  float lit;  ///< intensity that arrives there, shaped by the tissue behind (section 1.3)
   float most; ///< see mostWeight
   bool diffuse;
   bool coherent;
@@ -159,7 +163,8 @@ SONO_HD inline float mostWeight(const Vec3f& position, float radiusMm, const Bea
 }
 
 /// For a piece all of whose points lie within `radiusMm` of a position, cut as coarsely as pieces are or not. The
-/// intensity is that in front of where the line's own axis meets the piece's plane: behind that it has fallen already.
+/// intensity is that in front of where the line's own axis meets the piece's plane, since behind that it has fallen
+/// already, less what the medium in front takes from there on.
 SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& normal, float radiusMm, bool isCoarse,
                                           int rowFromA, const Beam& b, const LineGrid& g, const SurfaceTable& table,
                                           const SurfaceIntensity& intensity)
@@ -189,7 +194,7 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
   const float ahead =
     (glm::dot(normal, b.lateral) * place.lateral + glm::dot(normal, b.elevation) * place.elevational) / along;
   const float front = depthMm + larger(-surfaceCrossingMm, smaller(0.0f, ahead)) - table.slackMm;
-  float lit = intensityInFront(intensity, front);
+  float lit = intensityInFront(intensity, front, depthMm, row.decayPerMm);
   if (row.tau != 1.0f)
   {
     lit = powf(lit, row.tau);

@@ -1,19 +1,21 @@
 #pragma once
 
 #include "Core/SoundSpeed.h"
+#include "Kernel/BentTable.h"
 #include "Kernel/LineStart.h"
 
 // A scanner knows time alone: what lies at depth z of a line is shown at the range
 //
 //   r(z) = integral from 0 to z of c0 / c dz                      (Data/docs/physics.md 13.1)
 //
-// with c0 the speed that the scanner assumes. The integral runs along the line's axis, straight on, by the midpoint
-// rule on steps much shorter than a bin: no step waits for the one before, and what rounds a boundary to a step moves
-// what lies behind it by less than 0.003 mm.
+// with c0 the speed that the scanner assumes. The integral runs along the line's axis, straight on, in steps much
+// shorter than a bin, from medium to medium: where the two ends of a step differ, the boundary is looked for. What is
+// known at multiples of a step or a bin thus bends in between at most where a boundary is, and there sharply.
 
 namespace sono {
 
 constexpr float longestFlightStepMm = 0.08f;
+constexpr int boundaryHalvings = 7; ///< of a step, to find the boundary in it: 0.0006 mm
 
 /// Steps of a bin.
 SONO_HD inline int flightSteps(float binMm)
@@ -90,8 +92,8 @@ SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const
   return tissue == view.outsideTissue ? -1 : tissue;
 }
 
-/// What a step of depth adds to the way along the axis: its range, and the exponent of the intensity that is left of
-/// what goes straight on, across boundaries as if they lay across the axis.
+/// What a piece of the way along the axis adds to it: its range, and the exponent of the intensity that is left of what
+/// goes straight on, across boundaries as if they lay across the axis.
 struct FlightStep
 {
   float rangeMm;
@@ -99,22 +101,41 @@ struct FlightStep
   float absorbedNp; ///< of that, by the medium
 };
 
+SONO_HD inline void addMedium(const TraceView& view, int medium, float mm, FlightStep& sum)
+{
+  sum.rangeMm += mm * (medium < 0 ? 1.0f : view.media[medium].rangePerMm);
+  const float taken = mm * (medium < 0 ? 0.0f : view.media[medium].decayPerMm);
+  sum.lostNp += taken;
+  sum.absorbedNp += taken;
+}
+
+/// `medium` is that at the step's start, and becomes that at its end.
 template<class Space>
 SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, const TraceLine& line,
-                                     const TargetSpans& spans, float stepMm, int step)
+                                     const TargetSpans& spans, float stepMm, int step, int& medium)
 {
-  const int medium = mediumOnAxis(view, space, line, spans, (float(step) + 0.5f) * stepMm);
-  if (medium < 0)
+  const int before = medium;
+  medium = mediumOnAxis(view, space, line, spans, float(step + 1) * stepMm);
+  FlightStep sum{ 0.0f, 0.0f, 0.0f };
+  if (medium == before)
   {
-    return { stepMm, 0.0f, 0.0f };
+    addMedium(view, medium, stepMm, sum);
+    return sum;
   }
-  const TraceMedium& m = view.media[medium];
-  FlightStep sum{ stepMm * m.rangePerMm, stepMm * m.decayPerMm, stepMm * m.decayPerMm };
-  const int before = step > 0 ? mediumOnAxis(view, space, line, spans, (float(step) - 0.5f) * stepMm) : -1;
-  if (before >= 0 && before != medium)
+  float low = 0.0f;
+  float high = 1.0f;
+  for (int halving = 0; halving < boundaryHalvings; ++halving)
+  {
+    const float middle = 0.5f * (low + high);
+    (mediumOnAxis(view, space, line, spans, (float(step) + middle) * stepMm) == before ? low : high) = middle;
+  }
+  const float share = 0.5f * (low + high);
+  addMedium(view, before, share * stepMm, sum);
+  addMedium(view, medium, (1.0f - share) * stepMm, sum);
+  if (before >= 0 && medium >= 0)
   {
     const float z = view.media[before].impedance;
-    const float r = (m.impedance - z) / (m.impedance + z);
+    const float r = (view.media[medium].impedance - z) / (view.media[medium].impedance + z);
     sum.lostNp -= logf(larger(1.0f - r * r, 1e-12f));
   }
   return sum;
@@ -135,10 +156,15 @@ SONO_HD inline float depthOfRange(const float* rangeMm, int steps, float stepMm,
     const int middle = (low + high) / 2;
     (rangeMm[middle] <= wantedMm ? low : high) = middle;
   }
-  return (float(low) + (wantedMm - rangeMm[low]) / (rangeMm[low + 1] - rangeMm[low])) * stepMm;
+  const float own = 1.0f / (rangeMm[high] - rangeMm[low]);
+  const float before = low > 0 ? 1.0f / (rangeMm[low] - rangeMm[low - 1]) : own;
+  const float behind = high < steps ? 1.0f / (rangeMm[high + 1] - rangeMm[high]) : own;
+  const float depth =
+    bentBetween(float(low), float(high), wantedMm - rangeMm[low], rangeMm[high] - wantedMm, { before, own, behind });
+  return depth * stepMm;
 }
 
-/// How a line's depths lie on its ranges: depth less range, mm, at multiples of a bin of range, straight in between.
+/// How a line's depths lie on its ranges: depth less range, mm, at multiples of a bin of range, in between as bentAt().
 struct RangeMap
 {
   const float* offsetMm = nullptr; ///< null: range is depth
@@ -149,9 +175,7 @@ struct RangeMap
   {
     const float position = rangeMm * perBinMm;
     const int bin = int(smaller(position, float(bins - 1)));
-    const int next = bin + 1 < bins ? bin + 1 : bin;
-    const float share = smaller(position - float(bin), 1.0f);
-    return rangeMm + offsetMm[bin] + (offsetMm[next] - offsetMm[bin]) * share;
+    return rangeMm + (bin + 1 < bins ? bentAt(offsetMm, bins - 1, bin, position - float(bin)) : offsetMm[bin]);
   }
 };
 
@@ -182,12 +206,6 @@ SONO_HD inline RangeStep stepBetween(float from, float to)
 SONO_HD inline float depthInSamples(const RangeMap& map, float sampleMm, int s)
 {
   return map.depthOf(float(s) * sampleMm) / sampleMm;
-}
-
-/// From sample s on.
-SONO_HD inline RangeStep rangeStep(const RangeMap& map, float sampleMm, int s)
-{
-  return stepBetween(depthInSamples(map, sampleMm, s), depthInSamples(map, sampleMm, s + 1));
 }
 
 /// A demodulated sample of depth where it is shown: `rad` behind a sample of range whose carrier this is.

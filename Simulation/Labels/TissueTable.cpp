@@ -164,6 +164,11 @@ const Tissue* TissueTable::find(const std::string& name) const
   return nullptr;
 }
 
+double decayPerMm(const Tissue& tissue, double frequencyMHz)
+{
+  return tissue.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0;
+}
+
 double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz)
 {
   return 0.1 * tissue.backscatterPerCmSr * std::pow(frequencyMHz, tissue.backscatterExponent);

@@ -59,6 +59,9 @@ private:
   std::vector<Tissue> tissues_;
 };
 
+/// Of the intensity, which falls by 10^(-a f l / 10), l in cm: k in exp(-k l), 1/mm.
+double decayPerMm(const Tissue& tissue, double frequencyMHz);
+
 /// mu_b at a frequency, 1/(mm sr) (Data/docs/physics.md eq. 11.1).
 double backscatterPerMmSr(const Tissue& tissue, double frequencyMHz);
 

@@ -131,6 +131,7 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   const int steps = out.binCount * flightSteps(float(out.binMm));
   way.stepMm = float(out.binMm) / float(flightSteps(float(out.binMm)));
   const TargetSpans spans = targetSpans(view, space, axis);
+  int medium = mediumOnAxis(view, space, axis, spans, 0.0f);
   double range = 0.0;
   double lost = 0.0;
   double absorbed = 0.0;
@@ -139,7 +140,7 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
     way.rangeMm.push_back(float(range));
     way.amplitude.push_back(float(std::exp(-0.5 * lost)));
     way.absorbedNp.push_back(float(absorbed));
-    const FlightStep step = flightStep(view, space, axis, spans, way.stepMm, s);
+    const FlightStep step = flightStep(view, space, axis, spans, way.stepMm, s, medium);
     range += double(step.rangeMm);
     lost += double(step.lostNp);
     absorbed += double(step.absorbedNp);

@@ -38,7 +38,7 @@ struct TracedLines
   /// known.
   std::vector<float> attenuationNpPerMHz;
   /// lineCount x binCount: depth less range in mm, of what lies on the line's axis and is shown at the range b binMm,
-  /// straight in between (Data/docs/physics.md 13.1). Empty: range is depth, as in Amadou2024.
+  /// in between as RangeMap has it (Data/docs/physics.md 13.1). Empty: range is depth, as in Amadou2024.
   std::vector<float> depthOffsetMm;
   /// lineCount x binCount, by range, in the middles of bins: level of the speckle that reverberates, amplitude against
   /// soft tissue's of 5e-4 /(cm sr) at intensity 1, and its Monte-Carlo standard error (13.2). Empty: nothing does.

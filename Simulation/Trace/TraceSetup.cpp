@@ -21,8 +21,7 @@ TraceMedium makeMedium(const Tissue& tissue, const TraceSettings& settings)
   m.impedance = float(tissue.impedanceMRayl);
   m.speed = float(tissue.soundSpeedMPerS);
   m.rangePerMm = settings.rangeIsTime() ? float(1000.0 * assumedSoundSpeedMmPerUs / tissue.soundSpeedMPerS) : 1.0f;
-  // Intensity falls by 10^(-a f l / 10), l in cm.
-  m.decayPerMm = float(tissue.attenuationDbPerCmMHz * frequencyMHz * std::log(10.0) / 100.0);
+  m.decayPerMm = float(decayPerMm(tissue, frequencyMHz));
   const bool scatters =
     tissue.scattererProbability > 0.0 && (tissue.scattererMean != 0.0 || tissue.scattererSigma != 0.0);
   m.scatter = scatters ? float(std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / reverberationPerMmSr)) : 0.0f;

@@ -18,9 +18,9 @@ struct Layer
   double attenuation;
 };
 
-/// Layers across z, of half a millimetre's voxels; `change` may say more of their tissues.
+/// Layers across z, whose ends are multiples of a voxel's height; `change` may say more of their tissues.
 inline std::unique_ptr<Scene> layeredScene(
-  const std::vector<Layer>& layers, const std::function<void(Tissue&)>& change = [](Tissue&) {})
+  const std::vector<Layer>& layers, const std::function<void(Tissue&)>& change = [](Tissue&) {}, double voxelMm = 0.5)
 {
   std::vector<Tissue> tissues;
   for (std::size_t i = 0; i < layers.size(); ++i)
@@ -37,7 +37,8 @@ inline std::unique_ptr<Scene> layeredScene(
     }
     return int(layer);
   };
-  return makeScene({ 40, 40, int(std::lround(2.0 * layers.back().endMm)) }, Vec3d(0.5), tissues, layerAt);
+  return makeScene({ 40, 40, int(std::lround(layers.back().endMm / voxelMm)) }, Vec3d(0.5, 0.5, voxelMm), tissues,
+                   layerAt);
 }
 
 } // namespace sono::test

@@ -17,15 +17,17 @@ using namespace sono::test;
 namespace {
 
 /// Smooth layers.
-std::unique_ptr<Scene> smoothLayers(const std::vector<Layer>& layers, double backscatterPerCmSr = 0.0)
+std::unique_ptr<Scene> smoothLayers(const std::vector<Layer>& layers, double backscatterPerCmSr = 0.0,
+                                    double voxelMm = 0.5)
 {
-  return layeredScene(layers, [=](Tissue& tissue) {
+  const auto change = [=](Tissue& tissue) {
     tissue.roughnessMm = 0.0;
     tissue.backscatterPerCmSr = backscatterPerCmSr;
     tissue.backscatterExponent = 0.0;
     tissue.scattererProbability = 1.0;
     tissue.scattererMean = 1.0;
-  });
+  };
+  return layeredScene(layers, change, voxelMm);
 }
 
 const std::vector<ScanLine>& line()
@@ -107,6 +109,23 @@ TEST(Reverberation, ALinesOfAPlateAndTheFace)
     const double expected =
       decibels(std::pow(r, n) * std::pow(0.5, n - 1)) - 2.0 * n * 2.0 * 0.5 * 2.5; // 2 cm there and back
     EXPECT_NEAR(decibels(arrivalAt(traced, 20.0 * n, 2.5)), expected, 0.05) << n;
+  }
+}
+
+TEST(Reverberation, AWallIsNotInItsOwnWayBack)
+{
+  // Wherever in a bin it lies. A lung lets a third of the intensity through, which would be missing.
+  for (int n = 0; n < 8; ++n)
+  {
+    const double voxelMm = 0.5 + 0.0009 * n; // the wall in steps of 0.04 mm
+    const double wallMm = 40.0 * voxelMm;
+    const auto scene =
+      smoothLayers({ { wallMm, 1.6, 1500.0, 0.0 }, { 120.0 * voxelMm, 0.4, 650.0, 0.0 } }, 0.0, voxelMm);
+    TraceSettings s = settings(20000);
+    s.faceReflection = 0.5;
+    const TracedLines traced = trace(*scene, line(), s);
+    EXPECT_NEAR(decibels(arrivalAt(traced, 2.0 * wallMm * 1540.0 / 1500.0, 2.5)), decibels(0.6 * 0.6 * 0.5), 0.02)
+      << wallMm;
   }
 }
 

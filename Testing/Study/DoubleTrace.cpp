@@ -68,10 +68,11 @@ void findDepthOffsets(const DoubleInput& input, const kernel::TraceView& view, c
   const int each = kernel::flightSteps(binMm);
   const double stepMm = binMm / each;
   const kernel::TargetSpans spans = kernel::targetSpans(view, space, line);
+  int medium = kernel::mediumOnAxis(view, space, line, spans, 0.0);
   std::vector<double> rangeMm{ 0.0 };
   for (int s = 0; s < input.binCount * each; ++s)
   {
-    rangeMm.push_back(rangeMm.back() + kernel::flightStep(view, space, line, spans, stepMm, s).rangeMm);
+    rangeMm.push_back(rangeMm.back() + kernel::flightStep(view, space, line, spans, stepMm, s, medium).rangeMm);
   }
   for (int b = 0; b < input.binCount; ++b)
   {
