@@ -48,6 +48,16 @@ std::vector<float> floatsOf(vtkDataArray* array)
 
 } // namespace
 
+LineImageLayout shownLayout(const ScanGeometry& geometry, int sampleCount, double sampleMm)
+{
+  return { sampleCount, geometry.totalLineCount(), 0.0, sampleMm * geometry.shownPerRange() };
+}
+
+double rangeSampleMm(const ScanGeometry& geometry, const LineImageLayout& shown)
+{
+  return shown.sampleMm / geometry.shownPerRange();
+}
+
 void announceLineImage(const LineImageLayout& layout, int components, vtkInformation* outInfo)
 {
   const int extent[6] = { 0, layout.sampleCount - 1, 0, layout.lineCount - 1, 0, 0 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Probe/ScanGeometry.h"
+
 #include "vtkSmartPointer.h"
 
 #include <complex>
@@ -21,6 +23,11 @@ struct LineImageLayout
   double firstMm = 0.0;  ///< depth of the first sample
   double sampleMm = 1.0; ///< distance of two samples
 };
+
+/// Of a probe's lines whose samples, from range 0 on, are `sampleMm` of range apart: where its scanner shows them.
+LineImageLayout shownLayout(const ScanGeometry& geometry, int sampleCount, double sampleMm);
+/// The other way: the range between two samples, mm.
+double rangeSampleMm(const ScanGeometry& geometry, const LineImageLayout& shown);
 
 void announceLineImage(const LineImageLayout& layout, int components, vtkInformation* outInfo);
 /// Of an image that has no arrays then.

@@ -120,10 +120,10 @@ void fillTraced(const TracedResult& traced, const ProbeField& probe, double samp
   vtkSonoResultHandle::Attach(traced, tracedArrays(lines), lines->GetFieldData());
 }
 
-void fillEchoes(const TracedResult& traced, vtkImageData* lines, vtkImageData* echoes)
+void fillEchoes(const TracedResult& traced, const ProbeField& probe, vtkImageData* lines, vtkImageData* echoes)
 {
   const TracedLines& layout = traced.layout();
-  setLineImageLayout({ layout.echoCount, layout.lineCount, 0.0, layout.echoSampleMm }, echoes);
+  setLineImageLayout(shownLayout(probe.geometry, layout.echoCount, layout.echoSampleMm), echoes);
   TracedLines::visitArrays(layout, [&](const auto&, const char* name, TracedAxis axis) {
     if (axis == TracedAxis::EchoSamples)
     {
@@ -191,10 +191,10 @@ TracedResult tracedHandleOf(vtkImageData* lines)
   return found<TracedResult>(tracedArrays(lines), lines);
 }
 
-void fillRf(const RfResult& rf, vtkImageData* image)
+void fillRf(const RfResult& rf, const ProbeField& probe, vtkImageData* image)
 {
   const RfLines& layout = rf.layout();
-  setLineImageLayout({ layout.sampleCount, layout.lineCount, 0.0, layout.sampleMm }, image);
+  setLineImageLayout(shownLayout(probe.geometry, layout.sampleCount, layout.sampleMm), image);
   image->GetFieldData()->RemoveArray("BoundaryEcho"); // it came along from the input and is part of RF now
   addRf(rf, image);
   vtkSonoResultHandle::Attach(rf, rfArrays(image), image->GetFieldData());
@@ -205,10 +205,10 @@ RfResult rfOf(vtkImageData* image)
   return found<RfResult>(rfArrays(image), image);
 }
 
-void fillBMode(const BModeResult& bmode, vtkImageData* image)
+void fillBMode(const BModeResult& bmode, const ProbeField& probe, vtkImageData* image)
 {
   const BModeLines& layout = bmode.layout();
-  setLineImageLayout({ layout.sampleCount, layout.lineCount, 0.0, layout.sampleMm }, image);
+  setLineImageLayout(shownLayout(probe.geometry, layout.sampleCount, layout.sampleMm), image);
   addBMode(bmode, image);
   vtkSonoResultHandle::Attach(bmode, bmodeArrays(image), image->GetFieldData());
 }

@@ -21,7 +21,7 @@ void fillProbe(const ProbeField& probe, vtkPolyData* polyData);
 /// the RF to be.
 void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, vtkImageData* lines);
 /// Lines x samples "BoundaryEcho", beside traced lines.
-void fillEchoes(const TracedResult& traced, vtkImageData* lines, vtkImageData* echoes);
+void fillEchoes(const TracedResult& traced, const ProbeField& probe, vtkImageData* lines, vtkImageData* echoes);
 /// What fillTraced has put into some lines, as a result: the handle itself while it is that of the arrays, else what
 /// the arrays say. Throws Error when an array is missing, and when `lines` do not hold the probe's.
 TracedResult tracedOf(vtkImageData* lines, const ProbeField& probe, double echoSampleMm);
@@ -34,12 +34,12 @@ TracedLines rangeArraysOf(vtkImageData* lines, int lineCount);
 TracedResult tracedHandleOf(vtkImageData* lines);
 
 /// Lines x samples "Envelope", "RF" and "IQ".
-void fillRf(const RfResult& rf, vtkImageData* image);
+void fillRf(const RfResult& rf, const ProbeField& probe, vtkImageData* image);
 /// The handle that fillRf has left, while it is that of the arrays; else no result.
 RfResult rfOf(vtkImageData* image);
 
 /// Lines x samples "BMode", and the reference amplitude in the field data.
-void fillBMode(const BModeResult& bmode, vtkImageData* image);
+void fillBMode(const BModeResult& bmode, const ProbeField& probe, vtkImageData* image);
 /// As rfOf.
 BModeResult bmodeOf(vtkImageData* image);
 

@@ -119,6 +119,10 @@ ProbeField readProbe(vtkFieldData* field)
   {
     ScanGeometry::visitCompounding(probe.geometry, read);
   }
+  if (field->HasArray("AssumedSoundSpeedMPerS"))
+  {
+    ScanGeometry::visitSoundSpeed(probe.geometry, read);
+  }
   if (field->HasArray("ImagingMode"))
   {
     ProbeSettings::visitMode(probe, read);

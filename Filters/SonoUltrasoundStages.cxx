@@ -161,7 +161,8 @@ void UltrasoundStages::announce(vtkInformationVector** input, vtkInformationVect
   const double binMm = settings_.tracing.radialBinMm;
   for (int port : { Filter::RF_LINES, Filter::BMODE_LINES })
   {
-    announceLineImage({ settings_.echo.sampleCount(), lineCount, 0.0, settings_.echo.sampleMm() }, 1, on(port));
+    announceLineImage(shownLayout(settings_.geometry, settings_.echo.sampleCount(), settings_.echo.sampleMm()), 1,
+                      on(port));
   }
   announceLineImage({ settings_.tracing.binCount(), lineCount, binMm / 2.0, binMm }, 1, on(Filter::TRACED_LINES));
   announceFields(acquisition_, on(Filter::IMAGE));
@@ -372,14 +373,18 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   const RfResult rf = simulator_.rf(image, progress(formation, 0.0, bmodeEnd));
   if (port == Filter::RF_LINES)
   {
+    if (rfLines_ && rfLines_->GetSpacing()[0] != shownLayout(field_.geometry, 1, rf.layout().sampleMm).sampleMm)
+    {
+      rfLines_ = nullptr; // the same samples, shown to another scale
+    }
     return makeLines(
-      rf, rfOf, [&] { fillRf(rf, lines); }, rfLines_, lines);
+      rf, rfOf, [&] { fillRf(rf, field_, lines); }, rfLines_, lines);
   }
   if (port == Filter::BMODE_LINES)
   {
     const BModeResult grey = simulator_.bmode(image, progress(bmode, 0.0, bmodeEnd));
     return makeLines(
-      grey, bmodeOf, [&] { fillBMode(grey, lines); }, bmodeLines_, lines);
+      grey, bmodeOf, [&] { fillBMode(grey, field_, lines); }, bmodeLines_, lines);
   }
   vtkImageData* world = vtkImageData::GetData(output, Filter::IMAGE);
   if (port == Filter::FLAT_IMAGE)

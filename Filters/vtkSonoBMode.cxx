@@ -48,6 +48,7 @@ sono::BModeSettings vtkSonoBMode::Settings(const sono::ProbeSettings& probe) con
   settings.hazeGrowthPerMm =
     sono::bodyWallGrowthPerMm(probe.imagingMode, probe.centreFrequencyMHz, probe.facePressureKPa);
   settings.linesAcross = probe.geometry.lineCount;
+  settings.shownPerRange = probe.geometry.shownPerRange();
   if (this->GreyMapFile.empty() && this->GreyMap == "Linear")
   {
     return settings;
@@ -91,12 +92,12 @@ int vtkSonoBMode::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     const sono::BModeSettings settings = this->Settings(probe);
     if (const sono::RfResult rf = sono::rfOf(lines))
     {
-      return sono::fillBMode(this->Simulator->makeBMode(rf, settings), vtkImageData::GetData(output));
+      return sono::fillBMode(this->Simulator->makeBMode(rf, settings), probe, vtkImageData::GetData(output));
     }
     const std::vector<float> envelope =
       sono::lineValues("Envelope", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount);
-    sono::fillBMode(
-      sono::BModeResult(sono::makeBMode(envelope, layout.lineCount, layout.sampleCount, layout.sampleMm, settings)),
-      vtkImageData::GetData(output));
+    sono::fillBMode(sono::BModeResult(sono::makeBMode(envelope, layout.lineCount, layout.sampleCount,
+                                                      sono::rangeSampleMm(probe.geometry, layout), settings)),
+                    probe, vtkImageData::GetData(output));
   });
 }

@@ -57,7 +57,7 @@ sono::EchoSettings vtkSonoImageFormation::Settings(const sono::ProbeField& probe
   settings.imagingMode = probe.imagingMode;
   settings.aperture = probe.aperture();
   settings.samplingMHz = samplingMHz;
-  settings.depthMm = probe.geometry.depthMm;
+  settings.depthMm = probe.geometry.rangeMm();
   settings.scattererCellMm =
     probe.preview ? sono::interactiveCellMm(settings.scattererCellMm) : settings.scattererCellMm;
   settings.validate();
@@ -77,9 +77,8 @@ int vtkSonoImageFormation::RequestInformation(vtkInformation*, vtkInformationVec
     vtkFieldData* acquisition = sono::announcedFields(input[0]->GetInformationObject(0));
     const sono::ProbeField probe = sono::readProbe(acquisition);
     const sono::EchoSettings settings = this->Settings(probe, sono::readNumber("SamplingMHz", acquisition));
-    const int lineCount = probe.geometry.totalLineCount();
     vtkInformation* outInfo = output->GetInformationObject(0);
-    sono::announceLineImage({ settings.sampleCount(), lineCount, 0.0, settings.sampleMm() }, 1, outInfo);
+    sono::announceLineImage(sono::shownLayout(probe.geometry, settings.sampleCount(), settings.sampleMm()), 1, outInfo);
     sono::announceFields(acquisition, outInfo);
   });
 }
@@ -107,6 +106,6 @@ int vtkSonoImageFormation::RequestData(vtkInformation*, vtkInformationVector** i
     const sono::RfResult rf =
       this->Simulator->formRf(sono::makeScanLines(probe.geometry, probe.pose), traced, settings,
                               sono::pointScatterers(vtkPointSet::GetData(input[1])), sono::progressOf(this));
-    sono::fillRf(rf, vtkImageData::GetData(output));
+    sono::fillRf(rf, probe, vtkImageData::GetData(output));
   });
 }

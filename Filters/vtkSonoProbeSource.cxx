@@ -78,6 +78,7 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
                                                ? sono::settingsIn<sono::ProbeSettings>(*this->Parameters)
                                                : sono::readProbePreset(presetPath(this->PresetFile));
   const auto& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters);
+  probe.geometry.assumedSoundSpeedMPerS = given.geometry.assumedSoundSpeedMPerS;
   probe.geometry.compoundFans = this->Preview ? 1 : given.geometry.compoundFans;
   probe.geometry.compoundSpanDeg = given.geometry.compoundSpanDeg;
   probe.imagingMode = given.imagingMode;

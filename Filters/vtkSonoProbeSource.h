@@ -69,6 +69,7 @@ public:
   sonoParameter(TransmitFocusMm, double);
   sonoParameter(ElevationFocusMm, double);
   sonoParameter(ElementWidthMm, double);
+  sonoParameter(AssumedSoundSpeedMPerS, double);
   sonoParameter(CompoundFans, int);
   sonoParameter(CompoundSpanDeg, double);
   sonoParameter(ImagingMode, int);

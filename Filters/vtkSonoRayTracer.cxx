@@ -89,7 +89,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.imagingMode = probe.imagingMode;
   settings.facePressureKPa = probe.facePressureKPa;
   settings.aperture = probe.aperture();
-  settings.depthMm = probe.geometry.depthMm;
+  settings.depthMm = probe.geometry.rangeMm();
   settings.echoSampleMm = rfGrid(this->RfSamplingMHz(probe), settings.depthMm).sampleMm();
   settings.validate();
   return settings;
@@ -110,7 +110,7 @@ int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector**
     vtkInformation* echoes = output->GetInformationObject(1);
     sono::announceLineImage({ settings.binCount(), lineCount, settings.radialBinMm / 2.0, settings.radialBinMm }, 1,
                             lines);
-    sono::announceLineImage({ settings.echoCount(), lineCount, 0.0, settings.echoSampleMm }, 2, echoes);
+    sono::announceLineImage(sono::shownLayout(probe.geometry, settings.echoCount(), settings.echoSampleMm), 2, echoes);
     sono::announceFields(acquisition, lines);
     sono::announceFields(acquisition, echoes);
   });
@@ -152,7 +152,7 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     vtkImageData* lines = vtkImageData::GetData(output, 0);
     sono::fillTraced(traced, probe, this->RfSamplingMHz(probe), lines);
     vtkImageData* echoes = vtkImageData::GetData(output, 1);
-    sono::fillEchoes(traced, lines, echoes);
+    sono::fillEchoes(traced, probe, lines, echoes);
     sono::writeProbe(probe, echoes->GetFieldData());
     sono::writeNumber("SamplingMHz", this->RfSamplingMHz(probe), echoes->GetFieldData());
   });

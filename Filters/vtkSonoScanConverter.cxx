@@ -121,7 +121,7 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     if (!bmode)
     {
       bmode = sono::BModeResult(
-        { layout.lineCount, layout.sampleCount, layout.sampleMm, 0.0,
+        { layout.lineCount, layout.sampleCount, sono::rangeSampleMm(probe.geometry, layout), 0.0,
           sono::lineValues("BMode", lines->GetPointData(), std::size_t(layout.lineCount) * layout.sampleCount) });
     }
     const auto connected = this->ConnectedLabels(vtkImageData::GetData(input[1]));

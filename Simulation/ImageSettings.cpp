@@ -28,8 +28,8 @@ bool agree(double a, double b)
 
 void ImageSettings::matchStages()
 {
-  tracing.depthMm = geometry.depthMm;
-  echo.depthMm = geometry.depthMm;
+  tracing.depthMm = geometry.rangeMm();
+  echo.depthMm = geometry.rangeMm();
   tracing.frequencyMHz = echo.sentFrequencyMHz();
   tracing.imagingMode = echo.imagingMode;
   tracing.aperture = echo.aperture;
@@ -38,11 +38,12 @@ void ImageSettings::matchStages()
   bmode.pulseSigmaMm = sono::pulseSigmaMm(echo.centreFrequencyMHz, echo.fractionalBandwidth);
   bmode.hazeGrowthPerMm = bodyWallGrowthPerMm(tracing.imagingMode, tracing.frequencyMHz, tracing.facePressureKPa);
   bmode.linesAcross = geometry.lineCount;
+  bmode.shownPerRange = geometry.shownPerRange();
 }
 
 void ImageSettings::requireMatch() const
 {
-  requireAlike(agree(tracing.depthMm, geometry.depthMm) && agree(echo.depthMm, geometry.depthMm), "the depth");
+  requireAlike(agree(tracing.depthMm, geometry.rangeMm()) && agree(echo.depthMm, geometry.rangeMm()), "the depth");
   requireAlike(tracing.imagingMode == echo.imagingMode, "the imaging mode");
   requireAlike(agree(tracing.frequencyMHz, echo.sentFrequencyMHz()), "the frequency");
   requireAlike(tracing.aperture == echo.aperture, "the aperture");

@@ -11,7 +11,7 @@ namespace sono {
 /// Whether two distances, times or frequencies are the same but for rounding.
 bool agree(double a, double b);
 
-/// Every stage's settings. Depth and frequency of tracing and image formation must agree with the geometry's depth and
+/// Every stage's settings. Depth and frequency of tracing and image formation must agree with the geometry's range and
 /// with each other, the apertures and the tracer's echo samples with the RF's: see matchStages.
 struct ImageSettings
 {
@@ -21,7 +21,7 @@ struct ImageSettings
   BModeSettings bmode;
   double pixelMm = 0.23;
 
-  /// Takes depth and lines from the geometry, and mode, frequency, bandwidth, aperture and sampling from the RF, for
+  /// Takes range and lines from the geometry, and mode, frequency, bandwidth, aperture and sampling from the RF, for
   /// all stages.
   void matchStages();
   /// Throws Error, naming it, when the stages disagree about one of these.

@@ -36,7 +36,8 @@ auto rest(const EchoSettings& s)
 
 auto rest(const BModeSettings& s)
 {
-  return std::tie(s.greyMap, s.noiseSeed, s.frequencyMHz, s.pulseSigmaMm, s.hazeGrowthPerMm, s.linesAcross);
+  return std::tie(s.greyMap, s.noiseSeed, s.frequencyMHz, s.pulseSigmaMm, s.hazeGrowthPerMm, s.linesAcross,
+                  s.shownPerRange);
 }
 
 auto all(const ProbePose& p)

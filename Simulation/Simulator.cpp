@@ -438,13 +438,11 @@ ScanPicture Simulator::makePicture(const ImageResult& image, const LabelsWanted*
   {
     const TracedResult& traced = wanted->traced;
     const auto& onDevice = traced ? traced.onDevice() : nullptr;
+    const DepthOffsets given = traced && !onDevice ? offsetsOf(traced.host()) : DepthOffsets{};
     LabelJob job = makeLabelJob(needScene(), &wanted->pose, 1, image.plane().layout());
-    if (traced && traced.layout().model == InterfaceModel::Acoustic)
-    {
-      const TracedLines& layout = traced.layout();
-      job.offsets = planeScan(wanted->geometry, layout.binCount, layout.binMm, image.plane().layout().pixelMm);
-      job.offsetMm = onDevice ? nullptr : &traced.host().depthOffsetMm;
-    }
+    job.scan = offsetScan(wanted->geometry, traced ? traced.layout().binCount : 0, traced ? traced.layout().binMm : 0.0,
+                          image.plane().layout().pixelMm);
+    job.offsetMm = given.any() ? given.mm : nullptr;
     labels = imager.slice(job, *picture, onDevice.get());
   }
   const PictureCopy copy = imager.wait(imager.beginDownload(picture, labels));

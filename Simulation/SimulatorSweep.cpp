@@ -3,6 +3,7 @@
 #include "Cuda/MakeImageJob.h"
 #include "Cuda/RunOnDevice.h"
 #include "Echo/EchoSetup.h"
+#include "Image/LabelSlice.h"
 #include "Kernel/TracePath.h"
 #include "Simulator.h"
 #include "Trace/TraceSetup.h"
@@ -75,7 +76,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   const RfLines rfOfOne = rfLayout(perImage, settings.echo);
   const PlaneImage layout = planeImageLayout(settings.geometry, settings.pixelMm);
   const PlaneScan scan = planeScan(settings.geometry, rfOfOne.sampleCount, rfOfOne.sampleMm, settings.pixelMm);
-  const PlaneScan offsets = planeScan(settings.geometry, tracedOfOne.binCount, tracedOfOne.binMm, settings.pixelMm);
+  const PlaneScan offsets = offsetScan(settings.geometry, tracedOfOne.binCount, tracedOfOne.binMm, settings.pixelMm);
   std::shared_ptr<const TraceJob> traceJob;
   {
     const TraceSetup setup(scene, lines, settings.tracing, targets, partOf(progress, 0.0, 0.3));
@@ -119,10 +120,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     if (withLabels)
     {
       LabelJob job = makeLabelJob(scene, poses.data() + first, count, layout);
-      if (settings.tracing.rangeIsTime())
-      {
-        job.offsets = offsets;
-      }
+      job.scan = offsets;
       labels = imager.slice(job, *picture, traced.get());
     }
     auto next = imager.beginDownload(picture, labels);

@@ -2,7 +2,8 @@
 
 namespace sono {
 
-/// Speed of sound that turns time into range, as a scanner assumes it, mm per microsecond.
+/// Speed of sound that turns time into range, mm per microsecond. Ranges of all stages are counted with it; what a
+/// scanner that assumes another one shows is a matter of scale (see ScanGeometry::shownPerRange).
 constexpr double assumedSoundSpeedMmPerUs = 1.54;
 
 /// What an image shows may lie so much deeper than where it is shown: soft tissue that is faster than assumed fills the

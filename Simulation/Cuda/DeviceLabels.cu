@@ -20,8 +20,7 @@ __global__ void sliceRows(const LabelRow* rows, int width, int rowsPerImage, con
   {
     if (inside[n])
     {
-      const LabelShift shift = ofImage ? labelShift(scan, ofImage, scan.lateralMm(n), x) : LabelShift{};
-      out[n] = labelAt(row, n, shift, voxels, size);
+      out[n] = labelAt(row, n, labelShift(scan, ofImage, scan.lateralMm(n), x), voxels, size);
     }
     else
     {
@@ -43,11 +42,7 @@ DeviceArray<std::uint16_t> DeviceLabels::slice(const LabelJob& job, int width, i
     sceneId_ = job.sceneId;
   }
   rows_.upload(job.rows, stream, traffic);
-  if (!job.offsets)
-  {
-    offsetMm = nullptr;
-  }
-  else if (job.offsetMm)
+  if (job.offsetMm)
   {
     offsetMm_.upload(*job.offsetMm, stream, traffic);
     offsetMm = offsetMm_.data();
@@ -55,8 +50,7 @@ DeviceArray<std::uint16_t> DeviceLabels::slice(const LabelJob& job, int width, i
   DeviceArray<std::uint16_t> labels;
   labels.resize(job.rows.size() * std::size_t(width));
   sliceRows<<<unsigned(job.rows.size()), threads, 0, stream>>>(rows_.data(), width, rowsPerImage, voxels_.data(),
-                                                               job.size, mask, job.offsets.value_or(PlaneScan{}),
-                                                               offsetMm, labels.data());
+                                                               job.size, mask, job.scan, offsetMm, labels.data());
   check(cudaGetLastError(), "looking up labels");
   return labels;
 }

@@ -229,8 +229,8 @@ struct LabelJob
   std::uint64_t sceneId = 0;          ///< the voxels are kept on the device while it is the same
   Vec3i size{ 0 };
   std::vector<LabelRow> rows;
-  std::optional<PlaneScan> offsets;             ///< of the depth offsets; nothing: what is shown lies at its pixel
-  const std::vector<float>* offsetMm = nullptr; ///< those, where they do not lie on the device
+  PlaneScan scan{};                             ///< see offsetScan
+  const std::vector<float>* offsetMm = nullptr; ///< depth offsets that do not lie on the device
 };
 
 } // namespace sono

@@ -188,7 +188,7 @@ std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, 
   std::vector<double> gain(sampleCount);
   for (int s = 0; s < sampleCount; ++s)
   {
-    const double depthMm = s * sampleMm;
+    const double depthMm = s * sampleMm * settings.shownPerRange;
     gain[s] =
       settings.tgcDbPerCm * depthMm / 10.0 + sliderGainDb(settings.tgcDb, double(s) / std::max(1, sampleCount - 1));
   }
@@ -209,7 +209,8 @@ std::vector<float> lateralGainDb(const BModeSettings& settings, int lineCount)
 std::vector<float> smoothingWeights(const BModeSettings& settings, double sampleMm)
 {
   std::vector<float> weights;
-  const double sigma = settings.axialSmoothingMm / sampleMm / std::sqrt(8.0 * std::log(2.0)); // samples
+  const double sigma =
+    settings.axialSmoothingMm / (sampleMm * settings.shownPerRange) / std::sqrt(8.0 * std::log(2.0)); // samples
   for (int i = 0; settings.axialSmoothingMm > 0.0 && i <= int(std::ceil(4.0 * sigma)); ++i)
   {
     weights.push_back(float(std::exp(-0.5 * (i / sigma) * (i / sigma))));

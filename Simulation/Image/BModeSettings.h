@@ -37,6 +37,7 @@ struct BModeSettings
   double pulseSigmaMm = 0.2;     ///< standard deviation of the receive filter's pulse: the noise's grain along a line
   double hazeGrowthPerMm = 0.0;  ///< of a harmonic picture, see bodyWallGrowthPerMm; 0: the haze is the fundamental's
   int linesAcross = 0;           ///< lines side by side; those that follow lie in other planes. 0: all
+  double shownPerRange = 1.0;    ///< see ScanGeometry: TGC and smoothing are by what is shown
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)

@@ -44,12 +44,18 @@ std::vector<LabelRow> labelRows(const LabelVolume& labels, const ProbePose& pose
   return rows;
 }
 
+PlaneScan offsetScan(const ScanGeometry& geometry, int binCount, double binMm, double pixelMm)
+{
+  return binCount > 0 ? planeScan(geometry, binCount, binMm, pixelMm)
+                      : planeScan(geometry, 1, geometry.depthMm, pixelMm);
+}
+
 std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
                                        const PlaneImage& image, const DepthOffsets& offsets)
 {
   const std::vector<LabelRow> rows = labelRows(labels, pose, image);
-  const PlaneScan scan =
-    offsets.any() ? planeScan(geometry, offsets.binCount, offsets.binMm, image.pixelMm) : PlaneScan{};
+  const PlaneScan scan = offsetScan(geometry, offsets.binCount, offsets.binMm, image.pixelMm);
+  const float* offsetMm = offsets.any() ? offsets.mm->data() : nullptr;
   std::vector<std::uint16_t> out(image.mask.size(), 0);
   parallelFor(image.height, {}, [&](int j) {
     const std::size_t at = std::size_t(j) * std::size_t(image.width);
@@ -57,9 +63,8 @@ std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeom
     {
       if (image.mask[at + std::size_t(i)])
       {
-        const LabelShift shift = offsets.any() ? labelShift(scan, offsets.mm->data(), scan.lateralMm(i),
-                                                            scan.beams.axialFromCentre(scan.axialMm(j)))
-                                               : LabelShift{};
+        const LabelShift shift =
+          labelShift(scan, offsetMm, scan.lateralMm(i), scan.beams.axialFromCentre(scan.axialMm(j)));
         out[at + std::size_t(i)] = labelAt(rows[std::size_t(j)], i, shift, labels.voxels.data(), labels.placement.size);
       }
     }
@@ -74,6 +79,7 @@ std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeom
   const VolumeImage shift = offsets.any()
                               ? scanConvertVolume(geometry, *offsets.mm, offsets.binCount, offsets.binMm, image.voxelMm)
                               : VolumeImage{};
+  const double rangePerMm = 1.0 / geometry.shownPerRange();
   std::vector<std::uint16_t> out(image.mask.size(), 0);
   parallelFor(image.size.y * image.size.z, {}, [&](int row) {
     const std::size_t at = std::size_t(row) * std::size_t(image.size.x);
@@ -83,9 +89,9 @@ std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeom
       {
         Vec3d place = image.minMm + image.voxelMm * Vec3d(i, row % image.size.y, row / image.size.y);
         const double fromApex = glm::length(place);
-        if (offsets.any() && fromApex > 0.0)
+        if (fromApex > 0.0)
         {
-          place *= 1.0 + double(shift.value[at + std::size_t(i)]) / fromApex;
+          place *= rangePerMm + (offsets.any() ? double(shift.value[at + std::size_t(i)]) / fromApex : 0.0);
         }
         out[at + std::size_t(i)] = labelAtIndex(index.at(place), labels.voxels.data(), labels.placement.size);
       }

@@ -10,7 +10,7 @@
 
 namespace sono {
 
-/// Where lines show what lies on them (see TracedLines::depthOffsetMm), lines x bins. Without: where it lies.
+/// Where lines show what lies on them (see TracedLines::depthOffsetMm), lines x bins. Without: range is depth.
 struct DepthOffsets
 {
   const std::vector<float>* mm = nullptr; ///< null or empty: none
@@ -28,6 +28,9 @@ std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeom
 std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
                                        const VolumeImage& image, const DepthOffsets& offsets = {});
 
+/// The way from a pixel to the depth offsets, see labelShift; without bins of these to the scale of what is shown
+/// alone.
+PlaneScan offsetScan(const ScanGeometry& geometry, int binCount, double binMm, double pixelMm);
 /// The rows of an image's plane, from its least depth on, through the label map; see labelAt.
 std::vector<LabelRow> labelRows(const LabelVolume& labels, const ProbePose& pose, const PlaneImage& layout);
 

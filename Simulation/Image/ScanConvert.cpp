@@ -96,22 +96,14 @@ PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm)
 PlaneScan planeScan(const ScanGeometry& geometry, int sampleCount, double sampleMm, double pixelMm)
 {
   const PlaneImage layout = planeImageLayout(geometry, pixelMm);
+  const double shownMm = sampleMm * geometry.shownPerRange();
   const int lastLine = geometry.closesCircle() ? geometry.lineCount : geometry.lineCount - 1;
   const ScannedArea area{ float(lastLine) + ScannedArea::lineSlack, float(-1e-4 * pixelMm),
-                          float(std::min(geometry.depthMm, sampleCount * sampleMm) + 1e-4 * pixelMm) };
-  PlaneScan scan{ planeBeams(geometry),
-                  area,
-                  float(1.0 / sampleMm),
-                  geometry.lineCount,
-                  sampleCount,
-                  geometry.closesCircle(),
-                  layout.width,
-                  layout.height,
-                  pixelMm,
-                  layout.lateralMinMm,
-                  layout.axialMinMm,
-                  geometry.fanCount(),
-                  {} };
+                          float(std::min(geometry.depthMm, sampleCount * shownMm) + 1e-4 * pixelMm) };
+  PlaneScan scan{ planeBeams(geometry), area,        float(1.0 / shownMm),    float(1.0 / geometry.shownPerRange()),
+                  geometry.lineCount,   sampleCount, geometry.closesCircle(), layout.width,
+                  layout.height,        pixelMm,     layout.lateralMinMm,     layout.axialMinMm,
+                  geometry.fanCount(),  {} };
   for (int fan = 0; fan < scan.fanCount; ++fan)
   {
     const double radians = geometry.steeringDeg(fan) * 3.14159265358979323846 / 180.0;

@@ -28,8 +28,8 @@ PlaneImage planeImageLayout(const ScanGeometry& geometry, double pixelMm);
 /// The same with the way from a pixel to the lines' samples, for any device.
 PlaneScan planeScan(const ScanGeometry& geometry, int sampleCount, double sampleMm, double pixelMm);
 
-/// Bilinear scan conversion of lines x samples (`sampleMm` apart, the first at depth 0) onto square pixels that cover
-/// the sector's bounding box, centred laterally. The last sample holds for up to one sample more; depths that no
+/// Bilinear scan conversion of lines x samples (`sampleMm` of range apart, the first at 0) onto square pixels that
+/// cover the sector's bounding box, centred laterally. The last sample holds for up to one sample more; depths that no
 /// sample reaches, and what lies beyond the geometry's depth, are outside. A single line is drawn one pixel wide.
 /// A closed circle is interpolated across its seam. Where fans are compounded, `values` holds them one after the other,
 /// and a pixel that an unsteered fan covers is the mean of those that see it, outside where none does. Throws Error

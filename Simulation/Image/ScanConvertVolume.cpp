@@ -139,8 +139,9 @@ VolumeImage scanConvertVolume(const ScanGeometry& geometry, const std::vector<fl
   const AngleMap azimuth(geometry.lineCount, geometry.sectorDeg);
   const AngleMap elevation(geometry.elevationLineCount, geometry.elevationSectorDeg);
   const BeamVolume beams{ values.data(), geometry.elevationLineCount, geometry.lineCount, sampleCount };
-  const auto lastMm = float(std::min(geometry.depthMm, sampleCount * sampleMm) + 1e-4 * voxelMm);
-  const auto samplesPerMm = float(1.0 / sampleMm);
+  const double shownMm = sampleMm * geometry.shownPerRange();
+  const auto lastMm = float(std::min(geometry.depthMm, sampleCount * shownMm) + 1e-4 * voxelMm);
+  const auto samplesPerMm = float(1.0 / shownMm);
 
   const auto convertRow = [&](int j, int k, std::size_t row) {
     const auto y = float(image.minMm.y + j * voxelMm);

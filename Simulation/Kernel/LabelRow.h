@@ -60,13 +60,17 @@ SONO_HD inline std::uint16_t labelAt(const LabelRow& row, int n, const LabelShif
   return labelAtIndex(index, voxels, size);
 }
 
-/// How far from a pixel, `x` as PlaneBeams::axialFromCentre, lies what is shown there.
+/// How far from a pixel, `x` as PlaneBeams::axialFromCentre, lies what is shown there: by the scale of what is shown,
+/// and by the depth offsets of `scan`'s samples, where there are any.
 SONO_HD inline LabelShift labelShift(const PlaneScan& scan, const float* offsetMm, float lateralMm, float x)
 {
   float lateral;
   float axial;
   scan.beams.directionAt(lateralMm, x, lateral, axial);
-  const float mm = scan.levelAt(offsetMm, lateralMm, x);
+  float line;
+  float shownMm;
+  scan.beams.beamAt(lateralMm, x, line, shownMm);
+  const float mm = (offsetMm ? scan.levelAt(offsetMm, lateralMm, x) : 0.0f) + shownMm * (scan.rangePerMm - 1.0f);
   return { double(mm * lateral) / scan.pixelMm, double(mm * axial) };
 }
 

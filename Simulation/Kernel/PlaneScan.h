@@ -126,6 +126,7 @@ struct PlaneScan
   PlaneBeams beams;
   ScannedArea area;
   float samplesPerMm;
+  float rangePerMm; ///< range at 1540 m/s of a millimetre that is shown
   int lineCount;
   int sampleCount;
   bool closed;

@@ -8,7 +8,7 @@
 //
 //   r(z) = integral from 0 to z of c0 / c dz                      (Data/docs/physics.md 13.1)
 //
-// with c0 the speed that the scanner assumes. The integral runs along the line's axis, straight on, in steps much
+// with c0 = 1540 m/s; a scanner that assumes another speed shows it to another scale. The integral runs along the line's axis, straight on, in steps much
 // shorter than a bin, from medium to medium: where the two ends of a step differ, the boundary is looked for. What is
 // known at multiples of a step or a bin thus bends in between at most where a boundary is, and there sharply.
 
@@ -25,7 +25,7 @@ SONO_HD inline int flightSteps(float binMm)
 }
 
 /// Where a line's axis runs inside targets, which count instead of the cells there. Not where it does for less than a
-/// wavelength at the speed that the scanner assumes: the beam is wider, and its wave closes behind a wire unchanged.
+/// wavelength at c0: the beam is wider, and its wave closes behind a wire unchanged.
 struct TargetSpans
 {
   static constexpr int most = 8;
@@ -75,7 +75,7 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
 }
 
 /// The medium at a depth of the axis; -1 in coupling in front of the body, and in what lies outside of it behind, from
-/// which nothing comes: both are taken for what the scanner assumes.
+/// which nothing comes: both have c0.
 template<class Space>
 SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const TraceLine& line,
                                 const TargetSpans& spans, float depthMm)
@@ -141,8 +141,8 @@ SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, 
   return sum;
 }
 
-/// Depth at a range, by the ranges at multiples of a step of depth, [0, steps], which rise. Beyond the last the
-/// scanner's assumption holds.
+/// Depth at a range, by the ranges at multiples of a step of depth, [0, steps], which rise. Beyond the last
+/// c0 holds.
 SONO_HD inline float depthOfRange(const float* rangeMm, int steps, float stepMm, float wantedMm)
 {
   if (wantedMm >= rangeMm[steps])

@@ -176,7 +176,7 @@ bool ScanGeometry::uses(const Parameter& number) const
 {
   const std::string name = number.name;
   const std::vector<std::string>& own = traitsOf(kind).numbers;
-  return name == "scanKind" || name == "lineCount" || name == "depthMm" ||
+  return name == "scanKind" || name == "lineCount" || name == "depthMm" || name == "assumedSoundSpeedMPerS" ||
          std::find(own.begin(), own.end(), name) != own.end();
 }
 

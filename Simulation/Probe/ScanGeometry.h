@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/Parameters.h"
+#include "Core/SoundSpeed.h"
 #include "Kernel/PlaneScan.h"
 #include "Kernel/Vec.h"
 #include "Probe/ImagingMode.h"
@@ -28,7 +29,7 @@ struct ScanGeometry
 {
   ScanKind kind = ScanKind::PhasedSector;
   int lineCount = 128;
-  double depthMm = 160.0;  ///< along each line from the face
+  double depthMm = 160.0;  ///< along each line from the face, as it is shown
   double sectorDeg = 90.0; ///< 360 closes a radial probe's circle: the last line stands one step before the first
   double radiusMm = 60.0;
   double widthMm = 38.0;
@@ -36,12 +37,14 @@ struct ScanGeometry
   double elevationSectorDeg = 60.0;
   int compoundFans = 1; ///< spatial compounding, of kinds whose lines have starts of their own
   double compoundSpanDeg = 20.0;
+  double assumedSoundSpeedMPerS = 1540.0; ///< with which the scanner turns time into the distance that it shows
 
   /// The numbers that a kind does not have (see ScanKinds.h) are not used and may be anything.
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
     visitLayout(self, visitor);
+    visitSoundSpeed(self, visitor);
     visitCompounding(self, visitor);
   }
   /// What a preset says.
@@ -67,6 +70,16 @@ struct ScanGeometry
                        "Angle between the outermost elevations of a matrix probe in degrees, between 0 and 180." });
   }
   template<class Self, class Visitor>
+  static void visitSoundSpeed(Self& self, Visitor&& visitor)
+  {
+    visitor(
+      self.assumedSoundSpeedMPerS,
+      Parameter{ "assumedSoundSpeedMPerS", "Assumed Sound Speed (m per s)", between(1400, 1700),
+                 "Speed of sound with which the scanner turns the time of an echo into the distance that it "
+                 "shows, in m/s, 1400 to 1700. Faster tissue is shown too near, slower tissue too deep; the model "
+                 "Amadou 2024 takes all tissue for one of 1540 m/s." });
+  }
+  template<class Self, class Visitor>
   static void visitCompounding(Self& self, Visitor&& visitor)
   {
     visitor(self.compoundFans,
@@ -88,6 +101,10 @@ struct ScanGeometry
   int fanCount() const { return traitsOf(kind).takesPart ? compoundFans : 1; }
   /// How far a fan is steered, from the first, towards the lateral beginning, to the last.
   double steeringDeg(int fan) const;
+  /// What is shown of a millimetre of range, which all stages count at 1540 m/s; exactly 1 there.
+  double shownPerRange() const { return assumedSoundSpeedMPerS / (1000.0 * assumedSoundSpeedMmPerUs); }
+  /// The range that is shown at the lines' ends, mm: how deep the stages look.
+  double rangeMm() const { return depthMm / shownPerRange(); }
   /// Of all elevations or fans.
   int totalLineCount() const { return lineCount * (isVolume() ? elevationLineCount : fanCount()); }
   /// Whether the line before the first is the last one.
@@ -215,6 +232,7 @@ struct ProbeSettings : BeamAperture
   static void visit(Self& self, Visitor&& visitor)
   {
     visitPreset(self, visitor);
+    ScanGeometry::visitSoundSpeed(self.geometry, visitor);
     ScanGeometry::visitCompounding(self.geometry, visitor);
     visitMode(self, visitor);
   }

@@ -34,7 +34,7 @@ struct ScanKindTraits
   bool takesPart;                   ///< a line is sent and heard by a part of the elements, those about its start
   bool isVolume;                    ///< each elevation is such a plane, turned about the lateral axis
   double maxSectorDeg;              ///< of the outermost lines; 360 is allowed, 180 is not
-  std::vector<std::string> numbers; ///< of ScanGeometry, besides lineCount and depthMm: those that it uses
+  std::vector<std::string> numbers; ///< of ScanGeometry: those that it uses and not all do
 };
 
 /// By ScanKind.

@@ -248,20 +248,25 @@ TEST(GpuStages, WholeImagesAndSweeps)
 TEST(GpuStages, APictureIsItsLevelsInBytesAndHasTheCpusLabels)
 {
   SONO_GPU_OR_SKIP();
-  ImageInput input{ thoraxPhantomA4C().orthonormalized(), thoraxSettings(), {}, nullptr };
-  input.settings.setDevice(Device::Cuda);
-  Simulator simulator(borrowed(&thorax()));
-  const ImageResult image = simulator.image(input);
-  const ScanPicture picture = simulator.picture(image, input.settings.geometry, input.pose, simulator.traced(input));
-  const TracedLines& traced = simulator.traced(input).host();
-  const PlaneImage& levels = image.plane().host(); // which WholeImagesAndSweeps holds against the CPU's
-  const auto same = [](const auto& span, const auto& expected) {
-    return std::vector<std::decay_t<decltype(expected[0])>>(span.begin(), span.end()) == expected;
-  };
-  EXPECT_TRUE(same(picture.mask, levels.mask));
-  EXPECT_TRUE(same(picture.grey, greyBytes(levels.value, levels.mask)));
-  EXPECT_TRUE(same(picture.labels, sliceLabels(thorax().volume(), input.settings.geometry, input.pose, levels,
-                                               { &traced.depthOffsetMm, traced.binCount, traced.binMm })));
+  for (const double assumedMPerS : { 1540.0, 1450.0 })
+  {
+    ImageInput input{ thoraxPhantomA4C().orthonormalized(), thoraxSettings(), {}, nullptr };
+    input.settings.geometry.assumedSoundSpeedMPerS = assumedMPerS;
+    input.settings.matchStages();
+    input.settings.setDevice(Device::Cuda);
+    Simulator simulator(borrowed(&thorax()));
+    const ImageResult image = simulator.image(input);
+    const ScanPicture picture = simulator.picture(image, input.settings.geometry, input.pose, simulator.traced(input));
+    const TracedLines& traced = simulator.traced(input).host();
+    const PlaneImage& levels = image.plane().host(); // which WholeImagesAndSweeps holds against the CPU's
+    const auto same = [](const auto& span, const auto& expected) {
+      return std::vector<std::decay_t<decltype(expected[0])>>(span.begin(), span.end()) == expected;
+    };
+    EXPECT_TRUE(same(picture.mask, levels.mask));
+    EXPECT_TRUE(same(picture.grey, greyBytes(levels.value, levels.mask)));
+    EXPECT_TRUE(same(picture.labels, sliceLabels(thorax().volume(), input.settings.geometry, input.pose, levels,
+                                                 { &traced.depthOffsetMm, traced.binCount, traced.binMm })));
+  }
 }
 
 TEST(GpuStages, HandlesStayWhatTheyWere)
@@ -331,6 +336,7 @@ TEST(GpuStages, ScanConversionOfEveryGeometry)
     s.geometry.sectorDeg = kind == ScanKind::Radial ? 360.0 : 60.0;
     s.geometry.radiusMm = kind == ScanKind::Radial ? 3.0 : 60.0;
     s.geometry.compoundFans = 3; // of linear and curvilinear
+    s.geometry.assumedSoundSpeedMPerS = 1480.0;
     s.tracing.pathsPerLine = 200;
     s.bmode.automaticReference = false;
     s.bmode.referenceAmplitude = 0.05;
