@@ -23,6 +23,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 // The pictures that UltrasoundStages keeps from one run of the program to the next.
@@ -151,10 +152,8 @@ void UltrasoundStages::keep(vtkFieldData* anatomy)
     return;
   }
   std::vector<std::string> warnings = anatomy_->warnings();
-  if (!contactWarning_.empty())
-  {
-    warnings.push_back(contactWarning_);
-  }
+  std::copy_if(traceWarnings_.begin(), traceWarnings_.end(), std::back_inserter(warnings),
+               [](const std::string& sentence) { return !sentence.empty(); });
   sono::keep(keptFolder(scene->GetCacheFolder()), keptPicture, key_,
              { packedArrays(pictureArrays_), packedArrays(anatomy), packedSentences(warnings) });
 }

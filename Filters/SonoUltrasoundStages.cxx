@@ -11,6 +11,7 @@
 #include "SonoScatterers.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
+#include "Trace/CollisionLimit.h"
 #include "Trace/ProbeContact.h"
 #include "Trace/TraceDevice.h"
 #include "vtkSonoBMode.h"
@@ -191,20 +192,21 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   const TraceSettings& tracing = image.settings.tracing;
   announceDevice(chooseDevice(tracing));
   const auto lines = [&] { return makeScanLines(image.settings.geometry, image.pose); };
-  const auto warnOfContact = [&] {
+  const auto contactWarning = [&]() -> std::string {
     if (field_.preview)
     {
-      return;
+      return {};
     }
-    std::string sentence = probeContactWarning(*simulator_.scene(), lines());
-    if (sentence.empty())
+    const std::string sentence = probeContactWarning(*simulator_.scene(), lines());
+    return sentence.empty() ? probePlaceWarning(*simulator_.scene(), image.settings.geometry, image.pose) : sentence;
+  };
+  const auto sayAny = [&](const std::vector<std::string>& sentences) {
+    for (const std::string& sentence : sentences)
     {
-      sentence = probePlaceWarning(*simulator_.scene(), image.settings.geometry, image.pose);
-    }
-    contactWarning_ = sentence;
-    if (!sentence.empty())
-    {
-      say(sentence);
+      if (!sentence.empty())
+      {
+        say(sentence);
+      }
     }
   };
   TracedResult traced;
@@ -215,15 +217,19 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   }
   catch (const Error&)
   {
-    warnOfContact();
+    sayAny({ contactWarning() });
     throw;
   }
   if (!(traced == traced_)) // on a GPU it is under way
   {
     traced_ = traced;
     pulseTime_ = 0;
-    contactWarning_.clear();
-    warnOfContact();
+    traceWarnings_ = { contactWarning() };
+    if (!field_.preview)
+    {
+      traceWarnings_.push_back(collisionLimitWarning(*simulator_.scene(), lines(), tracing, image.targets));
+    }
+    sayAny(traceWarnings_);
     if (field_.prepares && !field_.preview)
     {
       simulator_.prepareInteractive(lines(), tracing);

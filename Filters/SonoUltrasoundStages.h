@@ -129,11 +129,11 @@ private:
   Display display_;
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;
-  std::string contactWarning_;    ///< of what was traced
-  std::string key_;               ///< of the picture that is wanted; empty: it is not to be kept
-  std::vector<std::string> kept_; ///< of that key; empty: nothing
-  std::set<std::string> said_;    ///< of the anatomy of that key
-  std::set<int> left_;            ///< ports that were left empty
+  std::vector<std::string> traceWarnings_; ///< of what was traced
+  std::string key_;                        ///< of the picture that is wanted; empty: it is not to be kept
+  std::vector<std::string> kept_;          ///< of that key; empty: nothing
+  std::set<std::string> said_;             ///< of the anatomy of that key
+  std::set<int> left_;                     ///< ports that were left empty
   ImageResult errorMap_;
   vtkSmartPointer<vtkPointData> errorArrays_;
   vtkSmartPointer<vtkImageData> tracedLines_;

@@ -10,6 +10,7 @@
 #include "SonoSettings.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
+#include "Trace/CollisionLimit.h"
 #include "Trace/ProbeContact.h"
 #include "Trace/TraceDevice.h"
 #include "vtkSonoSceneHandle.h"
@@ -138,6 +139,12 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     this->Simulator->setScene(scene);
     const sono::TracedResult traced =
       this->Simulator->trace(scanLines, settings, targets, sono::partOf(progress, 0.0, share));
+    const std::string limit =
+      probe.preview ? std::string() : sono::collisionLimitWarning(*scene, scanLines, settings, targets);
+    if (!limit.empty())
+    {
+      sono::warn(this, limit);
+    }
     if (probe.prepares && !probe.preview)
     {
       this->Simulator->prepareInteractive(scanLines, settings);

@@ -26,6 +26,7 @@ set(public_headers
   Probe/PulseFile.h
   Scene/SceneFile.h
   Simulator.h
+  Trace/CollisionLimit.h
   Trace/ProbeContact.h
   Trace/RecordPaths.h
   Trace/Trace.h)

@@ -41,18 +41,25 @@ void EchoSettings::validate() const
                  centreFrequencyMHz, "more than 0");
   requireInRange(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
                  "more than 0 and below 2");
-  if (imagingMode == ImagingMode::Harmonic && samplingMHz <= 2.0 * centreFrequencyMHz)
+  if (!(samplingMHz > 2.0 * centreFrequencyMHz))
   {
+    const bool isHarmonic = imagingMode == ImagingMode::Harmonic;
     std::ostringstream sentence;
-    sentence << "the second harmonic lies at " << centreFrequencyMHz
-             << " MHz, not below half the sampling frequency of " << samplingMHz << " MHz: raise Sampling (MHz) above "
-             << 2.0 * centreFrequencyMHz
-             << ", lower the probe's Centre Frequency, or set its Imaging Mode to Fundamental";
+    if (isHarmonic)
+    {
+      sentence << "the second harmonic lies at " << centreFrequencyMHz
+               << " MHz, not below half the sampling frequency of " << samplingMHz << " MHz";
+    }
+    else
+    {
+      sentence << "the sampling frequency of " << samplingMHz << " MHz is not above twice the centre frequency of "
+               << centreFrequencyMHz << " MHz";
+    }
+    sentence << ": raise Sampling (MHz) above " << 2.0 * centreFrequencyMHz << (isHarmonic ? ", " : ", or ")
+             << "lower the probe's Centre Frequency" << (isHarmonic ? ", or set its Imaging Mode to Fundamental" : "");
     throw Error(sentence.str());
   }
-  requireInRange(
-    samplingMHz > 2.0 * centreFrequencyMHz && samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz,
-    "above twice the centre frequency (" + std::to_string(2.0 * centreFrequencyMHz) + ") and at most 1000");
+  requireInRange(samplingMHz <= 1000.0, "sampling frequency (MHz)", samplingMHz, "at most 1000");
   requireInRange(depthMm > 0.0 && depthMm <= 1000.0, "depth (mm)", depthMm, "more than 0 and at most 1000");
   requireInRange(aperture);
   if (arrayField)

@@ -18,27 +18,26 @@ struct Property
   double Tissue::*member;
   double minimum;
   double maximum;
-  bool aboveMinimum;     ///< the minimum itself is refused
   bool optional = false; ///< a table without its column gives every tissue the default
 };
 
 constexpr double unlimited = std::numeric_limits<double>::max();
 
 const Property properties[] = {
-  { "impedance_MRayl", &Tissue::impedanceMRayl, 0.0, unlimited, true },
-  { "sound_speed_m_per_s", &Tissue::soundSpeedMPerS, 0.0, unlimited, true },
-  { "attenuation_dB_per_cm_MHz", &Tissue::attenuationDbPerCmMHz, 0.0, unlimited, false },
-  { "mu0", &Tissue::scattererMean, 0.0, 1.0, false },
-  { "sigma0", &Tissue::scattererSigma, 0.0, 1.0, false },
-  { "mu1", &Tissue::scattererProbability, 0.0, 1.0, false },
-  { "tau", &Tissue::tau, 0.0, 3.0, false },
-  { "gamma", &Tissue::gamma, -2.0, 2.0, false },
-  { "roughness_mm", &Tissue::roughnessMm, 0.0, 10.0, false, true },
-  { "correlation_mm", &Tissue::correlationMm, 0.01, 100.0, false, true },
-  { "backscatter_1MHz_per_cm_sr", &Tissue::backscatterPerCmSr, 0.0, 1.0, false, true },
-  { "backscatter_exponent", &Tissue::backscatterExponent, 0.0, 6.0, false, true },
-  { "fibre_anisotropy_dB", &Tissue::fibreAnisotropyDb, 0.0, 60.0, false, true },
-  { "nonlinearity", &Tissue::nonlinearity, 0.0, 20.0, false, true },
+  { "impedance_MRayl", &Tissue::impedanceMRayl, 1e-4, 1e4 },
+  { "sound_speed_m_per_s", &Tissue::soundSpeedMPerS, 10.0, 1e5 },
+  { "attenuation_dB_per_cm_MHz", &Tissue::attenuationDbPerCmMHz, 0.0, unlimited },
+  { "mu0", &Tissue::scattererMean, 0.0, 1.0 },
+  { "sigma0", &Tissue::scattererSigma, 0.0, 1.0 },
+  { "mu1", &Tissue::scattererProbability, 0.0, 1.0 },
+  { "tau", &Tissue::tau, 0.0, 3.0 },
+  { "gamma", &Tissue::gamma, -2.0, 2.0 },
+  { "roughness_mm", &Tissue::roughnessMm, 0.0, 10.0, true },
+  { "correlation_mm", &Tissue::correlationMm, 0.01, 100.0, true },
+  { "backscatter_1MHz_per_cm_sr", &Tissue::backscatterPerCmSr, 0.0, 1.0, true },
+  { "backscatter_exponent", &Tissue::backscatterExponent, 0.0, 6.0, true },
+  { "fibre_anisotropy_dB", &Tissue::fibreAnisotropyDb, 0.0, 60.0, true },
+  { "nonlinearity", &Tissue::nonlinearity, 0.0, 20.0, true },
 };
 
 std::string rangeOf(const Property& property)
@@ -46,7 +45,7 @@ std::string rangeOf(const Property& property)
   std::ostringstream text;
   if (property.maximum == unlimited)
   {
-    text << "a finite number " << (property.aboveMinimum ? "above " : "of at least ") << property.minimum;
+    text << "a finite number of at least " << property.minimum;
   }
   else
   {
@@ -57,8 +56,7 @@ std::string rangeOf(const Property& property)
 
 bool isInRange(const Property& property, double value)
 {
-  return std::isfinite(value) && value <= property.maximum &&
-         (property.aboveMinimum ? value > property.minimum : value >= property.minimum);
+  return std::isfinite(value) && value >= property.minimum && value <= property.maximum;
 }
 
 double readNumber(const CsvFile& csv, const CsvFile::Row& row, const Property& property, const std::string& tissue)

@@ -9,8 +9,8 @@ namespace sono {
 struct Tissue
 {
   std::string name;
-  double impedanceMRayl = 1.5;        ///< > 0
-  double soundSpeedMPerS = 1540.0;    ///< > 0
+  double impedanceMRayl = 1.5;        ///< in [1e-4, 1e4]
+  double soundSpeedMPerS = 1540.0;    ///< in [10, 1e5]
   double attenuationDbPerCmMHz = 0.5; ///< >= 0; amplitude decibels, one way
   double scattererMean = 0.0;         ///< mu0 in [0, 1]
   double scattererSigma = 0.0;        ///< sigma0 in [0, 1]

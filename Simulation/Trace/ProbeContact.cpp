@@ -58,6 +58,13 @@ double gapMm(const Scene& scene, const ScanLine& line)
 
 std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>& lines)
 {
+  const std::vector<LabelInfo>& labels = scene.volume().labels;
+  if (std::all_of(labels.begin(), labels.end(), [&](const LabelInfo& label) { return isOutside(scene, &label); }))
+  {
+    return "The label map holds nothing but what lies outside of a body" +
+           (labels.empty() ? std::string() : " (" + labels.front().tissue + ")") +
+           ", which counts as coupling gel: choose the array that holds the labels, or another Outside Tissue.";
+  }
   std::map<const LabelInfo*, std::size_t> blocking;
   double gap = INFINITY;
   for (const ScanLine& line : lines)

@@ -11,7 +11,7 @@ namespace sono {
 /// What a person should know about where the transducer's face, the origins of the lines, stands: one sentence with the
 /// way out, or nothing. A face is in the wrong place where most of it is in a tissue that reflects more than 0.3 of the
 /// intensity that comes from water (bone, lung, gas other than the scene's outside), or where it is more than 10 mm off
-/// the body: what lies between is then taken for coupling gel.
+/// the body: what lies between is then taken for coupling gel. Of a scene without a body that is said.
 std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>& lines);
 
 /// What a person should know about where the whole image lies: one sentence with the way out, or nothing. A transducer

@@ -47,6 +47,7 @@ public:
              path.collisions,
              boundary.before.medium,
              boundary.after.medium };
+    path_.cutOff = path.collisions >= setup_.view.maxCollisions ? path.intensity : 0.0f;
   }
   void echo(const Vec3f&, float amplitude)
   {

@@ -31,6 +31,7 @@ struct RecordedPath
   std::vector<float> intensity;
   std::vector<int> bounce;
   std::vector<BoundaryHit> hits;
+  float cutOff = 0.0f; ///< intensity at its end where that is one boundary more than a path may meet
 };
 
 /// `count` of the paths that trace() would follow with the same arguments, chosen evenly over lines and paths, in the

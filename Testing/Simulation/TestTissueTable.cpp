@@ -80,6 +80,10 @@ TEST(TissueTable, ErrorsNameFileTissueAndColumn)
     { "bad,nan,1500,0.5,0,0,0,1,0,s", "impedance_MRayl" },
     { "bad,1.5,0,0.5,0,0,0,1,0,s", "sound_speed_m_per_s" },
     { "bad,1.5,inf,0.5,0,0,0,1,0,s", "sound_speed_m_per_s" },
+    { "bad,1.5,1.54,0.5,0,0,0,1,0,s", "sound_speed_m_per_s" }, // mm/us
+    { "bad,1.5,1e6,0.5,0,0,0,1,0,s", "sound_speed_m_per_s" },
+    { "bad,1e-5,1500,0.5,0,0,0,1,0,s", "impedance_MRayl" },
+    { "bad,1.5e6,1500,0.5,0,0,0,1,0,s", "impedance_MRayl" }, // Rayl
     { "bad,1.5,1500,-0.1,0,0,0,1,0,s", "attenuation_dB_per_cm_MHz" },
     { "bad,1.5,1500,,0,0,0,1,0,s", "attenuation_dB_per_cm_MHz" },
     { "bad,1.5,1500,0.5,1.1,0,0,1,0,s", "mu0" },
