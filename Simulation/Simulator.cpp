@@ -9,8 +9,8 @@
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
 #include "SameSettings.h"
-#include "Trace/SecondHarmonic.h"
 #include "Trace/TraceSetup.h"
+#include "TraceByMode.h"
 
 #include <chrono>
 #include <optional>
@@ -149,19 +149,6 @@ struct PathsFrom
   bool same(const PathsFrom& o) const { return count == o.count && trace.same(o.trace); }
 };
 
-void fetchTraced(const DeviceTraced& device, TracedLines& lines)
-{
-  FetchedTrace fetched = DeviceImager::instance().fetch(device);
-  auto values = fetched.bins.begin();
-  TracedLines::visitBins(lines, [&](std::vector<float>& array, const char*) { array = std::move(*values++); });
-  lines.depthOffsetMm = std::move(*values++);
-  lines.reverberation = std::move(*values++);
-  lines.reverberationError = std::move(*values++);
-  lines.reverberationNpPerMHz = std::move(*values);
-  lines.boundaryEcho = std::move(fetched.boundaryEcho);
-  lines.segments = fetched.segments;
-}
-
 void fetchRf(const DeviceRf& device, RfLines& lines)
 {
   lines.iq = DeviceImager::instance().fetchIq(device);
@@ -174,39 +161,11 @@ void fetchGrey(const DeviceGrey& device, BModeLines& lines)
   lines.referenceAmplitude = reference.front();
 }
 
-TracedResult traceOnDevice(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                           const std::vector<TargetSurface>& targets, const Progress& progress)
-{
-  const TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
-  TracedLines layout = tracedLayout(int(lines.size()), settings, targets);
-  const auto job = std::make_shared<const TraceJob>(makeTraceJob(setup, settings, layout.lineCount));
-  return { std::move(layout), DeviceImager::instance().trace(job, { 0, int(lines.size()) }, partOf(progress, 0.3, 1.0)),
-           fetchTraced };
-}
-
 void fetchPlane(const DevicePicture& device, PlaneImage& image)
 {
   image.value = DeviceImager::instance().fetchLevels(device);
   const SharedSpan<std::uint8_t> mask = DeviceImager::instance().maskOf(device);
   image.mask.assign(mask.begin(), mask.end());
-}
-
-/// One frequency's, whatever the mode.
-TracedResult traceTone(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                       const std::vector<TargetSurface>& targets, const Progress& progress)
-{
-  return runsOnDevice(settings) ? traceOnDevice(scene, lines, settings, targets, progress)
-                                : TracedResult(sono::trace(scene, lines, settings, progress, targets));
-}
-
-/// Both tones' traces meet on the host.
-TracedResult traceHarmonic(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                           const std::vector<TargetSurface>& targets, const Progress& progress)
-{
-  const TracedResult sent = traceTone(scene, lines, settings, targets, partOf(progress, 0.0, 0.5));
-  const TracedResult doubled = traceTone(scene, lines, doubledTone(settings), targets, partOf(progress, 0.5, 1.0));
-  return TracedResult(
-    secondHarmonic(sent.host(), doubled.host(), harmonicSources(scene, lines, settings), sentGains(settings)));
 }
 
 /// The map of nothing, as large as the layout.
@@ -295,10 +254,8 @@ const Scene& Simulator::needScene() const
 TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
                               const std::vector<TargetSurface>& targets, const Progress& progress)
 {
-  return last_->traced.get({ lines, settings, targets }, [&] {
-    const auto make = settings.imagingMode == ImagingMode::Harmonic ? traceHarmonic : traceTone;
-    return make(needScene(), lines, settings, targets, progress);
-  });
+  return last_->traced.get({ lines, settings, targets },
+                           [&] { return traceByMode(needScene(), lines, settings, targets, progress); });
 }
 
 std::shared_ptr<const std::vector<RecordedPath>> Simulator::paths(const std::vector<ScanLine>& lines,

@@ -265,8 +265,9 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
     demodulate(sum, re.data() + half, im.data() + half);
   }
   // Of Acoustic these have been reflected, and attenuated by ways of their own.
-  std::vector<float> lateRe(carrierRe_.size(), 0.0f);
-  std::vector<float> lateIm(carrierRe_.size(), 0.0f);
+  const bool isLate = traced_ && (traced_->echoCount > 0 || !traced_->reverberation.empty());
+  std::vector<float> lateRe(isLate ? carrierRe_.size() : 0, 0.0f);
+  std::vector<float> lateIm(lateRe.size(), 0.0f);
   if (traced_ && traced_->echoCount > 0)
   {
     demodulate(boundaryEchoes(line), lateRe.data(), lateIm.data());
@@ -297,8 +298,8 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   for (std::size_t s = 0; s < exponent.size(); ++s)
   {
     const float gain = downshiftGain(*downshift_, exponent[s]);
-    const float a = gain * re[half + s] + lateRe[s];
-    const float b = gain * im[half + s] + lateIm[s];
+    const float a = gain * re[half + s] + (isLate ? lateRe[s] : 0.0f);
+    const float b = gain * im[half + s] + (isLate ? lateIm[s] : 0.0f);
     re[half + s] = a * turned[s].re - b * turned[s].im;
     im[half + s] = a * turned[s].im + b * turned[s].re;
   }
