@@ -33,11 +33,12 @@ std::size_t recordIndex(const TissueCells& cells, const Vec3i& voxel)
 
 struct RegionOnDemand::Baking
 {
-  Baking(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const Vec3i& boxSize)
+  Baking(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm, const VoxelBox& box)
     : workers([=] {
       return Worker{ RecordBaker(tissues, size, spacingMm), {}, {} };
     })
-    , blocks((boxSize + (recordBlock - 1)) / recordBlock)
+    , first(box.first / recordBlock)
+    , blocks((box.last + (recordBlock - 1)) / recordBlock - first)
     , baked(std::size_t(blocks.x) * blocks.y * blocks.z)
   {
   }
@@ -49,6 +50,7 @@ struct RegionOnDemand::Baking
   }
 
   tbb::enumerable_thread_specific<Worker> workers;
+  Vec3i first; ///< block of the volume: what is baked does not depend on the box
   Vec3i blocks;
   std::vector<std::atomic<bool>> baked;
   std::atomic<bool> all = false; ///< of them; to look through them takes as long as a part of an image
@@ -57,7 +59,7 @@ struct RegionOnDemand::Baking
 RegionOnDemand::RegionOnDemand(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm,
                                const VoxelBox& box, const Progress& progress, std::weak_ptr<const RegionOnDemand> other)
   : region_(layOutRegion(tissues, size, spacingMm, box, progress))
-  , baking_(std::make_unique<Baking>(tissues, size, spacingMm, box.size()))
+  , baking_(std::make_unique<Baking>(tissues, size, spacingMm, box))
   , other_(std::move(other))
 {
 }
@@ -68,13 +70,15 @@ void RegionOnDemand::bakeBlock(const Vec3i& block) const
 {
   const TissueCells cells = region_.view();
   Worker& worker = baking_->workers.local();
-  const Vec3i corner = block * recordBlock;
+  const Vec3i first = (baking_->first + block) * recordBlock;
+  const Vec3i corner = first - region_.box.first; // of the block, of which the box may hold a part
+  const Vec3i begin = glm::max(corner, Vec3i(0));
   const Vec3i end = glm::min(corner + recordBlock, cells.size);
-  for (int k = corner.z; k < end.z; ++k)
+  for (int k = begin.z; k < end.z; ++k)
   {
-    for (int j = corner.y; j < end.y; ++j)
+    for (int j = begin.y; j < end.y; ++j)
     {
-      for (int i = corner.x; i < end.x; ++i)
+      for (int i = begin.x; i < end.x; ++i)
       {
         const std::uint32_t word = cells.wordAt(i, j, k);
         if ((word & 0x8000u) != 0u)
@@ -94,11 +98,12 @@ void RegionOnDemand::bakeBlock(const Vec3i& block) const
     __atomic_store_n(&region_.record[recordIndex(cells, corner + v)], bits, __ATOMIC_RELAXED);
   };
   const auto other = other_.lock();
+  bool begun = false;
   for (const std::uint8_t tissue : worker.tissues)
   {
     std::vector<Vec3i>& voxels = worker.voxels[tissue];
     const bool known = other && std::all_of(voxels.begin(), voxels.end(), [&](const Vec3i& v) {
-                         const std::uint32_t bits = other->knownAt(region_.box.first + corner + v);
+                         const std::uint32_t bits = other->knownAt(first + v);
                          if (bits != 0u)
                          {
                            store(v, bits);
@@ -107,7 +112,12 @@ void RegionOnDemand::bakeBlock(const Vec3i& block) const
                        });
     if (!known)
     {
-      worker.baker.bake(tissue, region_.box.first + corner, voxels, store);
+      if (!begun)
+      {
+        worker.baker.begin(first);
+        begun = true;
+      }
+      worker.baker.bake(tissue, voxels, store);
     }
     voxels.clear();
   }
@@ -117,7 +127,7 @@ void RegionOnDemand::bakeBlock(const Vec3i& block) const
 
 std::uint32_t RegionOnDemand::bakeAt(const Vec3i& voxel) const
 {
-  const Vec3i block = voxel / recordBlock;
+  const Vec3i block = (region_.box.first + voxel) / recordBlock - baking_->first;
   if (!baking_->flag(block).load(std::memory_order_acquire))
   {
     bakeBlock(block);

@@ -121,6 +121,26 @@ public:
     }
   }
 
+  /// Data on the line (x, y) = (a, b) t: sums of weight t^n, n = 0 to 4, and of weight height t^n, n = 0 to 2.
+  void addLine(double a, double b, const double* t, const double* height)
+  {
+    const double ofA[5] = { 1.0, a, a * a, a * a * a, a * a * a * a };
+    const double ofB[5] = { 1.0, b, b * b, b * b * b, b * b * b * b };
+    int term = 0;
+    for (int degree = 0; degree <= 4; ++degree)
+    {
+      for (int n = 0; n <= degree; ++n, ++term) // by rising powers of y
+      {
+        const double factor = ofA[degree - n] * ofB[n];
+        moment_[term] += factor * t[degree];
+        if (degree <= 2)
+        {
+          right_[term] += factor * height[degree];
+        }
+      }
+    }
+  }
+
   /// In the first `count` terms, 3 or 6; false where the data do not tell them.
   bool solve(int count, Quadratic& out) const
   {

@@ -21,7 +21,7 @@ namespace sono {
 /// the tissue's occupancy smoothed by a Gaussian of one voxel for the position and two for the normal, isotropic in mm
 /// (a voxel being the cube root of its volume), at voxels that touch another tissue with a face. In voxels that are
 /// long along one axis the normal's Gaussian is 1.35 of that length, up to three voxels: slices' terraces are wide
-/// there.
+/// there. Normals of smooth surfaces are those of fits (BoundaryFits).
 struct TraceRegion
 {
   VoxelBox box;
