@@ -3,7 +3,6 @@
 #include "Core/Simd.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace sono {
