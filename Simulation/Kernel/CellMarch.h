@@ -114,7 +114,8 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
       const Vec3i after(ax.cellOf(faceX), ay.cellOf(faceY), az.cellOf(faceZ));
       const Vec3i before(after.x - (alongX ? ax.sign() : 0), after.y - (alongY ? ay.sign() : 0),
                          after.z - (alongZ ? az.sign() : 0));
-      if (t < clearAt && tissue == tissueBehind(left) &&
+      // Rare: so the compiler keeps what it needs out of the way of the rest.
+      if (__builtin_expect(t < clearAt && tissue == tissueBehind(left), 0) &&
           isStairOf(cells, left, Vec3f(ax.d, ay.d, az.d) * cells.spacing, before, after, word))
       {
         continue;

@@ -93,7 +93,7 @@ SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray,
   const int from = cells.tissueAt(hit.before);
   const bool passedStairs = from == hit.tissue;
   const Vec3f back = normalOf(left);
-  const Vec3f face = passedStairs ? turnedToEnter(-back, ray.direction)
+  const Vec3f face = passedStairs ? turnedToEnter(-glm::normalize(back), ray.direction)
                                   : Vec3f(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
                                           hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
                                           hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);

@@ -293,7 +293,7 @@ TEST(SurfaceRestart, NoHitIsOffAndNoWayLeadsThroughAnotherTissue)
         body.name + " lobe " + std::to_string(turning.lobeDegrees) + " rough " + std::to_string(turning.roughness);
       EXPECT_EQ(found.off, 0) << "of " << found.hits << ", worst " << found.worst << " voxels, " << what;
       // Of a wall of one voxel there may be no record that says which side of it is met.
-      EXPECT_LE(found.through, body.inner < 0.0 ? 5 * roundHits / 100000 : 0) << "of " << found.hits << ", " << what;
+      EXPECT_LE(found.through, body.inner < 0.0 ? roundHits / 10000 : 0) << "of " << found.hits << ", " << what;
       away += found.away;
       again += found.again;
     }
