@@ -225,10 +225,13 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
     traced_ = traced;
     pulseTime_ = 0;
     traceWarnings_ = { contactWarning() };
-    if (!field_.preview)
+    const std::tuple asksFor(simulator_.scene().get(), tracing.maxCollisions, tracing.faceReflection, tracing.depthMm);
+    if (!field_.preview && tracing.reverberates() && limitAskedFor_ != asksFor)
     {
-      traceWarnings_.push_back(collisionLimitWarning(*simulator_.scene(), lines(), tracing, image.targets));
+      limitAskedFor_ = asksFor;
+      limitWarning_ = collisionLimitWarning(*simulator_.scene(), lines(), tracing, image.targets);
     }
+    traceWarnings_.push_back(tracing.reverberates() ? limitWarning_ : std::string());
     sayAny(traceWarnings_);
     if (field_.prepares && !field_.preview)
     {

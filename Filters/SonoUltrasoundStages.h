@@ -13,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -130,10 +131,14 @@ private:
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;
   std::vector<std::string> traceWarnings_; ///< of what was traced
-  std::string key_;                        ///< of the picture that is wanted; empty: it is not to be kept
-  std::vector<std::string> kept_;          ///< of that key; empty: nothing
-  std::set<std::string> said_;             ///< of the anatomy of that key
-  std::set<int> left_;                     ///< ports that were left empty
+  /// Scene, collisions, face reflection and depth for which it was last asked whether collisions cut anything off, and
+  /// the answer: a probe that moves does not ask again.
+  std::tuple<const Scene*, int, double, double> limitAskedFor_;
+  std::string limitWarning_;
+  std::string key_;               ///< of the picture that is wanted; empty: it is not to be kept
+  std::vector<std::string> kept_; ///< of that key; empty: nothing
+  std::set<std::string> said_;    ///< of the anatomy of that key
+  std::set<int> left_;            ///< ports that were left empty
   ImageResult errorMap_;
   vtkSmartPointer<vtkPointData> errorArrays_;
   vtkSmartPointer<vtkImageData> tracedLines_;

@@ -140,7 +140,7 @@ void measureImage(Simulator& simulator, const Ceilings& ceilings)
   ImageInput input = a4c();
   const RfResult rf = simulator.rf(input);
   print("gpu_scene_upload_mb", double(DeviceImager::instance().lastTimes().uploadedBytes) * 1e-6, "MB");
-  const TracedLines& traced = simulator.traced(input).host();
+  const TracedLines traced = simulator.traced(input).host();
   const auto lines = makeScanLines(input.settings.geometry, input.pose);
   const RfLines onCpu =
     formRf(*simulator.scene(), lines, trace(*simulator.scene(), lines, input.settings.tracing), input.settings.echo);
@@ -148,6 +148,7 @@ void measureImage(Simulator& simulator, const Ceilings& ceilings)
 
   // Each image is another one, as of a probe that moves or of a seed that changes.
   Runs runs;
+  Runs direct; // of the same without reverberation, in between
   DeviceTimes before{};
   const auto image = [&] {
     ++input.settings.tracing.seed;
@@ -155,12 +156,21 @@ void measureImage(Simulator& simulator, const Ceilings& ceilings)
   };
   for (int i = 0; i < repeats; ++i)
   {
-    before = DeviceImager::instance().lastTimes();
+    input.settings.tracing.reverberation = false;
+    image();
+    direct.times.push_back(DeviceImager::instance().lastTimes());
+    input.settings.tracing.reverberation = true;
+    image();
     image();
     runs.times.push_back(DeviceImager::instance().lastTimes());
   }
+  before = DeviceImager::instance().lastTimes();
+  image();
+  runs.times.push_back(DeviceImager::instance().lastTimes());
   const DeviceTimes last = runs.times.back();
   print("gpu_image_ms", runs.medianOf(computing), "ms");
+  print("gpu_direct_image_ms", direct.medianOf(computing), "ms");
+  print("gpu_reverberation_cost_ratio", runs.medianOf(computing) / direct.medianOf(computing), "times");
   print("gpu_trace_ms", runs.medianOf([](const DeviceTimes& t) { return t.trace; }), "ms");
   print("gpu_echo_ms", runs.medianOf([](const DeviceTimes& t) { return t.echo; }), "ms");
   print("gpu_bmode_ms", runs.medianOf([](const DeviceTimes& t) { return t.bmode; }), "ms");
