@@ -24,9 +24,11 @@ SONO_HD inline float signNotZero(float x)
   return x >= 0.0f ? 1.0f : -1.0f;
 }
 
-/// A unit vector on the octahedron, 10 + 10 bits (0.1 degrees; 1022 steps hold the axes exactly).
-SONO_HD inline std::uint32_t encodeOctahedral(const Vec3f& n)
+/// 32 bits: octahedral normal 10 + 10 (0.1 degrees; 1022 steps hold the axes exactly), offset 9, confidence 3.
+/// 0 means "no record", which a real record never encodes to (its offset bits are 1 to 511).
+SONO_HD inline std::uint32_t encodeRecord(const BoundaryRecord& record)
 {
+  const Vec3f& n = record.normal;
   const float scale = 1.0f / (fabsf(n.x) + fabsf(n.y) + fabsf(n.z));
   float u = n.x * scale;
   float v = n.y * scale;
@@ -38,21 +40,13 @@ SONO_HD inline std::uint32_t encodeOctahedral(const Vec3f& n)
   }
   const std::uint32_t iu = std::uint32_t((u * 0.5f + 0.5f) * 1022.0f + 0.5f);
   const std::uint32_t iv = std::uint32_t((v * 0.5f + 0.5f) * 1022.0f + 0.5f);
-  return iu | (iv << 10);
-}
-
-/// 32 bits: octahedral normal 10 + 10, offset 9, confidence 3. 0 means "no record", which a real record never encodes
-/// to (its offset bits are 1 to 511).
-SONO_HD inline std::uint32_t encodeRecord(const BoundaryRecord& record)
-{
   const float d = fminf(fmaxf((record.offset + 0.5f) * recordOffsetSteps + 0.5f, 1.0f), 511.0f);
   const std::uint32_t id = std::uint32_t(d);
   const std::uint32_t ic = std::uint32_t(fminf(fmaxf(record.confidence, 0.0f), 1.0f) * 7.0f + 0.5f);
-  return encodeOctahedral(record.normal) | (id << 20) | (ic << 29);
+  return iu | (iv << 10) | (id << 20) | (ic << 29);
 }
 
-/// The vector of a record or of encodeOctahedral, on the octahedron instead of the sphere: its length is between 0.57
-/// and 1.
+/// The normal of a record, on the octahedron instead of the sphere: its length is between 0.57 and 1.
 SONO_HD inline Vec3f decodeOctahedral(std::uint32_t bits)
 {
   const float u = float(bits & 1023u) * (2.0f / 1022.0f) - 1.0f;

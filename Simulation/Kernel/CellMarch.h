@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Kernel/FastMath.h"
-#include "Kernel/LeftSurface.h"
 #include "Kernel/TissueCells.h"
 
 #include <cmath>
@@ -70,13 +69,13 @@ struct AxisMarch
 /// Cubes of a smaller half-width are walked through.
 constexpr int worthJumping = 5;
 
-/// Marches to the first cell whose tissue is not `current`. While t < clearAt, stairs of the surface left count as
-/// `current`, and are passed one by one: what is left of them then is met at the next face. Walks cell by cell, so that
-/// the next address does not wait for the last word (a processor runs ahead), and jumps where a uniform cube is large
-/// enough to pay for the wait.
+/// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
+/// t < ignoreUntil (hysteresis after a boundary; -1: none), and are passed one by one: what is left of them then is met
+/// at the next face. Walks cell by cell, so that the next address does not wait
+/// for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
 template<class Cells>
-SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, LeftSurface left,
-                                       float clearAt, float tMax)
+SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, int ignored,
+                                       float ignoreUntil, float tMax)
 {
   const AxisMarch ax(ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x);
   const AxisMarch ay(ray.position.y * cells.perMm.y, ray.direction.y * cells.perMm.y);
@@ -109,23 +108,17 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
     cursor.move(alongX, alongY, alongZ);
     const std::uint32_t word = cursor.word();
     const int tissue = int(word & 255u);
-    if (tissue != current)
+    if (tissue != current && (tissue != ignored || t >= ignoreUntil))
     {
       const Vec3i after(ax.cellOf(faceX), ay.cellOf(faceY), az.cellOf(faceZ));
       const Vec3i before(after.x - (alongX ? ax.sign() : 0), after.y - (alongY ? ay.sign() : 0),
                          after.z - (alongZ ? az.sign() : 0));
-      // Rare: so the compiler keeps what it needs out of the way of the rest.
-      if (__builtin_expect(t < clearAt && tissue == tissueBehind(left), 0) &&
-          isStairOf(cells, left, Vec3f(ax.d, ay.d, az.d) * cells.spacing, before, after, word))
-      {
-        continue;
-      }
       const bool outside = tissue == int(TissueCells::outsideWord);
       return { t, before, outside ? before : after, outside ? -1 : tissue, alongX ? 0 : (alongY ? 1 : 2) };
     }
     // 128 and above are ranks of records.
     const int skip = int(word >> 8);
-    if (skip >= worthJumping && skip < 128)
+    if (skip >= worthJumping && skip < 128 && tissue == current)
     {
       // Go on to the cell behind the face through which the ray leaves the cube, less one step.
       const float reach = float(skip - 1);
@@ -149,19 +142,6 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
     }
   }
   return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
-}
-
-/// What the hit of a march stands for. From a stair that it has passed a ray may meet a third tissue: then it is the
-/// stair's that it has met first, for no path goes from a tissue into one that lies behind another.
-template<class Cells>
-SONO_HD inline CellHit metFirst(const Cells& cells, const CellHit& hit, int current, LeftSurface left)
-{
-  const int behind = tissueBehind(left);
-  if (hit.tissue < 0 || hit.tissue == behind || current == behind || cells.tissueAt(hit.before) != behind)
-  {
-    return hit;
-  }
-  return { hit.t, hit.before, hit.before, behind, hit.axis };
 }
 
 } // namespace sono

@@ -27,10 +27,7 @@ struct NanoSpace
   SONO_HD float meanSpacing() const { return cells.meanSpacing; }
   SONO_HD Vec3i cellAt(const Vec3f& position) const { return cells.cellAt(position); }
   SONO_HD bool contains(const Vec3i& cell) const { return cells.contains(cell); }
-  SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit, LeftSurface left = noSurfaceLeft) const
-  {
-    return refineBoundary(cells, ray, hit, left);
-  }
+  SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit) const { return refineBoundary(cells, ray, hit); }
   SONO_HD int tissueAt(const Vec3i& cell) const { return tissueAt(labels->getAccessor(), cell); }
   SONO_HD int tissueAt(const Accessor& accessor, const Vec3i& cell) const
   {
@@ -45,7 +42,7 @@ struct NanoSpace
   }
 
   /// As marchToBoundary.
-  SONO_HD CellHit toBoundary(const CellRay& ray, int current, LeftSurface left, float clearAt, float tMax) const
+  SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
   {
     const Accessor accessor = labels->getAccessor();
     const AxisMarch axes[3] = { { ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x },
@@ -89,11 +86,9 @@ struct NanoSpace
         return { t, before, before, -1, axis };
       }
       const int tissue = tissueAt(accessor, c);
-      const bool mayBeStair = t < clearAt && tissue == tissueBehind(left);
-      if (tissue != current &&
-          !(mayBeStair && isStairOf(cells, left, ray.direction, before, c, cells.wordAt(c.x, c.y, c.z))))
+      if (tissue != current && (tissue != ignored || t >= ignoreUntil))
       {
-        return metFirst(cells, { t, before, c, tissue, axis }, current, left);
+        return { t, before, c, tissue, axis };
       }
     }
     return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };

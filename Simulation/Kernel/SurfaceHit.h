@@ -71,37 +71,23 @@ SONO_HD inline std::uint32_t recordAt(const Cells& cells, const Vec3i& c)
   return cells.recordOf(c.x, c.y, c.z, cells.wordAt(c.x, c.y, c.z));
 }
 
-/// The normal, turned until the ray just enters, by more than normals err.
-SONO_HD inline Vec3f turnedToEnter(const Vec3f& normal, const Vec3f& direction)
-{
-  constexpr float grazing = 0.1f;
-  return glm::normalize(normal + direction * larger(0.0f, grazing - glm::dot(direction, normal)));
-}
-
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
 /// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.59 of it (a
 /// thin wall has lost its own surface, its thick neighbour has not; gradients come in sevenths, and at 0.6 rounding
 /// would decide on 3/7 beside 5/7); else the normals are averaged. The point moves along the ray to the plane of the
-/// records, by one voxel at most; there the normal is interpolated.
-/// Where no record is trustworthy the voxel face stands. Where the smooth normal says that the ray leaves rather than
-/// enters, it grazes: it meets the face's point. Where it has passed stairs of the surface left, both voxels belong to
-/// the tissue that it enters, and that surface is what it meets again, unless the records show one that faces it.
+/// records, by one voxel at most; there the normal is interpolated. Where no record is trustworthy, or the smooth
+/// normal says that the ray leaves rather than enters, the voxel face stands.
 template<class Cells>
-SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit,
-                                         LeftSurface left = noSurfaceLeft)
+SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit)
 {
-  const int from = cells.tissueAt(hit.before);
-  const bool passedStairs = from == hit.tissue;
-  const Vec3f back = normalOf(left);
-  const Vec3f face = passedStairs ? turnedToEnter(-glm::normalize(back), ray.direction)
-                                  : Vec3f(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
-                                          hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
-                                          hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
+  const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
+                   hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
+                   hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
   const std::uint32_t bitsA = recordAt(cells, hit.before);
   const std::uint32_t bitsB = recordAt(cells, hit.after);
   if ((bitsA | bitsB) == 0u)
   {
-    return { face, hit.t, passedStairs };
+    return { face, hit.t };
   }
   const BoundaryRecord a = decodeRecord(bitsA);
   const BoundaryRecord b = decodeRecord(bitsB);
@@ -110,17 +96,17 @@ SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray,
   const float best = larger(confA, confB);
   const float weightA = confA >= 0.59f * best ? 1.0f : 0.0f;
   const float weightB = confB >= 0.59f * best ? 1.0f : 0.0f;
-  const Vec3f sum = a.normal * (passedStairs ? -weightA : weightA) - b.normal * weightB;
+  const Vec3f sum = a.normal * weightA - b.normal * weightB;
   const float length = glm::length(sum);
-  if (best < 0.15f || length < 0.5f || (passedStairs && (best < 0.7f || glm::dot(sum, back) > 0.0f)))
+  if (best < 0.15f || length < 0.5f)
   {
-    return { face, hit.t, passedStairs };
+    return { face, hit.t };
   }
   const Vec3f n = sum / length;
   const float cosine = glm::dot(ray.direction, n);
   if (cosine < 0.01f)
   {
-    return { turnedToEnter(n, ray.direction), hit.t, true };
+    return { face, hit.t };
   }
   const Vec3f pointA = (Vec3f(hit.before) + Vec3f(0.5f)) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
   const Vec3f pointB = (Vec3f(hit.after) + Vec3f(0.5f)) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
@@ -128,9 +114,8 @@ SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray,
   const float reach = cells.meanSpacing;
   const float plane = glm::dot(point - ray.position, n) / cosine;
   const float t = larger(0.0f, smaller(larger(plane, hit.t - reach), hit.t + reach));
-  const SideWeights weights = passedStairs ? SideWeights{ 0.0f, 1.0f } : SideWeights{ weightA, weightB };
-  const Vec3f smooth =
-    interpolateNormal(cells, ray.position + ray.direction * t, passedStairs ? -1 : from, hit.tissue, weights, n);
+  const Vec3f smooth = interpolateNormal(cells, ray.position + ray.direction * t, cells.tissueAt(hit.before),
+                                         hit.tissue, { weightA, weightB }, n);
   return { glm::dot(ray.direction, smooth) < 0.01f ? n : smooth, t, true };
 }
 

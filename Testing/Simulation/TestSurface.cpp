@@ -1,5 +1,4 @@
 #include "FalseRehits.h"
-#include "HollowHits.h"
 #include "KernelScene.h"
 #include "TestScenes.h"
 
@@ -271,34 +270,6 @@ TEST(SurfaceTopology, AHollowShellKeepsItsCavity)
       const double r = glm::length(p);
       return r < 18.0 && r > 13.0 ? 1 : 0;
     });
-  }
-}
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int roundHits = 4000;
-#else
-constexpr int roundHits = 100000;
-#endif
-
-TEST(SurfaceRestart, NoHitIsOffAndNoWayLeadsThroughAnotherTissue)
-{
-  for (const RoundBody& body : roundBodies())
-  {
-    int away = 0;
-    int again = 0;
-    for (const Turning& turning : allTurnings())
-    {
-      const RoundHits found = meetRoundBody(body, turning, roundHits);
-      const std::string what =
-        body.name + " lobe " + std::to_string(turning.lobeDegrees) + " rough " + std::to_string(turning.roughness);
-      EXPECT_EQ(found.off, 0) << "of " << found.hits << ", worst " << found.worst << " voxels, " << what;
-      // Of a wall of one voxel there may be no record that says which side of it is met.
-      EXPECT_LE(found.through, body.inner < 0.0 ? roundHits / 10000 : 0) << "of " << found.hits << ", " << what;
-      away += found.away;
-      again += found.again;
-    }
-    // A wall of one voxel has no surface that one could leave for sure.
-    EXPECT_LE(again, (body.inner < 0.0 ? 0.02 : 0.002) * away) << "of " << away << ", " << body.name;
   }
 }
 
