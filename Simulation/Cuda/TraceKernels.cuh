@@ -472,21 +472,16 @@ __global__ void finishReverberation(TraceLaunch<Targets> launch, int lines)
     return;
   }
   const int inImage = (launch.firstInImage + line) % launch.linesPerImage;
-  const int firstOfImage = max(0, line - inImage);
-  const int lastOfImage = min(lines, line - inImage + launch.linesPerImage) - 1;
+  const int from = max(max(0, line - inImage), line - spreadLines);
+  const int to = min(min(lines, line - inImage + launch.linesPerImage) - 1, line + spreadLines);
   SpreadSums around;
-  for (int l = max(firstOfImage, line - spreadLines); l <= min(lastOfImage, line + spreadLines); ++l)
-  {
-    const SpreadSums& sums = launch.spreadAround[std::size_t(l) * launch.binCount + b];
-    around.cellPower += sums.cellPower;
-    around.power += sums.power;
-  }
-  const int from = max(firstOfImage, line - straightLines);
-  const int to = min(lastOfImage, line + straightLines);
   float straight = 0.0f;
   for (int l = from; l <= to; ++l)
   {
-    straight += launch.straightPower[std::size_t(l) * launch.binCount + b] / float(to - from + 1);
+    const std::size_t at = std::size_t(l) * launch.binCount + b;
+    around.cellPower += launch.spreadAround[at].cellPower;
+    around.power += launch.spreadAround[at].power;
+    straight += launch.straightPower[at] / float(to - from + 1);
   }
   const float unspread = resolutionCell(launch.view, launch.lines[line], (float(b) + 0.5f) * launch.binMm).unspread;
   launch.reverberationMean[std::size_t(line) * launch.binCount + b] =

@@ -10,7 +10,7 @@ namespace sono {
 namespace {
 
 constexpr int pathsAsked = 512;
-constexpr double mostCutOff = 0.01; // of the intensity
+constexpr double mostCutOff = 0.1; // of the intensity
 
 } // namespace
 

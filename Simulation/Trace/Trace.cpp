@@ -82,20 +82,17 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
 void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept, int line, TracedLines& out)
 {
   const auto at = [&](int l, int b) { return std::size_t(l) * std::size_t(out.binCount) + std::size_t(b); };
-  const auto from = [&](int reach) { return std::max(0, line - reach); };
-  const auto to = [&](int reach) { return std::min(out.lineCount - 1, line + reach); };
+  const int first = std::max(0, line - spreadLines);
+  const int last = std::min(out.lineCount - 1, line + spreadLines);
   for (int b = 0; b < out.binCount; ++b)
   {
     SpreadSums around;
-    for (int l = from(spreadLines); l <= to(spreadLines); ++l)
+    float straight = 0.0f;
+    for (int l = first; l <= last; ++l)
     {
       around.cellPower += kept.around[at(l, b)].cellPower;
       around.power += kept.around[at(l, b)].power;
-    }
-    float straight = 0.0f;
-    for (int l = from(straightLines); l <= to(straightLines); ++l)
-    {
-      straight += kept.straightPower[at(l, b)] / float(to(straightLines) - from(straightLines) + 1);
+      straight += kept.straightPower[at(l, b)] / float(last - first + 1);
     }
     const float rangeMm = (float(b) + 0.5f) * float(out.binMm);
     const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;

@@ -68,15 +68,14 @@ struct SpreadSums
   float power = 0.0f;     ///< mean level without signs, squared
 };
 
-/// Both change slowly: so many bins and lines to either side are asked, of the same image. What comes straight back is
-/// heard by beams that overlap.
+/// Both change slowly: so many bins and lines to either side are asked, of the same image. What comes straight back, by
+/// few paths and from far around, is the mean of as many lines.
 SONO_HD inline int spreadBins(float binMm)
 {
   constexpr float spreadMm = 3.0f;
   return int(spreadMm / binMm + 0.5f);
 }
 constexpr int spreadLines = 4;
-constexpr int straightLines = 2;
 
 /// The level of a bin's speckle: `own`, the mean level of own ways, is less by sqrt(M) where the paths have spread over
 /// M resolution cells. `unspread` is that of ResolutionCell.

@@ -250,3 +250,24 @@ TEST(ReverberationSpread, ASmoothWallKeepsItTogether)
     EXPECT_NEAR(decibels(tracedPower(*scene, paths)), 0.0, 0.02) << paths;
   }
 }
+
+TEST(ReverberationSpread, TheErrorIsNoLessThanTheSpreadOverSeeds)
+{
+  const auto scene = roughWall(0.1);
+  constexpr int seeds = 40;
+  double sums[3] = {}; // of the level, its square and its error's
+  TraceSettings s = settings(400);
+  for (int seed = 1; seed <= seeds; ++seed)
+  {
+    s.seed = std::uint64_t(seed);
+    const TracedLines traced = trace(*scene, linesDown(9), s);
+    const std::size_t bin = 4 * std::size_t(traced.binCount) + std::size_t(45.0 / traced.binMm);
+    const double level = double(traced.reverberation[bin]);
+    sums[0] += level / seeds;
+    sums[1] += level * level / seeds;
+    sums[2] += std::pow(double(traced.reverberationError[bin]), 2.0) / seeds;
+  }
+  const double spread = std::sqrt((sums[1] - sums[0] * sums[0]) * seeds / (seeds - 1));
+  EXPECT_GT(spread, 0.01 * sums[0]);
+  EXPECT_GT(std::sqrt(sums[2]), 0.8 * spread); // 0.8: three deviations of 40 draws
+}
