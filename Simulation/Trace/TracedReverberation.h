@@ -42,7 +42,7 @@ struct ReverberationMeans
 {
   float ownLevel;      ///< of own ways, without signs
   float cellPower;     ///< of the mean with signs, less what chance adds to its square
-  float straightPower; ///< of what comes straight back
+  float straightPower; ///< of what comes straight back, less its error: what one path says is no haze yet
   float error;         ///< standard error of both levels
 };
 
@@ -57,7 +57,8 @@ SONO_HD inline ReverberationMeans reverberationMeans(int batches, const MeanOf& 
   });
   const MeanAndError straight = meanAndError(batches, [&](int batch) { return meanOf(batch).of[straightPowerSum]; });
   const float straightError = straight.mean > 0.0f ? 0.5f * straight.error / sqrtf(straight.mean) : 0.0f;
-  return { float(own), cells.mean * cells.mean - cells.error * cells.error, straight.mean,
+  return { float(own), cells.mean * cells.mean - cells.error * cells.error,
+           larger(0.0f, straight.mean - straight.error),
            sqrtf(cells.error * cells.error + straightError * straightError) };
 }
 

@@ -116,7 +116,6 @@ class TestPaths(unittest.TestCase):
         chain = Chain()
         chain.probe.SetApertureMm(0)  # all at one point
         chain.tracer.SetNumberOfShownPaths(24)
-        chain.tracer.SetReverberation(False)  # else a path that passes stands for some that turn back as well
         chain.tracer.Update()
         paths = chain.tracer.GetOutputDataObject(2)
         self.assertEqual(paths.GetNumberOfLines(), 24)
