@@ -88,14 +88,19 @@ Picture montage(const std::vector<Picture>& panels, int columns)
   {
     throw Error("a montage needs panels and columns: give it at least one of each");
   }
-  const int width = panels.front().width;
-  const int height = panels.front().height;
+  int width = 0;
+  int height = 0;
+  for (const Picture& panel : panels)
+  {
+    width = std::max(width, panel.width);
+    height = std::max(height, panel.height);
+  }
   const int rows = (int(panels.size()) + columns - 1) / columns;
   OIIO::ImageBuf all = bufferOf(blank(columns * (width + gap) - gap, rows * (height + gap) - gap));
   for (std::size_t i = 0; i < panels.size(); ++i)
   {
-    const int x = int(i) % columns * (width + gap);
-    const int y = int(i) / columns * (height + gap);
+    const int x = int(i) % columns * (width + gap) + (width - panels[i].width) / 2;
+    const int y = int(i) / columns * (height + gap) + (height - panels[i].height) / 2;
     OIIO::ImageBufAlgo::paste(all, x, y, 0, 0, bufferOf(panels[i]));
   }
   Picture picture{ all.spec().width, all.spec().height, {} };
