@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace sono::study {
 namespace {
@@ -88,20 +89,26 @@ Picture montage(const std::vector<Picture>& panels, int columns)
   {
     throw Error("a montage needs panels and columns: give it at least one of each");
   }
-  int width = 0;
+  std::vector<int> widths(std::size_t(std::min(columns, int(panels.size()))));
   int height = 0;
-  for (const Picture& panel : panels)
-  {
-    width = std::max(width, panel.width);
-    height = std::max(height, panel.height);
-  }
-  const int rows = (int(panels.size()) + columns - 1) / columns;
-  OIIO::ImageBuf all = bufferOf(blank(columns * (width + gap) - gap, rows * (height + gap) - gap));
   for (std::size_t i = 0; i < panels.size(); ++i)
   {
-    const int x = int(i) % columns * (width + gap) + (width - panels[i].width) / 2;
+    int& width = widths[i % std::size_t(columns)];
+    width = std::max(width, panels[i].width);
+    height = std::max(height, panels[i].height);
+  }
+  const int rows = (int(panels.size()) + columns - 1) / columns;
+  const int width = std::accumulate(widths.begin(), widths.end(), gap * (int(widths.size()) - 1));
+  OIIO::ImageBuf all = bufferOf(blank(width, rows * (height + gap) - gap));
+  int left = 0;
+  for (std::size_t i = 0; i < panels.size(); ++i)
+  {
+    const std::size_t column = i % std::size_t(columns);
+    left = column == 0 ? 0 : left;
+    const int x = left + (widths[column] - panels[i].width) / 2;
     const int y = int(i) / columns * (height + gap) + (height - panels[i].height) / 2;
     OIIO::ImageBufAlgo::paste(all, x, y, 0, 0, bufferOf(panels[i]));
+    left += widths[column] + gap;
   }
   Picture picture{ all.spec().width, all.spec().height, {} };
   picture.rgb.resize(std::size_t(picture.width) * std::size_t(picture.height) * 3);

@@ -27,7 +27,7 @@ Picture pictureOf(const PlaneImage& grey);
 Picture pictureOfLabels(const LabelVolume& labels, const ScanGeometry& geometry, const ProbePose& pose,
                         const PlaneImage& layout, const TracedLines& traced);
 
-/// Pictures in rows, each in the middle of a cell as large as the largest.
+/// Pictures in rows, all as high as the highest, each column as wide as its widest; smaller ones stand in the middle.
 Picture montage(const std::vector<Picture>& panels, int columns);
 
 /// Writes a PNG. Throws Error when that fails.

@@ -11,7 +11,7 @@ namespace sono::study {
 namespace {
 
 constexpr double serousMm = 0.01; ///< roughness of pleura and diaphragm: a wet serous membrane, chosen
-constexpr int panelHeight = 280;
+constexpr int panelHeight = 205;
 
 double decibels(double power)
 {
@@ -108,56 +108,61 @@ void figuresOfLung(Output& output, const std::string& name, const RfLines& rf)
   }
 }
 
-/// Where the ball's mirror image is brightest, and how bright it and the liver beside it are.
+/// Where the ball's mirror image lies, and how bright what is mirrored is.
 void figuresOfMirror(Output& output, const std::string& name, const ArtefactScene& artefact, const RfLines& rf)
 {
   const ImageSettings& s = artefact.input.settings;
   const MirrorPlace expected = ballBehindDiaphragm(s.geometry, artefact.input.pose);
-  const int line = std::clamp(int(expected.line), 2, rf.lineCount - 3);
+  const int line = std::clamp(expected.line, 2, rf.lineCount - 3);
   std::vector<double> power = powerOf(rf, line - 2, line + 2);
+  for (std::size_t n = 0; n < power.size(); ++n)
+  {
+    power[n] *= std::pow(10.0, 0.01 * s.bmode.tgcDbPerCm * double(n) * rf.sampleMm);
+  }
   double moment = 0.0;
   double sum = 0.0;
-  for (int n = int((expected.rangeMm - 12.0) / rf.sampleMm);
-       n < std::min(int((expected.rangeMm + 12.0) / rf.sampleMm), rf.sampleCount); ++n)
+  for (int n = int((expected.imageMm - 12.0) / rf.sampleMm);
+       n < std::min(int((expected.imageMm + 12.0) / rf.sampleMm), rf.sampleCount); ++n)
   {
-    const double even = power[std::size_t(n)] * std::pow(10.0, 0.01 * s.bmode.tgcDbPerCm * n * rf.sampleMm);
-    moment += even * n * rf.sampleMm;
-    sum += even;
+    moment += power[std::size_t(n)] * n * rf.sampleMm;
+    sum += power[std::size_t(n)];
   }
-  output.figure(name + "_mirror_line", line, "");
   output.figure(name + "_mirror_mm", sum > 0.0 ? moment / sum : 0.0, "mm");
-  output.figure(name + "_mirror_theory_mm", expected.rangeMm, "mm");
+  output.figure(name + "_mirror_theory_mm", expected.imageMm, "mm");
+  const double depth = expected.diaphragmMm;
+  output.figure(name + "_mirrored_liver_to_liver_db",
+                decibels(meanBetween(power, rf.sampleMm, depth + 3.0, depth + 9.0)) -
+                  decibels(meanBetween(power, rf.sampleMm, depth - 9.0, depth - 3.0)),
+                "dB");
 }
 
-void figuresOfNeedle(Output& output, const Pair& needle)
+/// The tail behind a piece of steel, around a line.
+void figuresOfSteel(Output& output, const std::string& name, const Pair& steel, int line)
 {
-  const RfLines& rf = needle.with.rf;
-  const int middle = rf.lineCount / 2;
-  const std::vector<double> with = powerOf(rf, middle - 2, middle + 2);
-  const std::vector<double> without = powerOf(needle.without.rf, middle - 2, middle + 2);
+  const RfLines& rf = steel.with.rf;
+  const int least = std::max(0, line - 2);
+  const int most = std::min(rf.lineCount - 1, line + 2);
+  const std::vector<double> with = powerOf(rf, least, most);
+  const std::vector<double> without = powerOf(steel.without.rf, least, most);
   const double front = loudestBetween(with, rf.sampleMm, needleTopMm - 0.6, needleTopMm + 0.6);
-  output.figure("needle_mm", front, "mm");
   const double frontDb = decibels(with[std::size_t(std::lround(front / rf.sampleMm))]);
-  int peaks = 0;
-  double last = front;
-  for (std::size_t n = std::size_t((front + 0.15) / rf.sampleMm); n < std::size_t((front + 3.0) / rf.sampleMm); ++n)
+  const double spacing = needleThickMm * 1540.0 / 5790.0;
+  output.figure(name + "_spacing_theory_mm", spacing, "mm");
+  for (int n = 1; n <= 8; ++n)
   {
-    if (with[n] > with[n - 1] && with[n] >= with[n + 1] && ++peaks < 8)
-    {
-      output.figure("needle_echo_" + std::to_string(peaks) + "_behind_mm", n * rf.sampleMm - front, "mm");
-      output.figure("needle_echo_" + std::to_string(peaks) + "_db", decibels(with[n]) - frontDb, "dB");
-      last = n * rf.sampleMm;
-    }
+    const double expected = front + n * spacing;
+    const double at = loudestBetween(with, rf.sampleMm, expected - 0.4 * spacing, expected + 0.4 * spacing);
+    const std::string echo = name + "_echo_" + std::to_string(n);
+    output.figure(echo + "_spacings_behind", (at - front) / spacing, "");
+    output.figure(echo + "_db", decibels(with[std::size_t(std::lround(at / rf.sampleMm))]) - frontDb, "dB");
   }
-  output.figure("needle_echo_spacing_mm", peaks > 0 ? (last - front) / std::min(peaks, 7) : 0.0, "mm");
-  output.figure("needle_echo_spacing_theory_mm", needleThickMm * 1540.0 / 5790.0, "mm");
-  for (const double behind : { 1.5, 3.0, 5.0, 10.0 })
+  for (const double behind : { 3.0, 5.0, 10.0 })
   {
+    const std::string at = "_at_" + number(behind) + "_mm_db";
     const double from = front + behind;
-    output.figure("needle_tail_at_" + number(behind) + "_mm_db",
-                  decibels(meanBetween(with, rf.sampleMm, from, from + 1.0)) - frontDb, "dB");
-    output.figure("needle_without_at_" + number(behind) + "_mm_db",
-                  decibels(meanBetween(without, rf.sampleMm, from, from + 1.0)) - frontDb, "dB");
+    output.figure(name + "_tail" + at, decibels(meanBetween(with, rf.sampleMm, from, from + 1.0)) - frontDb, "dB");
+    output.figure(name + "_without" + at, decibels(meanBetween(without, rf.sampleMm, from, from + 1.0)) - frontDb,
+                  "dB");
   }
 }
 
@@ -186,7 +191,7 @@ double cystDb(const ArtefactScene& artefact, const RfLines& rf)
   return decibels(inside / std::max(insideCount, 1)) - decibels(beside / std::max(besideCount, 1));
 }
 
-/// Mean power, dB, of what lies in a label.
+/// Mean power, dB, of what lies in a label, as the picture's gain has it.
 double labelDb(const ArtefactScene& artefact, const RfLines& rf, const std::string& label)
 {
   const LabelVolume& volume = artefact.scene->volume();
@@ -207,12 +212,22 @@ double labelDb(const ArtefactScene& artefact, const RfLines& rf, const std::stri
       const auto id = volume.voxels[(std::size_t(voxel.z) * size.y + voxel.y) * size.x + voxel.x];
       if (volume.find(id)->name.rfind(label, 0) == 0)
       {
-        sum += std::norm(rf.iq[std::size_t(l) * rf.sampleCount + n]);
+        sum += std::norm(rf.iq[std::size_t(l) * rf.sampleCount + n]) *
+               std::pow(10.0, 0.01 * artefact.input.settings.bmode.tgcDbPerCm * n * rf.sampleMm);
         ++count;
       }
     }
   }
   return decibels(sum / std::max(count, 1));
+}
+
+/// Levels of the left ventricle's wall and cavity, and of the atrium behind it.
+void figuresOfHeart(Output& output, const std::string& name, const ArtefactScene& chest, const RfLines& rf)
+{
+  const double cavity = labelDb(chest, rf, "left_ventricle_blood");
+  output.figure("a4c_" + name + "_wall_less_cavity_db", labelDb(chest, rf, "left_ventricle_myocardium") - cavity, "dB");
+  output.figure("a4c_" + name + "_cavity_db", cavity, "dB");
+  output.figure("a4c_" + name + "_left_atrium_db", labelDb(chest, rf, "left_atrium_blood"), "dB");
 }
 
 void run(Output& output)
@@ -232,7 +247,8 @@ void run(Output& output)
   figuresOfMirror(output, "rough", roughDome, roughDiaphragm.with.rf);
 
   const Pair needle = drawPair(needleScene(quick));
-  figuresOfNeedle(output, needle);
+  figuresOfSteel(output, "needle", needle, int(0.26 * needle.with.rf.lineCount));
+  figuresOfSteel(output, "strip", needle, int(0.74 * needle.with.rf.lineCount));
 
   const ArtefactScene fundamental = cystScene(ImagingMode::Fundamental, quick);
   const ArtefactScene harmonic = cystScene(ImagingMode::Harmonic, quick);
@@ -245,20 +261,16 @@ void run(Output& output)
 
   const ArtefactScene chest = heartScene(quick);
   const Pair heart = drawPair(chest);
-  for (const char* label : { "left_ventricle_blood", "left_atrium_blood", "lung" })
-  {
-    output.figure(std::string("a4c_") + label + "_more_db",
-                  labelDb(chest, heart.with.rf, label) - labelDb(chest, heart.without.rf, label), "dB");
-  }
+  figuresOfHeart(output, "without_reverberation", chest, heart.without.rf);
+  figuresOfHeart(output, "with_reverberation", chest, heart.with.rf);
 
   writePicture(montage({ lung.without.picture, diaphragm.without.picture, needle.without.picture, sent.with.picture,
                          heart.without.picture, lung.with.picture, diaphragm.with.picture, needle.with.picture,
                          twice.with.picture, heart.with.picture },
                        5),
                output.file("reverberation.png"));
-  writePicture(
-    montage({ roughLung.with.picture, roughDiaphragm.with.picture, sent.without.picture, twice.without.picture }, 4),
-    output.file("reverberation_rough.png"));
+  writePicture(montage({ roughLung.with.picture, roughDiaphragm.with.picture }, 2),
+               output.file("reverberation_rough.png"));
 }
 
 const Part part("reverberation", run);

@@ -3,10 +3,12 @@
 #include "PhantomImaging.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Study.h"
+#include "TargetScenes.h"
 #include "TestScenes.h"
 
 #include "Core/SoundSpeed.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -48,6 +50,39 @@ ImageInput inputOf(const std::string& probe, double depthMm, double gainDbPerCmM
   return input;
 }
 
+/// A round rod across the beam, from one x to another: a prism with a flat side up.
+TargetSurface rodAlong(const Tissue& tissue, double fromMm, double toMm, double y)
+{
+  constexpr int sides = 24;
+  const double radiusMm = 0.5 * needleThickMm / std::cos(pi / sides);
+  TargetSurface rod{ "needle", tissue, {}, {} };
+  for (const double x : { fromMm, toMm })
+  {
+    for (int i = 0; i < sides; ++i)
+    {
+      const double turn = 2.0 * pi * (i + 0.5) / sides;
+      rod.pointsMm.push_back(
+        { x, y + radiusMm * std::sin(turn), needleTopMm + 0.5 * needleThickMm - radiusMm * std::cos(turn) });
+    }
+  }
+  for (int i = 0; i < sides; ++i)
+  {
+    const int j = (i + 1) % sides;
+    rod.triangles.push_back({ i, j, sides + j });
+    rod.triangles.push_back({ i, sides + j, sides + i });
+    if (i > 0 && j > 0)
+    {
+      rod.triangles.push_back({ 0, j, i });
+      rod.triangles.push_back({ sides, sides + i, sides + j });
+    }
+  }
+  return rod;
+}
+
+// From one x to another.
+constexpr std::array<double, 2> needleMm{ 10.0, 21.0 };
+constexpr std::array<double, 2> stripMm{ 29.0, 40.0 };
+
 constexpr double wallMm = 10.0;
 const Vec3d sphereMm(105.0, 10.0, -22.0); ///< middle of the diaphragm's sphere
 constexpr double sphereRadiusMm = 110.0;
@@ -58,20 +93,20 @@ constexpr double veinRadiusMm = 5.0;
 
 } // namespace
 
-const Vec3d cystMm(60.0, 12.0, 30.0);
+const Vec3d cystMm(60.0, 12.0, 20.0);
 
 ArtefactScene pleuraScene(double roughnessMm, bool quick)
 {
   const double voxelMm = quick ? 1.0 : 0.25;
   const Vec3d size(50.0, 12.0, 64.0);
-  const std::vector<Tissue> tissues{ smooth("skin", roughnessMm), smooth("fat", roughnessMm),
-                                     smooth("muscle", roughnessMm), smooth("lung", roughnessMm),
-                                     *bundledTissues().find("cortical_bone") };
+  const std::vector<Tissue> tissues{ *bundledTissues().find("skin"),   *bundledTissues().find("fat"),
+                                     *bundledTissues().find("muscle"), smooth("connective_tissue", roughnessMm),
+                                     smooth("lung", roughnessMm),      *bundledTissues().find("cortical_bone") };
   ArtefactScene made;
   made.scene = test::makeScene(Vec3i(size / voxelMm), Vec3d(voxelMm), tissues, [&](const Vec3d& p) {
     const double aside = std::abs(p.x - 0.5 * size.x) - 17.0; // the middle of a rib
     const bool rib = std::hypot(aside / 5.0, (p.z - 8.0) / 3.0) < 1.0;
-    return rib ? 4 : p.z < 1.5 ? 0 : p.z < 4.0 ? 1 : p.z < pleuraMm ? 2 : 3;
+    return rib ? 5 : p.z < 1.5 ? 0 : p.z < 4.0 ? 1 : p.z < pleuraMm - 1.0 ? 2 : p.z < pleuraMm ? 3 : 4;
   });
   made.input = inputOf("linear_l14", 4.5 * pleuraMm, 0.9, quick); // 0.9 dB/(cm MHz): the wall's mean
   made.input.pose.positionMm = { 0.5 * size.x, 0.5 * size.y, 0.0 };
@@ -111,7 +146,7 @@ MirrorPlace ballBehindDiaphragm(const ScanGeometry& geometry, const ProbePose& p
 {
   const std::vector<ScanLine> lines = makeScanLines(geometry, pose);
   const double shown = 1000.0 * assumedSoundSpeedMmPerUs / bundledTissues().find("liver")->soundSpeedMPerS;
-  MirrorPlace best{ 0.0, 0.0 };
+  MirrorPlace best{ 0, 0.0, 0.0 };
   double nearest = std::numeric_limits<double>::max();
   for (std::size_t l = 0; l < lines.size(); ++l)
   {
@@ -127,7 +162,7 @@ MirrorPlace ballBehindDiaphragm(const ScanGeometry& geometry, const ProbePose& p
     if (missMm < nearest)
     {
       nearest = missMm;
-      best = { double(l), shown * (hitMm + backMm) };
+      best = { int(l), shown * (hitMm + backMm), shown * hitMm };
     }
   }
   return best;
@@ -147,30 +182,9 @@ ArtefactScene needleScene(bool quick)
   steel.impedanceMRayl = 45.7;
   steel.soundSpeedMPerS = 5790.0;
   steel.roughnessMm = 0.0;
-  constexpr int sides = 24;
-  TargetSurface rod{ "needle", steel, {}, {} };
-  for (const double x : { 16.0, 34.0 })
-  {
-    for (int i = 0; i < sides; ++i)
-    {
-      const double turn = 2.0 * pi * (i + 0.5) / sides; // a flat side up
-      const double radiusMm = 0.5 * needleThickMm / std::cos(pi / sides);
-      rod.pointsMm.push_back(
-        { x, 0.5 * size.y + radiusMm * std::sin(turn), needleTopMm + 0.5 * needleThickMm - radiusMm * std::cos(turn) });
-    }
-  }
-  for (int i = 0; i < sides; ++i)
-  {
-    const int j = (i + 1) % sides;
-    rod.triangles.push_back({ i, j, sides + j });
-    rod.triangles.push_back({ i, sides + j, sides + i });
-    if (i > 0 && j > 0)
-    {
-      rod.triangles.push_back({ 0, j, i });
-      rod.triangles.push_back({ sides, sides + i, sides + j });
-    }
-  }
-  made.input.targets.push_back(std::move(rod));
+  made.input.targets.push_back(rodAlong(steel, needleMm[0], needleMm[1], 0.5 * size.y));
+  made.input.targets.push_back(test::makeBox("strip", steel, { stripMm[0], 0.5 * size.y - 3.0, needleTopMm },
+                                             { stripMm[1], 0.5 * size.y + 3.0, needleTopMm + needleThickMm }));
   return made;
 }
 
@@ -187,9 +201,11 @@ ArtefactScene cystScene(ImagingMode mode, bool quick)
   made.scene = test::makeScene(Vec3i(size / voxelMm), Vec3d(voxelMm), tissues, [](const Vec3d& p) {
     return p.z < 2.0 ? 0 : p.z < 7.0 ? 1 : p.z < wallMm ? 2 : glm::distance(p, cystMm) > cystRadiusMm ? 3 : 4;
   });
-  made.input = inputOf("curvilinear_c5-2", 55.0, 0.5, quick);
+  made.input = inputOf("curvilinear_c5-2", 45.0, 0.5, quick);
   made.input.pose.positionMm = { cystMm.x, cystMm.y, 0.0 };
   ImageSettings& s = made.input.settings;
+  s.geometry.sectorDeg *= 0.6;
+  s.geometry.lineCount = quick ? 16 : 100;
   s.echo.imagingMode = mode;
   s.matchStages();
   return made;
@@ -201,7 +217,7 @@ ArtefactScene heartScene(bool quick)
   made.scene = sceneOf(makeThoraxPhantom(quick ? 4.0 : 1.0));
   made.input = inputOf("phased_p4-2", 160.0, 0.5, quick);
   made.input.pose = thoraxPhantomA4C().orthonormalized();
-  made.input.settings.tracing.maxCollisions = TraceSettings().maxCollisions;
+  made.input.settings.tracing.maxCollisions = 20; // as the chest's filters have it
   made.input.settings.bmode.tgcDbPerCm = BModeSettings().tgcDbPerCm;
   return made;
 }

@@ -16,22 +16,25 @@ struct ArtefactScene
   ImageInput input; ///< with reverberation, in the fundamental
 };
 
-/// Body wall of 12 mm over aerated lung, between two ribs, under the L14-5. `roughnessMm`: of the pleura, rms height.
+/// Body wall of 12 mm, its last one connective tissue, over aerated lung between two ribs, under the L14-5.
+/// `roughnessMm`: of the pleura, rms height.
 ArtefactScene pleuraScene(double roughnessMm, bool quick);
 constexpr double pleuraMm = 12.0;
 
 /// Liver with a bright ball and a vein in front of a diaphragm, part of a sphere with lung behind it, under the C5-2.
 ArtefactScene diaphragmScene(double roughnessMm, bool quick);
-/// The range, mm, and line (fractional) at which the ball's mirror image must lie: of all rays from the face that
-/// the sphere mirrors, the one through the ball's middle.
+/// Where the ball's mirror image must lie: of all lines that the sphere mirrors the one that comes nearest to the
+/// ball's middle, and the ranges of image and diaphragm on it, mm.
 struct MirrorPlace
 {
-  double line;
-  double rangeMm;
+  int line;
+  double imageMm;
+  double diaphragmMm;
 };
 MirrorPlace ballBehindDiaphragm(const ScanGeometry& geometry, const ProbePose& pose);
 
-/// A steel rod, seen from the side, in soft tissue under the L14-5.
+/// Two pieces of steel, seen from the side, in soft tissue under the L14-5: a round needle at the lateral beginning,
+/// and a strip 6 mm wide.
 ArtefactScene needleScene(bool quick);
 constexpr double needleTopMm = 22.0;
 constexpr double needleThickMm = 1.2;
