@@ -217,8 +217,10 @@ ArtefactScene heartScene(bool quick)
   made.scene = sceneOf(makeThoraxPhantom(quick ? 4.0 : 1.0));
   made.input = inputOf("phased_p4-2", 160.0, 0.5, quick);
   made.input.pose = thoraxPhantomA4C().orthonormalized();
-  made.input.settings.tracing.maxCollisions = 20; // as the chest's filters have it
-  made.input.settings.bmode.tgcDbPerCm = BModeSettings().tgcDbPerCm;
+  // As vtkSonoUltrasound starts, but for the paths.
+  made.input.settings.tracing.maxCollisions = 20;
+  made.input.settings.tracing.coherenceMm = 20.0;
+  made.input.settings.bmode.tgcDbPerCm = 3.0;
   return made;
 }
 
