@@ -103,7 +103,7 @@ void figuresOfLung(Output& output, const std::string& name, const RfLines& rf)
                                           meanBetween(power, rf.sampleMm, n * pleura + 2.0, n * pleura + 4.0)));
     const std::string line = name + "_aline_" + std::to_string(n);
     output.figure(line + "_depths_of_the_pleura", at / pleura, "");
-    output.figure(line + "_to_the_one_before_db", (above - level) / (n - 1), "dB");
+    output.figure(line + "_a_repetition_db", (above - level) / (n - 1), "dB");
     output.figure(line + "_above_its_surroundings_db", above - around, "dB");
   }
 }
