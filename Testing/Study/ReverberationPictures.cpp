@@ -80,6 +80,7 @@ Pair drawPair(const ArtefactScene& artefact)
 {
   Simulator simulator(artefact.scene);
   ImageInput input = artefact.input;
+  input.settings.tracing.reverberation = true;
   Drawn with = draw(simulator, input);
   input.settings.tracing.reverberation = false;
   Drawn without = draw(simulator, input, with.white);

@@ -13,7 +13,7 @@ namespace sono::study {
 struct ArtefactScene
 {
   std::shared_ptr<const Scene> scene;
-  ImageInput input; ///< with reverberation, in the fundamental
+  ImageInput input; ///< in the fundamental
 };
 
 /// Body wall of 12 mm, its last one connective tissue, over aerated lung between two ribs, under the L14-5.
