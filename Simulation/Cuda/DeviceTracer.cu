@@ -1,5 +1,6 @@
 #include "Cuda/DeviceTracer.cuh"
 
+#include "Cuda/FinishTrace.cuh"
 #include "Cuda/TraceKernels.cuh"
 
 #include <algorithm>

@@ -8,9 +8,10 @@
 //
 //   r(z) = integral from 0 to z of c0 / c dz                      (Data/docs/physics.md 13.1)
 //
-// with c0 = 1540 m/s; a scanner that assumes another speed shows it to another scale. The integral runs along the line's axis, straight on, in steps much
-// shorter than a bin, from medium to medium: where the two ends of a step differ, the boundary is looked for. What is
-// known at multiples of a step or a bin thus bends in between at most where a boundary is, and there sharply.
+// with c0 = 1540 m/s; a scanner that assumes another speed shows it to another scale. The integral runs along the
+// line's axis, straight on, in steps much shorter than a bin, from medium to medium: where the two ends of a step
+// differ, the boundary is looked for. What is known at multiples of a step or a bin thus bends in between at most where
+// a boundary is, and there sharply.
 
 namespace sono {
 
