@@ -39,7 +39,6 @@ struct PathSegment
   float absorbed;        ///< of PathState, at its start
   float lengthMm = 0.0f; ///< the same
   float rangeMm = 0.0f;
-  float amplitude = 1.0f;
   float rangePerMm = 1.0f; ///< of the medium
   float scatter = 0.0f;
   int reflections = 0;

@@ -56,10 +56,13 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
   const std::size_t first = std::size_t(line) * std::size_t(out.binCount);
   std::vector<SpreadSums> bins(takenNp.size());
   const auto each = std::size_t(TissueBins(out.binCount, float(out.binMm)).each);
+  ReverberationMeans means{};
   for (std::size_t b = 0; b < bins.size(); ++b)
   {
-    const ReverberationMeans means =
-      reverberationMeans(int(batches.size()), [&](int batch) { return batches[std::size_t(batch)][b / each]; });
+    if (b % each == 0)
+    {
+      means = reverberationMeans(int(batches.size()), [&](int batch) { return batches[std::size_t(batch)][b / each]; });
+    }
     bins[b] = { means.cellPower, means.ownLevel * means.ownLevel };
     kept.ownLevel[first + b] = means.ownLevel;
     kept.straightPower[first + b] = means.straightPower;
