@@ -75,8 +75,10 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
   if (launch.reverberation)
   {
-    sumSpread<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch);
-    finishReverberation<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, lines);
+    const dim3 blocksOfTissue(ceilDiv(TissueBins(launch.binCount, launch.binMm).count, 128), lines);
+    averageReverberation<<<blocksOfTissue, 128, 0, stream>>>(launch);
+    sumReverberationAlong<<<blocksOfTissue, 128, 0, stream>>>(launch);
+    finishReverberation<<<blocksOfTissue, 128, 0, stream>>>(launch, lines);
   }
   check(cudaGetLastError(), "tracing");
 }
@@ -167,9 +169,8 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     reverberates_ ? reverberationSumCount * std::size_t(batches) * std::size_t(TissueBins(binCount_, binMm_).count) : 0;
   reverberation_.resize(lineCount * reverberations);
   reverberation_.clear(stream);
-  spread_.resize(2 * reverberant);
+  reverberationAround_.resize(2 * reverberant);
   ownLevel_.resize(reverberant);
-  straightPower_.resize(reverberant);
   cellMm_.resize(reverberant);
   echo_.resize(lineCount * std::size_t(echoCount_) * 2);
   echoRest_.resize(manyPaths ? echo_.size() : 0);
@@ -227,9 +228,8 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                      reverberates_ ? reverberation_.data() + skip * reverberations : nullptr,
                      cellMm_.data() + (reverberates_ ? skip * bins : 0),
                      ownLevel_.data() + (reverberates_ ? skip * bins : 0),
-                     spread_.data() + (reverberates_ ? skip * bins : 0),
-                     spread_.data() + (reverberates_ ? (lineCount + skip) * bins : 0),
-                     straightPower_.data() + (reverberates_ ? skip * bins : 0),
+                     reverberationAround_.data() + (reverberates_ ? skip * bins : 0),
+                     reverberationAround_.data() + (reverberates_ ? (lineCount + skip) * bins : 0),
                      reverberates_ ? arrays_[reverberationArray].data() + skip * bins : nullptr,
                      reverberates_ ? arrays_[reverberationErrorArray].data() + skip * bins : nullptr };
       for (std::size_t array = 0; array < pathArrayCount; ++array)

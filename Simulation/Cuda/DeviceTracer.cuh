@@ -55,8 +55,8 @@ private:
   DeviceArray<float> axisRange_, axisAmplitude_, axisAbsorbed_;
   DeviceArray<EchoSum> absorbed_;
   DeviceArray<EchoSum> reverberation_;
-  DeviceArray<SpreadSums> spread_;
-  DeviceArray<float> straightPower_, ownLevel_, cellMm_;
+  DeviceArray<ReverberationAround> reverberationAround_;
+  DeviceArray<float> ownLevel_, cellMm_;
   DeviceArray<EchoSum> echo_;
   DeviceArray<EchoSum> echoRest_;
   DeviceArray<std::uint64_t> segments_;

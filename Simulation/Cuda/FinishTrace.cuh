@@ -43,54 +43,61 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   {
     launch.arrays[array][at] = bin.of[array];
   }
-  if (launch.reverberation)
+}
+
+/// What reverberates, of each of the TissueBins.
+template<class Targets>
+__global__ void averageReverberation(TraceLaunch<Targets> launch)
+{
+  const TissueBins tissueBins = launch.tissueBins();
+  const int t = blockIdx.x * blockDim.x + threadIdx.x;
+  const int line = blockIdx.y;
+  if (t >= tissueBins.count)
   {
-    const TissueBins tissueBins = launch.tissueBins();
-    const int tissueBin = b / tissueBins.each;
-    const auto meanReverberation = [&](int batch) {
-      const EchoSum* sums = launch.batchReverberation(line, batch) + reverberationSumCount * tissueBin;
-      const PathRange range = batchRange(launch.paths, launch.batches, batch);
-      const double perUnit = 1.0 / (double(launch.echoScale) * double(range.last - range.first));
-      ReverberationSums means;
-      for (int sum = 0; sum < reverberationSumCount; ++sum)
-      {
-        means.of[sum] = double((long long)(sums[sum])) * perUnit;
-      }
-      return means;
-    };
-    const ReverberationMeans means = reverberationMeans(hasPaths ? launch.batches : 0, meanReverberation);
-    launch.ownLevel[at] = means.ownLevel;
-    launch.straightPower[at] = means.straightPower;
-    launch.spread[at] = { means.cellPower, means.ownLevel * means.ownLevel };
-    launch.reverberationError[at] = means.error;
-    const auto absorbed = [&](const EchoSum* sums, int bin) {
-      const EchoSum* of = sums + 2 * (std::size_t(line) * launch.binCount + bin);
-      return AbsorbedSums{ double((long long)(of[0])), double((long long)(of[1])) };
-    };
-    const float takenNp = absorbedNp(absorbed(launch.absorbedByTissue, tissueBins.absorptionBin(tissueBin)),
-                                     absorbed(launch.absorbedToBoundaries, b));
-    launch.reverberationNp[at] = float(double(takenNp) / launch.frequencyMHz);
+    return;
+  }
+  const auto meanOf = [&](int batch) {
+    const EchoSum* sums = launch.batchReverberation(line, batch) + reverberationSumCount * t;
+    const PathRange range = batchRange(launch.paths, launch.batches, batch);
+    const double perUnit = 1.0 / (double(launch.echoScale) * double(range.last - range.first));
+    ReverberationSums means;
+    for (int sum = 0; sum < reverberationSumCount; ++sum)
+    {
+      means.of[sum] = double((long long)(sums[sum])) * perUnit;
+    }
+    return means;
+  };
+  const bool hasPaths = launch.view.startsApart || launch.starts[line].meets;
+  const ReverberationMeans means = reverberationMeans(hasPaths ? launch.batches : 0, meanOf);
+  const std::size_t first = std::size_t(line) * launch.binCount;
+  launch.ownLevel[first + t] = means.ownLevel;
+  launch.inBin[first + t] = aroundOf(means);
+  const auto absorbed = [&](const EchoSum* sums, int bin) {
+    const EchoSum* of = sums + 2 * (first + bin);
+    return AbsorbedSums{ double((long long)(of[0])), double((long long)(of[1])) };
+  };
+  const AbsorbedSums tissue = absorbed(launch.absorbedByTissue, tissueBins.absorptionBin(t));
+  for (int b = t * tissueBins.each; b < min(launch.binCount, (t + 1) * tissueBins.each); ++b)
+  {
+    launch.reverberationError[first + b] = means.error;
+    const float takenNp = absorbedNp(tissue, absorbed(launch.absorbedToBoundaries, b));
+    launch.reverberationNp[first + b] = float(double(takenNp) / launch.frequencyMHz);
   }
 }
 
-/// What is known of spreading, of the bins around each.
+/// Of the line's bins around each.
 template<class Targets>
-__global__ void sumSpread(TraceLaunch<Targets> launch)
+__global__ void sumReverberationAlong(TraceLaunch<Targets> launch)
 {
-  const int b = blockIdx.x * blockDim.x + threadIdx.x;
-  if (b >= launch.binCount)
+  const TissueBins tissueBins = launch.tissueBins();
+  const int t = blockIdx.x * blockDim.x + threadIdx.x;
+  if (t >= tissueBins.count)
   {
     return;
   }
   const std::size_t first = std::size_t(blockIdx.y) * launch.binCount;
-  const int reach = spreadBins(launch.binMm);
-  SpreadSums around;
-  for (int n = max(0, b - reach); n <= min(launch.binCount - 1, b + reach); ++n)
-  {
-    around.cellPower += launch.spread[first + n].cellPower;
-    around.power += launch.spread[first + n].power;
-  }
-  launch.spreadAround[first + b] = around;
+  launch.alongLine[first + t] =
+    sumAlongLine(t, tissueBins.count, tissueBins.mm, [&](int near) { return launch.inBin[first + near]; });
 }
 
 /// The levels of what reverberates, of a line's bins and of the lines beside it in its image, as far as the launch has
@@ -98,27 +105,24 @@ __global__ void sumSpread(TraceLaunch<Targets> launch)
 template<class Targets>
 __global__ void finishReverberation(TraceLaunch<Targets> launch, int lines)
 {
-  const int b = blockIdx.x * blockDim.x + threadIdx.x;
+  const TissueBins tissueBins = launch.tissueBins();
+  const int t = blockIdx.x * blockDim.x + threadIdx.x;
   const int line = blockIdx.y;
-  if (b >= launch.binCount)
+  if (t >= tissueBins.count)
   {
     return;
   }
   const int inImage = (launch.firstInImage + line) % launch.linesPerImage;
-  const int from = max(max(0, line - inImage), line - spreadLines);
-  const int to = min(min(lines, line - inImage + launch.linesPerImage) - 1, line + spreadLines);
-  SpreadSums around;
-  float straight = 0.0f;
-  for (int l = from; l <= to; ++l)
+  const ReverberationAround around =
+    sumOverLines(line, max(0, line - inImage), min(lines, line - inImage + launch.linesPerImage),
+                 [&](int near) { return launch.alongLine[std::size_t(near) * launch.binCount + t]; });
+  const std::size_t first = std::size_t(line) * launch.binCount;
+  const float unspread = resolutionCell(launch.view, launch.lines[line], (float(t) + 0.5f) * tissueBins.mm).unspread;
+  const float level = reverberationLevel(around, unspread, launch.ownLevel[first + t]);
+  for (int b = t * tissueBins.each; b < min(launch.binCount, (t + 1) * tissueBins.each); ++b)
   {
-    const std::size_t at = std::size_t(l) * launch.binCount + b;
-    around.cellPower += launch.spreadAround[at].cellPower;
-    around.power += launch.spreadAround[at].power;
-    straight += launch.straightPower[at] / float(to - from + 1);
+    launch.reverberationMean[first + b] = level;
   }
-  const float unspread = resolutionCell(launch.view, launch.lines[line], (float(b) + 0.5f) * launch.binMm).unspread;
-  launch.reverberationMean[std::size_t(line) * launch.binCount + b] =
-    reverberationLevel(around, unspread, launch.ownLevel[std::size_t(line) * launch.binCount + b], straight);
 }
 
 constexpr int flightThreads = 256;

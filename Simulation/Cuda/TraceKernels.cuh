@@ -61,13 +61,12 @@ struct TraceLaunch
   EchoSum* absorbedToBoundaries; // the same
   float* reverberationNp;        // lines x bins
   EchoSum*
-    reverberation;    // lines x batches x TissueBins x ReverberationSum, times echoScale; null: nothing reverberates
-  float* cellMm;      // lines x bins: of TissueBins, see resolutionCell
-  float* ownLevel;    // lines x bins
-  SpreadSums* spread; // lines x bins: of each bin, then of those around
-  SpreadSums* spreadAround;
-  float* straightPower;     // lines x bins
-  float* reverberationMean; // lines x bins
+    reverberation; // lines x batches x TissueBins x ReverberationSum, times echoScale; null: nothing reverberates
+  float* cellMm;   // lines x bins: of TissueBins, see resolutionCell
+  float* ownLevel; // the same, as the next two
+  ReverberationAround* inBin;
+  ReverberationAround* alongLine; // of the bins around each
+  float* reverberationMean;       // lines x bins
   float* reverberationError;
 
   __device__ StraightWay wayOf(int line) const

@@ -107,6 +107,22 @@ void LineFinisher::sinkReverberation(int line, float* re, float* im) const
   }
 }
 
+/// Whether paths have left boundary echoes or reverberation: where nothing reverberates, nothing is spent on it.
+bool LineFinisher::hasPathEchoes(int line) const
+{
+  const auto first = traced_->boundaryEcho.begin() + std::ptrdiff_t(line) * traced_->echoCount;
+  if (std::any_of(first, first + traced_->echoCount, [](std::complex<float> e) { return e != std::complex<float>{}; }))
+  {
+    return true;
+  }
+  if (traced_->reverberation.empty())
+  {
+    return false;
+  }
+  const auto bins = traced_->reverberation.begin() + std::ptrdiff_t(line) * traced_->binCount;
+  return std::any_of(bins, bins + traced_->binCount, [](float level) { return level > faintestReverberation; });
+}
+
 bool LineFinisher::sinks(int line) const
 {
   if (!downshift_)
@@ -265,14 +281,14 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
     demodulate(sum, re.data() + half, im.data() + half);
   }
   // Of Acoustic these have been reflected, and attenuated by ways of their own.
-  const bool isLate = traced_ && (traced_->echoCount > 0 || !traced_->reverberation.empty());
+  const bool isLate = traced_ && hasPathEchoes(line);
   std::vector<float> lateRe(isLate ? carrierRe_.size() : 0, 0.0f);
   std::vector<float> lateIm(lateRe.size(), 0.0f);
-  if (traced_ && traced_->echoCount > 0)
+  if (isLate && traced_->echoCount > 0)
   {
     demodulate(boundaryEchoes(line), lateRe.data(), lateIm.data());
   }
-  if (traced_ && !traced_->reverberation.empty())
+  if (isLate && !traced_->reverberation.empty())
   {
     addReverberation(line, lateRe.data(), lateIm.data());
     sinkReverberation(line, lateRe.data(), lateIm.data());

@@ -51,6 +51,7 @@ private:
   void showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const;
   void addReverberation(int line, float* re, float* im) const;
   void sinkReverberation(int line, float* re, float* im) const;
+  bool hasPathEchoes(int line) const;
   bool sinks(int line) const;
   std::vector<float> exponents(int line) const;
 

@@ -68,10 +68,7 @@ void LineTally::begin(const TraceView& view, const TraceLine& axis, std::uint32_
   axis_ = &axis;
   way_ = way;
   lineKey_ = lineKey;
-  for (std::size_t b = 0; view.reverberates && b < cellMm_.size(); ++b)
-  {
-    cellMm_[b] = resolutionCell(view, axis, (float(b) + 0.5f) * tissueBins_.mm).sideMm;
-  }
+  reverberated_ = false;
   start(axis, view.coherenceMm);
 }
 
@@ -110,6 +107,10 @@ std::vector<BinSums<double>> LineTally::takeBins(int paths)
 
 std::vector<ReverberationSums> LineTally::takeReverberation(int paths)
 {
+  if (!reverberated_)
+  {
+    return {};
+  }
   std::vector<ReverberationSums> means(reverberation_.size());
   means.swap(reverberation_);
   for (ReverberationSums& mean : means)
@@ -200,6 +201,14 @@ void LineTally::addReverberation(const PathSegment& s)
   if (!(span.high > span.low) || echo.level == 0.0f)
   {
     return;
+  }
+  if (!reverberated_)
+  {
+    reverberated_ = true;
+    for (std::size_t b = 0; b < cellMm_.size(); ++b)
+    {
+      cellMm_[b] = resolutionCell(*view_, *axis_, (float(b) + 0.5f) * tissueBins_.mm).sideMm;
+    }
   }
   const BinSpan covered = binSpan(span, tissueBins_.mm);
   for (int b = covered.first; b <= covered.last; ++b)

@@ -41,7 +41,9 @@ public:
 
   /// What was left in each bin, of each of `paths` paths, and forgets it.
   std::vector<BinSums<double>> takeBins(int paths);
-  /// What reverberated in each of the TissueBins, mean of `paths` paths, and forgets it.
+  /// Whether anything of the line has reverberated so far.
+  bool hasReverberated() const { return reverberated_ || lastEcho_ >= 0; }
+  /// What reverberated in each of the TissueBins, mean of `paths` paths, and forgets it; empty: nothing has.
   std::vector<ReverberationSums> takeReverberation(int paths);
   /// What the media have taken of what reverberated, Np, by radial bin, and forgets it.
   std::vector<float> takeReverberatedNp();
@@ -60,9 +62,10 @@ private:
   std::array<std::vector<double>, binSumCount> binSums_; ///< of those before
   TissueBins tissueBins_;
   std::vector<ReverberationSums> reverberation_; ///< of the paths since it was taken
+  bool reverberated_ = false;                    ///< since the line began
   std::vector<AbsorbedSums> absorbedByTissue_;   ///< before its echoes
   std::vector<AbsorbedSums> absorbedToBoundaries_;
-  std::vector<float> cellMm_; ///< see resolutionCell, in the middle of each bin
+  std::vector<float> cellMm_; ///< see resolutionCell, in the middle of each bin; of a line that has reverberated
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;

@@ -34,18 +34,25 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
   }
 }
 
-/// What lines leave of reverberation, lines x bins, until all are traced.
+/// What lines leave of reverberation, lines x TissueBins, until all are traced.
 struct TracedReverberation
 {
-  std::vector<float> ownLevel; ///< ReverberationMeans, as the next
-  std::vector<float> straightPower;
-  std::vector<SpreadSums> around; ///< over the bins around, of the same line
+  TissueBins tissueBins;
+  std::vector<float> ownLevel;             ///< ReverberationMeans
+  std::vector<ReverberationAround> around; ///< over the bins around, of the same line
+  std::vector<char> isHeard;               ///< whether the line has any
 
-  explicit TracedReverberation(std::size_t size)
-    : ownLevel(size)
-    , straightPower(size)
-    , around(size)
+  explicit TracedReverberation(const TracedLines& out)
+    : tissueBins(out.binCount, float(out.binMm))
   {
+    const std::size_t size = out.reverberation.empty() ? 0 : std::size_t(out.lineCount) * std::size_t(tissueBins.count);
+    ownLevel.resize(size);
+    around.resize(size);
+    isHeard.resize(std::size_t(out.lineCount));
+  }
+  std::size_t at(int line, int bin) const
+  {
+    return std::size_t(line) * std::size_t(tissueBins.count) + std::size_t(bin);
   }
 };
 
@@ -53,53 +60,52 @@ struct TracedReverberation
 void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batches, const std::vector<float>& takenNp,
                        double frequencyMHz, int line, TracedReverberation& kept, TracedLines& out)
 {
+  const TissueBins& tissueBins = kept.tissueBins;
+  kept.isHeard[std::size_t(line)] = 1;
+  std::vector<ReverberationAround> bins(std::size_t(tissueBins.count));
   const std::size_t first = std::size_t(line) * std::size_t(out.binCount);
-  std::vector<SpreadSums> bins(takenNp.size());
-  const auto each = std::size_t(TissueBins(out.binCount, float(out.binMm)).each);
-  ReverberationMeans means{};
-  for (std::size_t b = 0; b < bins.size(); ++b)
+  for (int t = 0; t < tissueBins.count; ++t)
   {
-    if (b % each == 0)
+    const ReverberationMeans means = reverberationMeans(int(batches.size()), [&](int batch) {
+      const std::vector<ReverberationSums>& sums = batches[std::size_t(batch)];
+      return sums.empty() ? ReverberationSums() : sums[std::size_t(t)];
+    });
+    bins[std::size_t(t)] = aroundOf(means);
+    kept.ownLevel[kept.at(line, t)] = means.ownLevel;
+    for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
     {
-      means = reverberationMeans(int(batches.size()), [&](int batch) { return batches[std::size_t(batch)][b / each]; });
+      out.reverberationError[first + std::size_t(b)] = means.error;
+      out.reverberationNpPerMHz[first + std::size_t(b)] = float(double(takenNp[std::size_t(b)]) / frequencyMHz);
     }
-    bins[b] = { means.cellPower, means.ownLevel * means.ownLevel };
-    kept.ownLevel[first + b] = means.ownLevel;
-    kept.straightPower[first + b] = means.straightPower;
-    out.reverberationError[first + b] = means.error;
-    out.reverberationNpPerMHz[first + b] = float(double(takenNp[b]) / frequencyMHz);
   }
-  const int reach = spreadBins(float(out.binMm));
-  for (int b = 0; b < out.binCount; ++b)
+  for (int t = 0; t < tissueBins.count; ++t)
   {
-    SpreadSums& around = kept.around[first + std::size_t(b)];
-    for (int n = std::max(0, b - reach); n <= std::min(out.binCount - 1, b + reach); ++n)
-    {
-      around.cellPower += bins[std::size_t(n)].cellPower;
-      around.power += bins[std::size_t(n)].power;
-    }
+    kept.around[kept.at(line, t)] =
+      sumAlongLine(t, tissueBins.count, tissueBins.mm, [&](int near) { return bins[std::size_t(near)]; });
   }
 }
 
 /// The levels of a line's reverberation, of what it and the lines beside it have left.
 void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept, int line, TracedLines& out)
 {
-  const auto at = [&](int l, int b) { return std::size_t(l) * std::size_t(out.binCount) + std::size_t(b); };
-  const int first = std::max(0, line - spreadLines);
-  const int last = std::min(out.lineCount - 1, line + spreadLines);
-  for (int b = 0; b < out.binCount; ++b)
+  const auto heard = kept.isHeard.begin();
+  if (std::none_of(heard + std::max(0, line - linesAround), heard + std::min(out.lineCount, line + linesAround + 1),
+                   [](char is) { return is != 0; }))
   {
-    SpreadSums around;
-    float straight = 0.0f;
-    for (int l = first; l <= last; ++l)
-    {
-      around.cellPower += kept.around[at(l, b)].cellPower;
-      around.power += kept.around[at(l, b)].power;
-      straight += kept.straightPower[at(l, b)] / float(last - first + 1);
-    }
-    const float rangeMm = (float(b) + 0.5f) * float(out.binMm);
+    return;
+  }
+  const TissueBins& tissueBins = kept.tissueBins;
+  for (int t = 0; t < tissueBins.count; ++t)
+  {
+    const ReverberationAround around =
+      sumOverLines(line, 0, out.lineCount, [&](int near) { return kept.around[kept.at(near, t)]; });
+    const float rangeMm = (float(t) + 0.5f) * tissueBins.mm;
     const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
-    out.reverberation[at(line, b)] = reverberationLevel(around, unspread, kept.ownLevel[at(line, b)], straight);
+    const float level = reverberationLevel(around, unspread, kept.ownLevel[kept.at(line, t)]);
+    for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
+    {
+      out.reverberation[std::size_t(line) * std::size_t(out.binCount) + std::size_t(b)] = level;
+    }
   }
 }
 
@@ -220,7 +226,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       reverberation.push_back(tally.takeReverberation(last - first));
     }
   }
-  if (!out.reverberation.empty())
+  if (!out.reverberation.empty() && tally.hasReverberated())
   {
     keepReverberation(reverberation, tally.takeReverberatedNp(), setup.frequencyMHz, index, kept, out);
   }
@@ -282,7 +288,7 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
     out.reverberationNpPerMHz.clear();
   }
 
-  TracedReverberation kept(out.reverberation.size());
+  TracedReverberation kept(out);
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
     return LineTally(out.binCount, out.binMm, binSumsOf(settings.model), out.echoCount, out.echoSampleMm,
                      settings.frequencyMHz / assumedSoundSpeedMmPerUs);

@@ -47,7 +47,7 @@ struct TraceSettings
   BeamAperture aperture;           ///< of the probe: where it is named, paths start over it (see startApart)
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
-  bool reverberation = false;   ///< of Acoustic: whether paths that have been reflected are heard
+  bool reverberation = true;    ///< of Acoustic: whether paths that have been reflected are heard
   double faceReflection = 0.3;  ///< of the amplitude, by the transducer's face: chosen, a matched one's
   double rouletteDb = -100.0;   ///< paths fainter than this play Russian roulette
   std::uint64_t seed = 1;

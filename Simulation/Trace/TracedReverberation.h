@@ -42,7 +42,7 @@ struct ReverberationMeans
 {
   float ownLevel;      ///< of own ways, without signs
   float cellPower;     ///< of the mean with signs, less what chance adds to its square
-  float straightPower; ///< of what comes straight back, less its error: what one path says is no haze yet
+  float straightPower; ///< of what comes straight back
   float error;         ///< standard error of both levels
 };
 
@@ -57,30 +57,74 @@ SONO_HD inline ReverberationMeans reverberationMeans(int batches, const MeanOf& 
   });
   const MeanAndError straight = meanAndError(batches, [&](int batch) { return meanOf(batch).of[straightPowerSum]; });
   const float straightError = straight.mean > 0.0f ? 0.5f * straight.error / sqrtf(straight.mean) : 0.0f;
-  return { float(own), cells.mean * cells.mean - cells.error * cells.error,
-           larger(0.0f, straight.mean - straight.error),
+  return { float(own), cells.mean * cells.mean - cells.error * cells.error, straight.mean,
            sqrtf(cells.error * cells.error + straightError * straightError) };
 }
 
-/// What is known of how far the paths of own ways have spread: sums over bins.
-struct SpreadSums
+/// Few paths tell how far sound has spread and what comes straight back; both change slowly, so that a bin takes them
+/// from the bins around: weights fall straight, in range and over the lines of its image, to nothing beyond this. A
+/// window with edges would show them in the picture.
+constexpr float spreadAroundMm = 6.0f;
+constexpr float straightAroundMm = 2.0f;
+constexpr int linesAround = 8;
+
+SONO_HD inline float weightAround(int apart, int reach)
 {
-  float cellPower = 0.0f; ///< ReverberationMeans::cellPower
-  float power = 0.0f;     ///< mean level without signs, squared
+  return larger(0.0f, float(reach + 1 - (apart < 0 ? -apart : apart)));
+}
+
+/// Weighted sums over the bins around one.
+struct ReverberationAround
+{
+  float cellPower = 0.0f; ///< ReverberationMeans
+  float power = 0.0f;     ///< mean level of own ways without signs, squared
+  float straightPower = 0.0f;
+  float straightWeight = 0.0f;
+
+  SONO_HD void add(const ReverberationAround& other, float by, float byStraight)
+  {
+    cellPower += by * other.cellPower;
+    power += by * other.power;
+    straightPower += byStraight * other.straightPower;
+    straightWeight += byStraight * other.straightWeight;
+  }
 };
 
-/// Both change slowly: so many bins and lines to either side are asked, of the same image. What comes straight back, by
-/// few paths and from far around, is the mean of as many lines.
-SONO_HD inline int spreadBins(float binMm)
+SONO_HD inline ReverberationAround aroundOf(const ReverberationMeans& means)
 {
-  constexpr float spreadMm = 3.0f;
-  return int(spreadMm / binMm + 0.5f);
+  return { means.cellPower, means.ownLevel * means.ownLevel, means.straightPower, 1.0f };
 }
-constexpr int spreadLines = 4;
+
+/// Over the line's bins around one of `count`; `binOf` gives that of each.
+template<class BinOf>
+SONO_HD inline ReverberationAround sumAlongLine(int bin, int count, float tissueBinMm, const BinOf& binOf)
+{
+  const int reach = int(spreadAroundMm / tissueBinMm + 0.5f);
+  const int straightReach = int(straightAroundMm / tissueBinMm + 0.5f);
+  ReverberationAround sum;
+  for (int b = bin > reach ? bin - reach : 0; b < count && b <= bin + reach; ++b)
+  {
+    sum.add(binOf(b), weightAround(b - bin, reach), weightAround(b - bin, straightReach));
+  }
+  return sum;
+}
+
+/// Over the lines around one, of those from `first` up to before `end`.
+template<class LineOf>
+SONO_HD inline ReverberationAround sumOverLines(int line, int first, int end, const LineOf& lineOf)
+{
+  ReverberationAround sum;
+  for (int l = line - linesAround > first ? line - linesAround : first; l < end && l <= line + linesAround; ++l)
+  {
+    const float weight = weightAround(l - line, linesAround);
+    sum.add(lineOf(l), weight, weight);
+  }
+  return sum;
+}
 
 /// The level of a bin's speckle: `own`, the mean level of own ways, is less by sqrt(M) where the paths have spread over
 /// M resolution cells. `unspread` is that of ResolutionCell.
-SONO_HD inline float reverberationLevel(const SpreadSums& around, float unspread, float own, float straightPower)
+SONO_HD inline float reverberationLevel(const ReverberationAround& around, float unspread, float own)
 {
   float amplitude = 0.0f;
   if (around.cellPower > 0.0f && around.power > 0.0f)
@@ -88,7 +132,8 @@ SONO_HD inline float reverberationLevel(const SpreadSums& around, float unspread
     const float cells = 1.0f + around.power / around.cellPower - 1.0f / unspread;
     amplitude = cells > 1.0f ? 1.0f / sqrtf(cells) : 1.0f;
   }
-  return own * amplitude + sqrtf(straightPower);
+  const float straight = around.straightWeight > 0.0f ? sqrtf(around.straightPower / around.straightWeight) : 0.0f;
+  return own * amplitude + straight;
 }
 
 } // namespace sono

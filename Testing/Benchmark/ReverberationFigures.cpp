@@ -387,8 +387,8 @@ double mirrorImageErrorMm(int pathsPerLine, Diaphragm diaphragm)
 
 namespace {
 
-/// Of the mean power of lines from one depth to another.
-double levelDb(const RfLines& rf, double fromMm, double toMm)
+/// The mean power of lines from one depth to another.
+double meanPower(const RfLines& rf, double fromMm, double toMm)
 {
   const int first = int(fromMm / rf.sampleMm);
   const int last = int(toMm / rf.sampleMm);
@@ -400,7 +400,7 @@ double levelDb(const RfLines& rf, double fromMm, double toMm)
       power += std::norm(rf.iq[std::size_t(l) * std::size_t(rf.sampleCount) + std::size_t(n)]);
     }
   }
-  return 0.5 * decibels(power / (double(rf.lineCount) * (last - first)));
+  return power / (double(rf.lineCount) * (last - first));
 }
 
 } // namespace
@@ -418,13 +418,26 @@ std::vector<ReverberationDrift> reverberationDrifts(const Scene& scene, const st
   for (const int paths : pathsPerLine)
   {
     tracing.pathsPerLine = paths;
-    const TracedLines traced = trace(scene, lines, tracing);
-    const RfLines whole = formRf(scene, lines, traced, echo);
-    const RfLines alone = formRf({ nullptr, &traced, nullptr }, lines, echo);
-    for (ReverberationDrift& drift : drifts)
+    // What few paths get wrong by chance is their error, not a drift.
+    const int draws = std::max(1, std::min(10, 20000 / paths));
+    std::vector<double> whole(drifts.size());
+    std::vector<double> alone(drifts.size());
+    for (int draw = 0; draw < draws; ++draw)
     {
-      drift.pictureDb = levelDb(whole, drift.fromMm, drift.toMm);
-      drift.levelDb.push_back(levelDb(alone, drift.fromMm, drift.toMm));
+      tracing.seed = std::uint64_t(draw);
+      const TracedLines traced = trace(scene, lines, tracing);
+      const RfLines picture = formRf(scene, lines, traced, echo);
+      const RfLines reverberation = formRf({ nullptr, &traced, nullptr }, lines, echo);
+      for (std::size_t d = 0; d < drifts.size(); ++d)
+      {
+        whole[d] += meanPower(picture, drifts[d].fromMm, drifts[d].toMm) / draws;
+        alone[d] += meanPower(reverberation, drifts[d].fromMm, drifts[d].toMm) / draws;
+      }
+    }
+    for (std::size_t d = 0; d < drifts.size(); ++d)
+    {
+      drifts[d].pictureDb = 0.5 * decibels(whole[d]);
+      drifts[d].levelDb.push_back(0.5 * decibels(alone[d]));
     }
   }
   for (ReverberationDrift& drift : drifts)

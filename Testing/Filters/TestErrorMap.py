@@ -27,6 +27,7 @@ class TestErrorMap(unittest.TestCase):
     def setUp(self):
         self.chain = Chain()
         self.chain.probe.SetLineCount(13)  # one in the middle
+        self.chain.tracer.SetReverberation(False)
         self.map = make(vtkSonoErrorMap, PixelMm=0.5)
         self.map.SetInputConnection(self.chain.tracer.GetOutputPort())
 

@@ -61,7 +61,7 @@ class Scan(unittest.TestCase):
         return stage
 
     def picture(self, image):
-        stage = make(vtkSonoUltrasound, MaxCollisions=2, PathsPerLine=64)
+        stage = make(vtkSonoUltrasound, MaxCollisions=2, PathsPerLine=64, Reverberation=False)
         stage.SetInputDataObject(0, image)
         field = self.image.GetFieldData()
         for name in ("PositionMm", "Axial", "Lateral"):

@@ -115,6 +115,7 @@ class TestPaths(unittest.TestCase):
     def test_paths_start_at_the_face_and_fade(self):
         chain = Chain()
         chain.probe.SetApertureMm(0)  # all at one point
+        chain.tracer.SetReverberation(False)  # what is reflected weighs more, as it is drawn less often
         chain.tracer.SetNumberOfShownPaths(24)
         chain.tracer.Update()
         paths = chain.tracer.GetOutputDataObject(2)

@@ -77,6 +77,7 @@ TEST(TraceRough, DeterministicPathsTakeTheCoherentDirections)
 {
   TraceSettings s = ballSettings();
   s.deterministic = true;
+  s.reverberation = false; // whose boundaries echo with the paths
   const TracedLines smooth =
     traceThroughBall(roughTissue("gel", 1.6, 1540, 0.5, 0.0), roughTissue("a", 1.8, 1600, 0.4, 0.0), s);
   const TracedLines rough =

@@ -72,6 +72,7 @@ BenchScene makeBox(const Box& box)
   }
   bench.scene = std::make_unique<Scene>(std::move(volume), table, "none");
   const double depth = 60.0 * box.spacingMm.z;
+  bench.tracing.reverberation = false; // as in BenchScenes.cpp
   bench.tracing.depthMm = depth;
   bench.tracing.radialBinMm = depth / 240.0;
   bench.tracing.frequencyMHz = bench.echo.centreFrequencyMHz;

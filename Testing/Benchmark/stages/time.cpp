@@ -8,6 +8,7 @@
 #include "ReverberationFigures.h"
 #include "Stage.h"
 
+#include "Phantoms/ThoraxLabels.h"
 #include "Phantoms/ThoraxPhantom.h"
 
 #include <algorithm>
@@ -73,7 +74,6 @@ void measureDrift(const Scene& scene)
   ImageSettings work = a4cWith(InterfaceModel::Acoustic);
   work.tracing.maxCollisions = 20; // a chest's, as in vtkSonoUltrasound
   work.tracing.coherenceMm = 20.0;
-  work.tracing.reverberation = true;
   work.geometry.lineCount = 32;
   double worst = 0.0;
   for (const ReverberationDrift& d :
@@ -93,24 +93,46 @@ void measureDrift(const Scene& scene)
   printFigure("reverberation_drift_db", worst, "dB");
 }
 
-/// In turns, so that the machine's moods cancel.
-void measureCost(const Scene& scene)
+struct CostRatio
 {
-  ImageSettings with = a4cWith(InterfaceModel::Acoustic);
-  with.tracing.reverberation = true;
+  double image;
+  double trace;
+};
+
+/// What reverberation costs. In turns, so that the machine's moods cancel.
+CostRatio reverberationCost(const Scene& scene)
+{
+  const ImageSettings with = a4cWith(InterfaceModel::Acoustic);
   ImageSettings without = with;
   without.tracing.reverberation = false;
   std::vector<double> image;
   std::vector<double> tracing;
-  for (int round = 0; round < 7; ++round)
+  for (int round = 0; round < 9; ++round)
   {
     const ImageSeconds ofWith = warmImageSeconds(scene, with);
     const ImageSeconds ofWithout = warmImageSeconds(scene, without);
     image.push_back(ofWith.image / ofWithout.image);
     tracing.push_back(ofWith.trace / ofWithout.trace);
   }
-  printFigure("reverberation_cost_ratio", medianOf(image), "times", "at most 1.3");
-  printFigure("reverberation_cost_trace_ratio", medianOf(tracing), "times");
+  return { medianOf(image), medianOf(tracing) };
+}
+
+/// The thorax, all of muscle.
+std::unique_ptr<Scene> uniformThorax()
+{
+  LabelVolume volume = makeThoraxPhantom(1.0);
+  std::fill(volume.voxels.begin(), volume.voxels.end(), std::uint16_t(Muscle));
+  volume.collectLabels();
+  return makePhantomScene(std::move(volume));
+}
+
+void measureCost(const Scene& thorax)
+{
+  const CostRatio heart = reverberationCost(thorax);
+  printFigure("reverberation_cost_ratio", heart.image, "times", "at most 1.3");
+  printFigure("reverberation_cost_trace_ratio", heart.trace, "times");
+  const CostRatio uniform = reverberationCost(*uniformThorax());
+  printFigure("idle_reverberation_cost_ratio", uniform.image, "times", "nothing reverberates: 1");
 }
 
 void measureTime()
