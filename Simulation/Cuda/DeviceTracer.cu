@@ -73,13 +73,25 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
   kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
   const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
-  if (launch.reverberation)
-  {
-    const dim3 blocksOfTissue(ceilDiv(TissueBins(launch.binCount, launch.binMm).count, 128), lines);
-    averageReverberation<<<blocksOfTissue, 128, 0, stream>>>(launch);
-    sumReverberationAlong<<<blocksOfTissue, 128, 0, stream>>>(launch);
-    finishReverberation<<<blocksOfTissue, 128, 0, stream>>>(launch, lines);
-  }
+  check(cudaGetLastError(), "tracing");
+}
+
+/// Of all lines of a run, whose launches need not end where an image does.
+void launchReverberation(const TraceLaunch<NoTargets>& launch, int lines, cudaStream_t stream)
+{
+  constexpr int linesPerGrid = 32768;
+  const auto forLines = [&](auto kernel) {
+    for (int from = 0; from < lines; from += linesPerGrid)
+    {
+      const dim3 blocks(ceilDiv(TissueBins(launch.binCount, launch.binMm).count, 128),
+                        std::min(linesPerGrid, lines - from));
+      kernel<<<blocks, 128, 0, stream>>>(launch, from, lines);
+    }
+  };
+  forLines(averageReverberation<NoTargets>);
+  forLines(sumReverberationAlong<NoTargets>);
+  forLines(sumReverberationAcross<NoTargets>);
+  forLines(finishReverberation<NoTargets>);
   check(cudaGetLastError(), "tracing");
 }
 
@@ -186,71 +198,75 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   echoRest_.clear(stream);
   segments_.clear(stream);
 
+  const auto launchFrom = [&](int from, const auto& targets) {
+    const std::size_t skip = std::size_t(from);
+    using Launch = TraceLaunch<std::decay_t<decltype(targets)>>;
+    Launch launch{ view_,
+                   { cells_, targets },
+                   lines_.data() + first + from,
+                   reinterpret_cast<LineStart*>(starts_.data()) + from,
+                   view_.startsApart ? nullptr : shared_.data() + skip * bins,
+                   sums_.data(),
+                   bins_.data(),
+                   echo_.data() + skip * std::size_t(echoCount_) * 2,
+                   manyPaths ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
+                   segments_.data(),
+                   first + from,
+                   linesPerImage_,
+                   paths_,
+                   batches,
+                   slices,
+                   warps,
+                   binCount_,
+                   binMm_,
+                   frequencyMHz_,
+                   echoCount_,
+                   echoSampleMm_,
+                   radPerMm_,
+                   echoScale_,
+                   {},
+                   rangeIsTime_ ? arrays_[depthOffsetArray].data() + skip * bins : nullptr,
+                   axisRange_.data() + (rangeIsTime_ ? skip * flights : 0),
+                   axisAmplitude_.data() + (rangeIsTime_ ? skip * flights : 0),
+                   axisAbsorbed_.data() + (rangeIsTime_ ? skip * flights : 0),
+                   int(flights) - 1,
+                   binMm_ / float(flightSteps(binMm_)),
+                   absorbed_.data() + (reverberates_ ? 2 * skip * bins : 0),
+                   absorbed_.data() + (reverberates_ ? 2 * (lineCount + skip) * bins : 0),
+                   arrays_[reverberationNpArray].data() + (reverberates_ ? skip * bins : 0),
+                   reverberates_ ? reverberation_.data() + skip * reverberations : nullptr,
+                   cellMm_.data() + (reverberates_ ? skip * bins : 0),
+                   ownLevel_.data() + (reverberates_ ? skip * bins : 0),
+                   reverberationAround_.data() + (reverberates_ ? skip * bins : 0),
+                   reverberationAround_.data() + (reverberates_ ? (lineCount + skip) * bins : 0),
+                   reverberates_ ? arrays_[reverberationArray].data() + skip * bins : nullptr,
+                   reverberates_ ? arrays_[reverberationErrorArray].data() + skip * bins : nullptr };
+    for (std::size_t array = 0; array < pathArrayCount; ++array)
+    {
+      launch.arrays[array] = arrays_[array].data() + skip * bins;
+    }
+    return launch;
+  };
   for (int from = 0; from < count; from += perLaunch)
   {
     const int lines = std::min(perLaunch, count - from);
-    const std::size_t skip = std::size_t(from);
-    const auto launchOf = [&](const auto& targets) {
-      using Launch = TraceLaunch<std::decay_t<decltype(targets)>>;
-      Launch launch{ view_,
-                     { cells_, targets },
-                     lines_.data() + first + from,
-                     reinterpret_cast<LineStart*>(starts_.data()) + from,
-                     view_.startsApart ? nullptr : shared_.data() + skip * bins,
-                     sums_.data(),
-                     bins_.data(),
-                     echo_.data() + skip * std::size_t(echoCount_) * 2,
-                     manyPaths ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
-                     segments_.data(),
-                     first + from,
-                     linesPerImage_,
-                     paths_,
-                     batches,
-                     slices,
-                     warps,
-                     binCount_,
-                     binMm_,
-                     frequencyMHz_,
-                     echoCount_,
-                     echoSampleMm_,
-                     radPerMm_,
-                     echoScale_,
-                     {},
-                     rangeIsTime_ ? arrays_[depthOffsetArray].data() + skip * bins : nullptr,
-                     axisRange_.data() + (rangeIsTime_ ? skip * flights : 0),
-                     axisAmplitude_.data() + (rangeIsTime_ ? skip * flights : 0),
-                     axisAbsorbed_.data() + (rangeIsTime_ ? skip * flights : 0),
-                     int(flights) - 1,
-                     binMm_ / float(flightSteps(binMm_)),
-                     absorbed_.data() + (reverberates_ ? 2 * skip * bins : 0),
-                     absorbed_.data() + (reverberates_ ? 2 * (lineCount + skip) * bins : 0),
-                     arrays_[reverberationNpArray].data() + (reverberates_ ? skip * bins : 0),
-                     reverberates_ ? reverberation_.data() + skip * reverberations : nullptr,
-                     cellMm_.data() + (reverberates_ ? skip * bins : 0),
-                     ownLevel_.data() + (reverberates_ ? skip * bins : 0),
-                     reverberationAround_.data() + (reverberates_ ? skip * bins : 0),
-                     reverberationAround_.data() + (reverberates_ ? (lineCount + skip) * bins : 0),
-                     reverberates_ ? arrays_[reverberationArray].data() + skip * bins : nullptr,
-                     reverberates_ ? arrays_[reverberationErrorArray].data() + skip * bins : nullptr };
-      for (std::size_t array = 0; array < pathArrayCount; ++array)
-      {
-        launch.arrays[array] = arrays_[array].data() + skip * bins;
-      }
-      return launch;
-    };
     if (targets_.any())
     {
-      launchKernels(launchOf(targets_), lines, inShared, manyPaths, stream);
+      launchKernels(launchFrom(from, targets_), lines, inShared, manyPaths, stream);
     }
     else
     {
-      launchKernels(launchOf(NoTargets()), lines, inShared, manyPaths, stream);
+      launchKernels(launchFrom(from, NoTargets()), lines, inShared, manyPaths, stream);
     }
     if (progress && perLaunch < count)
     {
       check(cudaStreamSynchronize(stream), "tracing");
       report(progress, double(from + lines) / count);
     }
+  }
+  if (reverberates_)
+  {
+    launchReverberation(launchFrom(0, NoTargets()), count, stream);
   }
   if (manyPaths && echo_.size() > 0)
   {

@@ -45,13 +45,13 @@ __global__ void finishLines(TraceLaunch<Targets> launch, int parts)
   }
 }
 
-/// What reverberates, of each of the TissueBins.
+/// What reverberates, of each of the TissueBins: of `lines` lines, those from `from` on.
 template<class Targets>
-__global__ void averageReverberation(TraceLaunch<Targets> launch)
+__global__ void averageReverberation(TraceLaunch<Targets> launch, int from, int)
 {
   const TissueBins tissueBins = launch.tissueBins();
   const int t = blockIdx.x * blockDim.x + threadIdx.x;
-  const int line = blockIdx.y;
+  const int line = from + int(blockIdx.y);
   if (t >= tissueBins.count)
   {
     return;
@@ -87,7 +87,7 @@ __global__ void averageReverberation(TraceLaunch<Targets> launch)
 
 /// Of the line's bins around each.
 template<class Targets>
-__global__ void sumReverberationAlong(TraceLaunch<Targets> launch)
+__global__ void sumReverberationAlong(TraceLaunch<Targets> launch, int from, int)
 {
   const TissueBins tissueBins = launch.tissueBins();
   const int t = blockIdx.x * blockDim.x + threadIdx.x;
@@ -95,30 +95,58 @@ __global__ void sumReverberationAlong(TraceLaunch<Targets> launch)
   {
     return;
   }
-  const std::size_t first = std::size_t(blockIdx.y) * launch.binCount;
+  const std::size_t first = std::size_t(from + int(blockIdx.y)) * launch.binCount;
   launch.alongLine[first + t] =
     sumAlongLine(t, tissueBins.count, tissueBins.mm, [&](int near) { return launch.inBin[first + near]; });
 }
 
-/// The levels of what reverberates, of a line's bins and of the lines beside it in its image, as far as the launch has
-/// them.
+/// The lines of a line's image.
+struct LinesOfImage
+{
+  int first;
+  int end;
+};
+
 template<class Targets>
-__global__ void finishReverberation(TraceLaunch<Targets> launch, int lines)
+__device__ LinesOfImage linesOfImage(const TraceLaunch<Targets>& launch, int line, int lines)
+{
+  const int inImage = (launch.firstInImage + line) % launch.linesPerImage;
+  return { max(0, line - inImage), min(lines, line - inImage + launch.linesPerImage) };
+}
+
+/// And of the lines around each.
+template<class Targets>
+__global__ void sumReverberationAcross(TraceLaunch<Targets> launch, int from, int lines)
+{
+  const int t = blockIdx.x * blockDim.x + threadIdx.x;
+  const int line = from + int(blockIdx.y);
+  if (t >= launch.tissueBins().count)
+  {
+    return;
+  }
+  const LinesOfImage image = linesOfImage(launch, line, lines);
+  launch.inBin[std::size_t(line) * launch.binCount + t] = sumOverLines(
+    line, image.first, image.end, [&](int near) { return launch.alongLine[std::size_t(near) * launch.binCount + t]; });
+}
+
+/// The levels of what reverberates.
+template<class Targets>
+__global__ void finishReverberation(TraceLaunch<Targets> launch, int from, int lines)
 {
   const TissueBins tissueBins = launch.tissueBins();
   const int t = blockIdx.x * blockDim.x + threadIdx.x;
-  const int line = blockIdx.y;
+  const int line = from + int(blockIdx.y);
   if (t >= tissueBins.count)
   {
     return;
   }
-  const int inImage = (launch.firstInImage + line) % launch.linesPerImage;
-  const ReverberationAround around =
-    sumOverLines(line, max(0, line - inImage), min(lines, line - inImage + launch.linesPerImage),
-                 [&](int near) { return launch.alongLine[std::size_t(near) * launch.binCount + t]; });
+  const auto aroundOf = [&](int l, int b) { return launch.inBin[std::size_t(l) * launch.binCount + b]; };
+  const LinesOfImage image = linesOfImage(launch, line, lines);
+  const ReverberationAround further =
+    sumFurther(line, image.first, image.end, t, tissueBins.count, tissueBins.mm, aroundOf);
   const std::size_t first = std::size_t(line) * launch.binCount;
   const float unspread = resolutionCell(launch.view, launch.lines[line], (float(t) + 0.5f) * tissueBins.mm).unspread;
-  const float level = reverberationLevel(around, unspread, launch.ownLevel[first + t]);
+  const float level = reverberationLevel(aroundOf(line, t), further, unspread, launch.ownLevel[first + t]);
   for (int b = t * tissueBins.each; b < min(launch.binCount, (t + 1) * tissueBins.each); ++b)
   {
     launch.reverberationMean[first + b] = level;

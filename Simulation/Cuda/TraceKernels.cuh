@@ -64,7 +64,7 @@ struct TraceLaunch
     reverberation; // lines x batches x TissueBins x ReverberationSum, times echoScale; null: nothing reverberates
   float* cellMm;   // lines x bins: of TissueBins, see resolutionCell
   float* ownLevel; // the same, as the next two
-  ReverberationAround* inBin;
+  ReverberationAround* inBin;     // later of the bins and lines around each
   ReverberationAround* alongLine; // of the bins around each
   float* reverberationMean;       // lines x bins
   float* reverberationError;

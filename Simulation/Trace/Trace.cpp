@@ -39,7 +39,8 @@ struct TracedReverberation
 {
   TissueBins tissueBins;
   std::vector<float> ownLevel;             ///< ReverberationMeans
-  std::vector<ReverberationAround> around; ///< over the bins around, of the same line
+  std::vector<ReverberationAround> along;  ///< over the bins around, of the same line
+  std::vector<ReverberationAround> around; ///< and of the lines around
   std::vector<char> isHeard;               ///< whether the line has any
 
   explicit TracedReverberation(const TracedLines& out)
@@ -47,6 +48,7 @@ struct TracedReverberation
   {
     const std::size_t size = out.reverberation.empty() ? 0 : std::size_t(out.lineCount) * std::size_t(tissueBins.count);
     ownLevel.resize(size);
+    along.resize(size);
     around.resize(size);
     isHeard.resize(std::size_t(out.lineCount));
   }
@@ -80,28 +82,41 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
   }
   for (int t = 0; t < tissueBins.count; ++t)
   {
-    kept.around[kept.at(line, t)] =
+    kept.along[kept.at(line, t)] =
       sumAlongLine(t, tissueBins.count, tissueBins.mm, [&](int near) { return bins[std::size_t(near)]; });
+  }
+}
+
+/// Whether a line or one around it has any.
+bool isHeardAround(const TracedReverberation& kept, int line)
+{
+  const auto heard = kept.isHeard.begin();
+  return std::any_of(heard + std::max(0, line - linesAround),
+                     heard + std::min(int(kept.isHeard.size()), line + linesAround + 1),
+                     [](char is) { return is != 0; });
+}
+
+void sumLinesAround(int line, TracedReverberation& kept)
+{
+  for (int t = 0; t < kept.tissueBins.count; ++t)
+  {
+    kept.around[kept.at(line, t)] =
+      sumOverLines(line, 0, int(kept.isHeard.size()), [&](int near) { return kept.along[kept.at(near, t)]; });
   }
 }
 
 /// The levels of a line's reverberation, of what it and the lines beside it have left.
 void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept, int line, TracedLines& out)
 {
-  const auto heard = kept.isHeard.begin();
-  if (std::none_of(heard + std::max(0, line - linesAround), heard + std::min(out.lineCount, line + linesAround + 1),
-                   [](char is) { return is != 0; }))
-  {
-    return;
-  }
   const TissueBins& tissueBins = kept.tissueBins;
   for (int t = 0; t < tissueBins.count; ++t)
   {
-    const ReverberationAround around =
-      sumOverLines(line, 0, out.lineCount, [&](int near) { return kept.around[kept.at(near, t)]; });
+    const ReverberationAround further = sumFurther(line, 0, out.lineCount, t, tissueBins.count, tissueBins.mm,
+                                                   [&](int l, int b) { return kept.around[kept.at(l, b)]; });
     const float rangeMm = (float(t) + 0.5f) * tissueBins.mm;
     const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
-    const float level = reverberationLevel(around, unspread, kept.ownLevel[kept.at(line, t)]);
+    const float level =
+      reverberationLevel(kept.around[kept.at(line, t)], further, unspread, kept.ownLevel[kept.at(line, t)]);
     for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
     {
       out.reverberation[std::size_t(line) * std::size_t(out.binCount) + std::size_t(b)] = level;
@@ -305,7 +320,16 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
   });
   if (!out.reverberation.empty())
   {
-    parallelFor(out.lineCount, {}, [&](int i) { writeReverberation(setup, kept, i, out); });
+    const auto forHeard = [&](const auto& work) {
+      parallelFor(out.lineCount, {}, [&](int i) {
+        if (isHeardAround(kept, i))
+        {
+          work(i);
+        }
+      });
+    };
+    forHeard([&](int i) { sumLinesAround(i, kept); });
+    forHeard([&](int i) { writeReverberation(setup, kept, i, out); });
   }
   for (const LineTally& tally : tallies)
   {

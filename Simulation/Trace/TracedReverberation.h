@@ -42,6 +42,7 @@ struct ReverberationMeans
 {
   float ownLevel;      ///< of own ways, without signs
   float cellPower;     ///< of the mean with signs, less what chance adds to its square
+  float cellError;     ///< standard error of the mean with signs
   float straightPower; ///< of what comes straight back
   float error;         ///< standard error of both levels
 };
@@ -57,7 +58,7 @@ SONO_HD inline ReverberationMeans reverberationMeans(int batches, const MeanOf& 
   });
   const MeanAndError straight = meanAndError(batches, [&](int batch) { return meanOf(batch).of[straightPowerSum]; });
   const float straightError = straight.mean > 0.0f ? 0.5f * straight.error / sqrtf(straight.mean) : 0.0f;
-  return { float(own), cells.mean * cells.mean - cells.error * cells.error, straight.mean,
+  return { float(own), cells.mean * cells.mean - cells.error * cells.error, cells.error, straight.mean,
            sqrtf(cells.error * cells.error + straightError * straightError) };
 }
 
@@ -78,6 +79,7 @@ struct ReverberationAround
 {
   float cellPower = 0.0f; ///< ReverberationMeans
   float power = 0.0f;     ///< mean level of own ways without signs, squared
+  float chance = 0.0f;    ///< the variance that cellPower has by chance
   float straightPower = 0.0f;
   float straightWeight = 0.0f;
 
@@ -85,6 +87,7 @@ struct ReverberationAround
   {
     cellPower += by * other.cellPower;
     power += by * other.power;
+    chance += by * by * other.chance;
     straightPower += byStraight * other.straightPower;
     straightWeight += byStraight * other.straightWeight;
   }
@@ -92,7 +95,8 @@ struct ReverberationAround
 
 SONO_HD inline ReverberationAround aroundOf(const ReverberationMeans& means)
 {
-  return { means.cellPower, means.ownLevel * means.ownLevel, means.straightPower, 1.0f };
+  const float variance = means.cellError * means.cellError;
+  return { means.cellPower, means.ownLevel * means.ownLevel, 2.0f * variance * variance, means.straightPower, 1.0f };
 }
 
 /// Over the line's bins around one of `count`; `binOf` gives that of each.
@@ -122,14 +126,45 @@ SONO_HD inline ReverberationAround sumOverLines(int line, int first, int end, co
   return sum;
 }
 
-/// The level of a bin's speckle: `own`, the mean level of own ways, is less by sqrt(M) where the paths have spread over
-/// M resolution cells. `unspread` is that of ResolutionCell.
-SONO_HD inline float reverberationLevel(const ReverberationAround& around, float unspread, float own)
+/// Of windows like the one around a bin of a line, side by side: three times as far each way and more. `aroundOf` gives
+/// that of a line, from `first` up to before `end`, and a bin, of `count`.
+template<class AroundOf>
+SONO_HD inline ReverberationAround sumFurther(int line, int first, int end, int bin, int count, float tissueBinMm,
+                                              const AroundOf& aroundOf)
 {
-  float amplitude = 0.0f;
-  if (around.cellPower > 0.0f && around.power > 0.0f)
+  constexpr int windows = 2;
+  const int step = int(spreadAroundMm / tissueBinMm + 0.5f);
+  ReverberationAround sum;
+  for (int l = line - windows * linesAround; l <= line + windows * linesAround; l += linesAround)
   {
-    const float cells = 1.0f + around.power / around.cellPower - 1.0f / unspread;
+    for (int b = bin - windows * step; b <= bin + windows * step; b += step)
+    {
+      if (l >= first && l < end && b >= 0 && b < count)
+      {
+        sum.add(aroundOf(l, b), 1.0f, 1.0f);
+      }
+    }
+  }
+  return sum;
+}
+
+/// The level of a bin's speckle: `own`, the mean level of own ways, is less by sqrt(M) where the paths have spread over
+/// M resolution cells. As far as M is chance around the bin, it is that of the windows further out. `unspread` is that
+/// of ResolutionCell.
+SONO_HD inline float reverberationLevel(const ReverberationAround& around, const ReverberationAround& further,
+                                        float unspread, float own)
+{
+  float perCells = around.power > 0.0f ? around.cellPower / around.power : 0.0f;
+  if (around.chance > 0.0f)
+  {
+    const float known = larger(0.0f, around.cellPower);
+    const float there = further.power > 0.0f ? larger(0.0f, further.cellPower / further.power) : 0.0f;
+    perCells += (there - perCells) * around.chance / (around.chance + known * known);
+  }
+  float amplitude = 0.0f;
+  if (perCells > 0.0f)
+  {
+    const float cells = 1.0f + 1.0f / perCells - 1.0f / unspread;
     amplitude = cells > 1.0f ? 1.0f / sqrtf(cells) : 1.0f;
   }
   const float straight = around.straightWeight > 0.0f ? sqrtf(around.straightPower / around.straightWeight) : 0.0f;

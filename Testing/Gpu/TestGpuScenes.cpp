@@ -4,6 +4,9 @@
 #include "TargetScenes.h"
 #include "TestScenes.h"
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
 #include <random>
 
 namespace {
@@ -99,13 +102,51 @@ private:
   Vec3d extent_{ 0.0 };
 };
 
+double rmsOf(const std::vector<float>& values)
+{
+  double sum = 0.0;
+  for (const float v : values)
+  {
+    sum += double(v) * double(v);
+  }
+  return std::sqrt(sum / double(std::max<std::size_t>(1, values.size())));
+}
+
+/// Rms of the differences of two arrays as long.
+template<class Value>
+double rmsApart(const std::vector<Value>& a, const std::vector<Value>& b)
+{
+  std::vector<float> apart;
+  for (std::size_t i = 0; i < b.size(); ++i)
+  {
+    apart.push_back(float(std::abs(a[i] - b[i])));
+  }
+  return rmsOf(apart);
+}
+
+/// Of the direct sound the RF; of what reverberates the boundaries' echoes and what the media have taken. Its levels
+/// are compared in GpuStages.TheIntensityAndItsErrorAgree.
 void expectAgreement(const RandomScene& random, unsigned seed)
 {
   const EchoSources sources{ random.scene.get(), nullptr, nullptr };
-  const auto run = [&](Device device) {
-    return runChain(sources, random.lines, random.tracing, random.echo, device, random.targets);
+  const auto run = [&](Device device, bool reverberation) {
+    TraceSettings tracing = random.tracing;
+    tracing.reverberation = reverberation;
+    return runChain(sources, random.lines, tracing, random.echo, device, random.targets);
   };
-  expectSameRf(run(Device::Cuda), run(Device::Cpu), "scene " + std::to_string(seed));
+  expectSameRf(run(Device::Cuda, false), run(Device::Cpu, false), "scene " + std::to_string(seed));
+  const TracedLines gpu = run(Device::Cuda, true).traced;
+  const TracedLines cpu = run(Device::Cpu, true).traced;
+  ASSERT_EQ(gpu.reverberation.size(), cpu.reverberation.size()) << "scene " << seed;
+  ASSERT_EQ(gpu.boundaryEcho.size(), cpu.boundaryEcho.size()) << "scene " << seed;
+  const std::vector<std::complex<float>> none(cpu.boundaryEcho.size());
+  const double echoes =
+    rmsApart(gpu.boundaryEcho, cpu.boundaryEcho) / std::max(1e-30, rmsApart(none, cpu.boundaryEcho));
+  const double taken =
+    rmsApart(gpu.reverberationNpPerMHz, cpu.reverberationNpPerMHz) / std::max(1e-30, rmsOf(cpu.reverberationNpPerMHz));
+  std::printf("scene %u: echoes %.2g, taken %.2g\n", seed, echoes, taken);
+  EXPECT_LE(echoes, 0.02) << "scene " << seed; // paths that several bounces have led apart
+  EXPECT_LE(taken, 0.001) << "scene " << seed;
 }
 
 /// Small enough for compute-sanitizer (see run-gpu.sh); together they run every kernel.
