@@ -17,7 +17,9 @@ class RecordBaker
 {
 public:
   RecordBaker(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm)
-    : smoother_(tissues, size)
+    : tissues_(tissues)
+    , size_(size)
+    , smoother_(tissues, size)
     , spacing_(spacingMm)
     , sigma_(std::cbrt(spacingMm.x * spacingMm.y * spacingMm.z))
     , position_(makeGaussian(spacingMm, sigma_))
@@ -66,8 +68,12 @@ private:
                          (coarse(0, 1, 0) - coarse(0, -1, 0)) / (2.0 * spacing_.y),
                          (coarse(0, 0, 1) - coarse(0, 0, -1)) / (2.0 * spacing_.z));
     const double slope = glm::length(gradient);
+    // A plane's smoothed occupancy has the slope 1 / (sigma sqrt(2 pi)).
+    const double perPlane = normalSigma_ * 2.5066282746;
     BoundaryRecord record;
-    if (!fits_.normalAt(first_ + v, record.normal))
+    record.confidence = float(slope * perPlane);
+    const bool isFitted = fits_.normalAt(first_ + v, record.normal);
+    if (!isFitted)
     {
       // Of the occupancy for the confidence; of its probit for the direction, since that is linear across a plane and
       // a difference over a thick voxel therefore exact.
@@ -80,14 +86,102 @@ private:
       const double steepness = glm::length(outward);
       record.normal = steepness > 1e-9 ? Vec3f(outward / steepness) : Vec3f(0.0f, 0.0f, 1.0f);
     }
-    // A plane's smoothed occupancy has the slope 1 / (sigma sqrt(2 pi)).
-    record.confidence = float(slope * normalSigma_ * 2.5066282746);
+    // Both sides of a thin wall are in that slope: the less there is of it, the less its direction says, and a wedge
+    // beside the wall would lead. Long voxels leave no room to tell sides apart.
+    const bool isThick = normalSigma_ > 2.0 * sigma_;
+    if (isFitted && !isThick)
+    {
+      record.confidence = 1.0f;
+    }
+    else if (!isThick && record.confidence < thinnestWhole)
+    {
+      const Vec3d side = sideGradient(first_ + v);
+      const double sideSlope = glm::length(side);
+      if (sideSlope * perPlane > flattest)
+      {
+        record.normal = Vec3f(side / sideSlope);
+        record.confidence = float(sideSlope * perPlane);
+      }
+    }
     const float share = fine_[std::size_t(at.x + count_.x * (at.y + count_.y * at.z))];
     // For a plane at distance d inside, occupancy = Phi(d / sigma).
     record.offset = -normalFromUpperTail(std::clamp(share, 1e-4f, 1.0f - 1e-4f));
     return record;
   }
 
+  /// The gradient of the smoothed occupancy is the sum of Gaussian times outward normal over the tissue's faces, so
+  /// that the two sides of a thin wall cancel. This is that of the one side that a voxel is on, outward: of the faces
+  /// that look the way of the voxel's own. 0 where these look to opposite sides, and where the other side is not a
+  /// wall's.
+  Vec3d sideGradient(const Vec3i& voxel) const
+  {
+    const std::ptrdiff_t pitch[3] = { 1, size_.x, std::ptrdiff_t(size_.x) * size_.y };
+    const std::uint8_t* middle = tissues_ + voxel.x + pitch[1] * voxel.y + pitch[2] * voxel.z;
+    const std::uint8_t tissue = *middle;
+    Vec3d own(0.0);
+    for (int a = 0; a < 3; ++a)
+    {
+      const bool isLast = voxel[a] + 1 < size_[a] && middle[pitch[a]] != tissue;
+      const bool isFirst = voxel[a] > 0 && middle[-pitch[a]] != tissue;
+      if (isLast && isFirst)
+      {
+        return Vec3d(0.0);
+      }
+      own[a] = (double(isLast) - double(isFirst)) / spacing_[a];
+    }
+    if (own == Vec3d(0.0))
+    {
+      return own;
+    }
+    const Vec3i low = glm::max(voxel - normal_.radius, Vec3i(1));
+    const Vec3i high = glm::min(voxel + normal_.radius, size_ - 2);
+    // Sums of faces by axis and way.
+    double toward[3] = { 0.0, 0.0, 0.0 };
+    double away[3] = { 0.0, 0.0, 0.0 };
+    for (int k = low.z; k <= high.z; ++k)
+    {
+      for (int j = low.y; j <= high.y; ++j)
+      {
+        const std::uint8_t* t = tissues_ + pitch[1] * j + pitch[2] * k;
+        const float wk = normal_.weight[2][std::size_t(k - voxel.z + normal_.radius.z)] *
+                         normal_.weight[1][std::size_t(j - voxel.y + normal_.radius.y)];
+        for (int i = low.x; i <= high.x; ++i)
+        {
+          if (t[i] != tissue)
+          {
+            continue;
+          }
+          const double w = wk * normal_.weight[0][std::size_t(i - voxel.x + normal_.radius.x)];
+          for (int a = 0; a < 3; ++a)
+          {
+            toward[a] += t[i + pitch[a]] != tissue ? w : 0.0;
+            away[a] += t[i - pitch[a]] != tissue ? w : 0.0;
+          }
+        }
+      }
+    }
+    Vec3d sum(0.0);
+    Vec3d other(0.0); // of the opposite side
+    for (int round = 0; round < 2; ++round)
+    {
+      const Vec3d way = round == 0 ? own : sum;
+      for (int a = 0; a < 3; ++a)
+      {
+        const bool isToward = way[a] > 0.0 || (way[a] == 0.0 && toward[a] > away[a]);
+        sum[a] = (isToward ? toward[a] : -away[a]) / spacing_[a];
+        other[a] = (isToward ? -away[a] : toward[a]) / spacing_[a];
+      }
+    }
+    const bool isWall = glm::dot(sum, other) <= -parallel * glm::length(sum) * glm::length(other);
+    return isWall ? sum : Vec3d(0.0);
+  }
+
+  static constexpr float thinnestWhole = 0.4f; ///< confidence of a wall too thin for smoothing, two to three voxels
+  static constexpr double flattest = 0.85;     ///< of one side's slope against a plane's: not of a wire, nor at a rim
+  static constexpr double parallel = 0.9;      ///< cosine between the sides of a wall; those of a wire are round
+
+  const std::uint8_t* tissues_;
+  Vec3i size_;
   MaskSmoother<std::uint8_t> smoother_;
   Vec3d spacing_;
   double sigma_;

@@ -212,6 +212,42 @@ TEST(BoundaryFits, AWireIsNotFlattened)
   }
 }
 
+TEST(BoundaryFits, AThinShellBehindAWedgeKeepsItsNormal)
+{
+  // A sac of two voxels around a ball, and a wall that it touches: what lies between them ends in a wedge all around,
+  // whose smoothed surface faces along it. Beyond the critical angle no sound would enter the sac.
+  for (const double radius : { 30.0, 45.0 })
+  {
+    const Vec3d up = tilted(33.0, 20.0);
+    const Block block(Vec3d(1.0), int(2.0 * radius) + 24, [&](const Vec3d& p) {
+      const double r = glm::length(p);
+      const bool isBehind = glm::dot(p, up) > radius + 1.0 || r < radius - 3.5;
+      return r < radius && r > radius - 2.0 ? 1 : (isBehind ? 2 : 0);
+    });
+    const Vec3d side = glm::normalize(glm::cross(up, Vec3d(0.3, 0.2, 0.9)));
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    constexpr int rays = 2000;
+    double mean = 0.0;
+    int far = 0;
+    for (int n = 0; n < rays; ++n)
+    {
+      const double gap = 2.5 + 3.0 * uniform(random); // of the wedge, voxels; where it is narrower it may still lead
+      const double angle = std::acos((radius + 1.0 - gap) / radius);
+      const double around = 2.0 * M_PI * uniform(random);
+      const Vec3d across = std::cos(around) * side + std::sin(around) * glm::cross(up, side);
+      const Vec3d outward = std::cos(angle) * up + std::sin(angle) * across;
+      const Hit hit = firstHit(block, (radius + 1.2) * outward, -outward);
+      ASSERT_TRUE(hit.found && hit.from == 0 && hit.to == 1);
+      const double degrees = degreesBetween(-hit.normal, outward);
+      mean += degrees / rays;
+      far += degrees > 20.0 ? 1 : 0;
+    }
+    EXPECT_LT(mean, 3.0) << radius;
+    EXPECT_LE(far, rays / 100) << radius;
+  }
+}
+
 TEST(BoundaryFits, AnEdgeEndsItsFaces)
 {
   // A step of two slanted planes at right angles: two voxels off the edge each has its own normal.
