@@ -31,7 +31,7 @@ SONO_HD inline Scattered mirroredByFace(const TraceView& view, const PathBoundar
 /// How far a path that restarts on a voxel face must go before it counts as clear of the boundary it leaves. The cells
 /// of a smooth surface are a staircase that reaches half a voxel's extent along the normal to either side of it; the
 /// face itself may lie on the far side. The rest is for curvature and, where the normal is but the face's, for its
-/// error. It may be large: what is no stair counts in front of there, too.
+/// error.
 template<class Space>
 SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary, const Vec3f& incident,
                                const Scattered& out)
@@ -46,8 +46,8 @@ SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary,
   return larger(0.0f, smaller(8.0f * space.meanSpacing(), across / leaving));
 }
 
-/// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and passes the
-/// boundary's stairs until it is clear of them.
+/// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and does not see
+/// the tissue on the other side again until it is clear of the boundary.
 template<class Space>
 SONO_HD inline void takeBranch(const TraceView& view, const Space& space, const PathBoundary& boundary,
                                const Scattered& out, PathState& path)
@@ -66,13 +66,12 @@ SONO_HD inline void takeBranch(const TraceView& view, const Space& space, const 
     const float before = view.media[boundary.before.medium].rangePerMm;
     const float behind = view.media[boundary.after.medium].rangePerMm;
     path.rangeMm += beyond * (out.reflected ? -2.0f * before : behind - before);
-    path.left = out.reflected ? leftSurface(boundary.after.medium, -boundary.surface.normal)
-                              : leftSurface(boundary.before.medium, boundary.surface.normal);
-    path.clearAt = clearance(space, boundary, incident, out);
+    path.ignored = out.reflected ? boundary.after.medium : boundary.before.medium;
+    path.ignoreUntil = clearance(space, boundary, incident, out);
   }
   else
   {
-    path.clearAt -= boundary.restart;
+    path.ignoreUntil -= boundary.restart;
   }
   path.intensity *= out.throughput;
   path.amplitude *= out.amplitude;

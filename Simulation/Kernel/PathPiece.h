@@ -82,8 +82,7 @@ SONO_HD inline PieceLimit limitPiece(const TraceView& view, const Space& space, 
 /// target's surface. `travelled` is how far it got.
 template<class Space>
 SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, const PathState& path,
-                                 const PieceLimit& limit, const CellHit& hit, const MetPlane& plane,
-                                 PathBoundary& boundary, float& travelled)
+                                 const PieceLimit& limit, const CellHit& hit, PathBoundary& boundary, float& travelled)
 {
   const CellRay& ray = path.ray;
   const TargetHit& target = limit.target;
@@ -95,7 +94,7 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
     if (hit.tissue >= 0)
     {
       boundary.restart = hit.t;
-      boundary.surface = refineBoundary(space.cells, ray, hit, plane);
+      boundary.surface = space.refine(ray, hit);
       boundary.before.cell = hit.before;
       boundary.after = { hit.after, hit.tissue, -1 };
       boundary.voxelFace = true;
@@ -136,10 +135,10 @@ SONO_HD inline int mostPieces(const Space& space)
 /// Takes the path to the end of its piece, which is written to `piece`. At a boundary the path stays in front of it.
 template<class Space>
 SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, const PieceLimit& limit, const CellHit& hit,
-                                 const MetPlane& plane, PathState& path, PathBoundary& boundary, PathSegment& piece)
+                                 PathState& path, PathBoundary& boundary, PathSegment& piece)
 {
   float travelled = 0.0f;
-  const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, plane, boundary, travelled);
+  const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, boundary, travelled);
   const TraceMedium& medium = view.media[path.tissue];
   piece = { path.ray.position, path.ray.direction, travelled,        path.intensity,
             medium.decayPerMm, path.absorbed,      path.length,      path.rangeMm,
@@ -164,7 +163,7 @@ SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, cons
   }
   path.ray.position += path.ray.direction * boundary.restart;
   path.ray.cell = boundary.after.cell;
-  path.clearAt -= boundary.restart;
+  path.ignoreUntil -= boundary.restart;
   path.tissue = boundary.after.medium;
   path.target = boundary.after.target;
   return ++path.pieces < mostPieces(space) ? PieceEnd::Medium : PieceEnd::Path;
@@ -219,14 +218,13 @@ SONO_HD inline PieceEnd walkPiece(const TraceView& view, const Space& space, con
 {
   const PieceLimit limit = limitPiece(view, space, beam, path);
   CellHit hit{};
-  MetPlane plane{};
   if (path.target < 0)
   {
-    hit = meetSurface(space, path.ray, path.tissue, path.left, path.clearAt, limit.t, plane);
+    hit = space.toBoundary(path.ray, path.tissue, path.ignored, path.ignoreUntil, limit.t);
   }
   PathSegment piece;
   boundary.isFace = false;
-  const PieceEnd end = endPiece(view, space, limit, hit, plane, path, boundary, piece);
+  const PieceEnd end = endPiece(view, space, limit, hit, path, boundary, piece);
   sink.segment(piece);
   return meetFace(view, space, beam, piece.length, end, path, boundary);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Kernel/Interface.h"
-#include "Kernel/MeetSurface.h"
+#include "Kernel/SurfaceHit.h"
 
 // What a path is, what it meets and what it tells on its way. See TracePath.h.
 
@@ -22,8 +22,8 @@ struct PathState
   bool straightBack = false; ///< which of the two echoes of tissue it shows, see tissueEcho
   int tissue = 0;            ///< medium that the path is in
   int target = -1;           ///< target that the path is in; the cells do not count there
-  LeftSurface left = noSurfaceLeft;
-  float clearAt = 0.0f; ///< mm along the ray: from there on the path is clear of that surface's stairs
+  int ignored = -1;          ///< see marchToBoundary
+  float ignoreUntil = 0.0f;
   int collisions = 0;
   int pieces = 0; ///< since the last boundary
 };

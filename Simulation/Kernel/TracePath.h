@@ -27,7 +27,7 @@
 //   stepPath                           done by                 tells the sink
 //     walkPiece                        (PathPiece.h)
 //       how far may the piece go?      limitPiece              -
-//       march to where it ends         meetSurface             -
+//       march to where it ends         Space::toBoundary       -
 //       lose intensity on the way,     endPiece                segment: the piece
 //         reflection at its end
 //     arriveAtBoundary                                         meets: the path in front of it

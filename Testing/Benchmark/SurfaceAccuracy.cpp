@@ -43,7 +43,7 @@ void meetOnce(const TissueCells& cells, const Ellipsoid& truth, const CellRay& r
   {
     return;
   }
-  const RefinedHit refined = refineBoundary(cells, ray, hit, planeAt(cells, ray, hit, false));
+  const RefinedHit refined = refineBoundary(cells, ray, hit);
   const Vec3d point = Vec3d(ray.position) + Vec3d(ray.direction) * double(refined.t);
   const Vec3d outward = Vec3d(refined.normal) * (from == 0 ? -1.0 : 1.0);
   const double cosine = glm::dot(outward, truth.normal(point));
