@@ -78,6 +78,7 @@ public:
   sonoParameter(LobeMinDeg, double);
   sonoParameter(LobeMaxDeg, double);
   sonoParameter(RadialBinMm, double);
+  sonoParameter(TargetErrorDb, double);
   sonoParameter(RouletteDb, double);
   sonoParameter(PathSeed, int);
   ///@}

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 namespace sono {
 
@@ -122,6 +123,8 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
     growReverberation(growth, l, doubled);
   });
   doubled.segments += sent.segments;
+  std::transform(sent.paths.begin(), sent.paths.end(), doubled.paths.begin(), doubled.paths.begin(), std::plus<>());
+  doubled.errorDb = std::max(doubled.errorDb, sent.errorDb);
   return doubled;
 }
 
