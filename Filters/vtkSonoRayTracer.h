@@ -78,7 +78,6 @@ public:
   sonoParameter(LobeMinDeg, double);
   sonoParameter(LobeMaxDeg, double);
   sonoParameter(RadialBinMm, double);
-  sonoParameter(TargetErrorDb, double);
   sonoParameter(RouletteDb, double);
   sonoParameter(PathSeed, int);
   ///@}

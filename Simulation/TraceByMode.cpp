@@ -31,7 +31,6 @@ TracedResult traceOnDevice(const Scene& scene, const std::vector<ScanLine>& line
 {
   const TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
   TracedLines layout = tracedLayout(int(lines.size()), settings, targets);
-  layout.paths.assign(lines.size(), setup.paths);
   const auto job = std::make_shared<const TraceJob>(makeTraceJob(setup, settings, layout.lineCount));
   return { std::move(layout), DeviceImager::instance().trace(job, { 0, int(lines.size()) }, partOf(progress, 0.3, 1.0)),
            fetchTraced };

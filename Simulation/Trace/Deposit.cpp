@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace sono {
 
@@ -42,101 +41,25 @@ __attribute__((always_inline)) inline void depositWholeBins(const BeamSegment& g
 
 } // namespace
 
-std::vector<BinSums<double>> meanBins(const BatchSums& batch, int paths)
-{
-  std::vector<BinSums<double>> means(batch.bins.front().size(), BinSums<double>{});
-  for (std::size_t sum = 0; sum < batch.bins.size(); ++sum)
-  {
-    for (std::size_t b = 0; b < batch.bins[sum].size(); ++b)
-    {
-      means[b].of[sum] = batch.bins[sum][b] / paths;
-    }
-  }
-  return means;
-}
-
-std::vector<ReverberationSums> meanReverberation(const BatchSums& batch, int paths)
-{
-  std::vector<ReverberationSums> means = batch.reverberation;
-  for (ReverberationSums& mean : means)
-  {
-    for (double& sum : mean.of)
-    {
-      sum /= paths;
-    }
-  }
-  return means;
-}
-
-void LineEchoes::addTo(std::complex<float>* line, double weight) const
-{
-  for (int s = first; s <= last; ++s)
-  {
-    line[s] += std::complex<float>(weight * samples[std::size_t(s)]);
-  }
-}
-
-std::vector<float> LineEchoes::takenNp(const TissueBins& tissueBins) const
-{
-  std::vector<float> means;
-  for (std::size_t b = 0; b < absorbedToBoundaries.size(); ++b)
-  {
-    const int tissueBin = tissueBins.absorptionBin(int(b) / tissueBins.each);
-    means.push_back(absorbedNp(absorbedByTissue[std::size_t(tissueBin)], absorbedToBoundaries[b]));
-  }
-  return means;
-}
-
 LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm)
   : binCount_(binCount)
   , sums_(sums)
   , tissueBins_(binCount, float(binMm))
-  , echoCount_(std::size_t(echoCount))
+  , reverberation_(std::size_t(tissueBins_.count))
+  , absorbedByTissue_(std::size_t(tissueBins_.count))
+  , absorbedToBoundaries_(std::size_t(binCount))
   , cellMm_(std::size_t(tissueBins_.count))
+  , echoes_(std::size_t(echoCount))
+  , firstEcho_(echoCount)
   , binMm_(float(binMm))
   , echoSampleMm_(float(echoSampleMm))
   , radPerMm_(float(4.0 * 3.14159265358979323846 * wavesPerMm))
 {
-  for (std::vector<float>& bins : bins_)
+  for (std::size_t sum = 0; sum < binSumCount; ++sum)
   {
-    bins.assign(std::size_t(binCount), 0.0f);
+    bins_[sum].assign(std::size_t(binCount), 0.0f);
+    binSums_[sum].assign(std::size_t(binCount), 0.0);
   }
-  batch_ = emptyBatch();
-  echoes_ = emptyEchoes();
-}
-
-BatchSums LineTally::emptyBatch() const
-{
-  BatchSums empty;
-  for (std::size_t sum = 0; sum < std::size_t(sums_); ++sum)
-  {
-    empty.bins[sum].assign(std::size_t(binCount_), 0.0);
-  }
-  empty.reverberation.resize(std::size_t(tissueBins_.count));
-  return empty;
-}
-
-LineEchoes LineTally::emptyEchoes() const
-{
-  LineEchoes empty;
-  const auto bins = std::size_t(echoCount_ > 0 ? binCount_ : 0);
-  empty.samples.resize(echoCount_);
-  empty.first = int(echoCount_);
-  empty.power.resize(bins);
-  empty.absorbedByTissue.resize(std::size_t(tissueBins_.count));
-  empty.absorbedToBoundaries.resize(bins);
-  return empty;
-}
-
-void LineTally::exchange(BatchSums& sums)
-{
-  fold();
-  std::swap(batch_, sums);
-}
-
-void LineTally::exchange(LineEchoes& echoes)
-{
-  std::swap(echoes_, echoes);
 }
 
 void LineTally::begin(const TraceView& view, const TraceLine& axis, std::uint32_t lineKey, const StraightWay& way)
@@ -161,7 +84,7 @@ void LineTally::fold()
   {
     for (std::size_t b = 0; b < bins_[sum].size(); ++b)
     {
-      batch_.bins[sum][b] += double(bins_[sum][b]);
+      binSums_[sum][b] += double(bins_[sum][b]);
       bins_[sum][b] = 0.0f;
     }
   }
@@ -169,16 +92,59 @@ void LineTally::fold()
 
 std::vector<BinSums<double>> LineTally::takeBins(int paths)
 {
-  BatchSums taken = emptyBatch();
-  exchange(taken);
-  return meanBins(taken, paths);
+  fold();
+  std::vector<BinSums<double>> means(bins_.front().size());
+  for (std::size_t sum = 0; sum < std::size_t(sums_); ++sum)
+  {
+    for (std::size_t b = 0; b < means.size(); ++b)
+    {
+      means[b].of[sum] = binSums_[sum][b] / paths;
+      binSums_[sum][b] = 0.0;
+    }
+  }
+  return means;
 }
 
-void LineTally::takeEchoes(std::complex<float>* samples, double weight)
+std::vector<ReverberationSums> LineTally::takeReverberation(int paths)
 {
-  LineEchoes taken = emptyEchoes();
-  exchange(taken);
-  taken.addTo(samples, weight);
+  if (!reverberated_)
+  {
+    return {};
+  }
+  std::vector<ReverberationSums> means(reverberation_.size());
+  means.swap(reverberation_);
+  for (ReverberationSums& mean : means)
+  {
+    for (double& sum : mean.of)
+    {
+      sum /= paths;
+    }
+  }
+  return means;
+}
+
+std::vector<float> LineTally::takeReverberatedNp()
+{
+  std::vector<float> means;
+  for (int b = 0; b < binCount_; ++b)
+  {
+    means.push_back(absorbedNp(absorbedByTissue_[std::size_t(tissueBins_.absorptionBin(b / tissueBins_.each))],
+                               absorbedToBoundaries_[std::size_t(b)]));
+  }
+  std::fill(absorbedByTissue_.begin(), absorbedByTissue_.end(), AbsorbedSums());
+  std::fill(absorbedToBoundaries_.begin(), absorbedToBoundaries_.end(), AbsorbedSums());
+  return means;
+}
+
+void LineTally::takeEchoes(std::complex<float>* samples)
+{
+  for (int s = firstEcho_; s <= lastEcho_; ++s)
+  {
+    samples[s] += std::complex<float>(echoes_[std::size_t(s)]);
+    echoes_[std::size_t(s)] = 0.0;
+  }
+  firstEcho_ = int(echoes_.size());
+  lastEcho_ = -1;
 }
 
 template<int Sums>
@@ -249,7 +215,7 @@ void LineTally::addReverberation(const PathSegment& s)
   {
     const BinEcho inBin = echoInBin(echo, span, lineKey_, b, tissueBins_.mm, cellMm_[std::size_t(b)]);
     const double level = double(inBin.level * inBin.share);
-    ReverberationSums& sums = batch_.reverberation[std::size_t(b)];
+    ReverberationSums& sums = reverberation_[std::size_t(b)];
     if (echo.straightBack)
     {
       sums.of[straightPowerSum] += level * double(inBin.level);
@@ -260,9 +226,8 @@ void LineTally::addReverberation(const PathSegment& s)
     }
     if (b == tissueBins_.absorptionBin(b))
     {
-      AbsorbedSums& absorbed = echoes_.absorbedByTissue[std::size_t(b)];
-      absorbed.weight += level;
-      absorbed.weightedNp += level * double(inBin.absorbedNp);
+      absorbedByTissue_[std::size_t(b)].weight += level;
+      absorbedByTissue_[std::size_t(b)].weightedNp += level * double(inBin.absorbedNp);
     }
   }
 }
@@ -270,7 +235,7 @@ void LineTally::addReverberation(const PathSegment& s)
 void LineTally::echo(const Vec3f& point, float amplitude)
 {
   // In Acoustic surfaces echo by themselves.
-  if (echoCount_ > 0 && view_->model != InterfaceModel::Acoustic)
+  if (!echoes_.empty() && view_->model != InterfaceModel::Acoustic)
   {
     const EchoPlace place = echoPlace(line_, point, coherenceMm_);
     addEcho(place.depthMm, amplitude * place.weight);
@@ -279,7 +244,7 @@ void LineTally::echo(const Vec3f& point, float amplitude)
 
 void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
 {
-  if (echoCount_ > 0)
+  if (!echoes_.empty())
   {
     const Arrival arrival = boundaryArrival(*view_, way_, *axis_, line_, path, boundary);
     addEcho(arrival.rangeMm, arrival.amplitude);
@@ -287,12 +252,11 @@ void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
     for (const float beside : { -0.5f, 0.5f })
     {
       const auto bin = std::size_t(larger(0.0f, arrival.rangeMm / binMm_ + beside));
-      if (bin < echoes_.absorbedToBoundaries.size())
+      if (bin < absorbedToBoundaries_.size())
       {
         const double weight = double(std::fabs(arrival.amplitude) / boundaryPerSpeckle);
-        AbsorbedSums& absorbed = echoes_.absorbedToBoundaries[bin];
-        absorbed.weight += weight;
-        absorbed.weightedNp += weight * double(arrival.absorbedNp);
+        absorbedToBoundaries_[bin].weight += weight;
+        absorbedToBoundaries_[bin].weightedNp += weight * double(arrival.absorbedNp);
       }
     }
   }
@@ -300,16 +264,13 @@ void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
 
 void LineTally::addEcho(float rangeMm, float amplitude)
 {
-  const EchoSplit split = splitEcho(rangeMm, amplitude, echoSampleMm_, int(echoCount_), radPerMm_);
+  const EchoSplit split = splitEcho(rangeMm, amplitude * echoWeight_, echoSampleMm_, int(echoes_.size()), radPerMm_);
   if (split.sample >= 0 && amplitude != 0.0f)
   {
-    const auto sample = std::size_t(split.sample);
-    echoes_.samples[sample] += std::complex<double>(split.amplitude[0], split.amplitude[1]);
-    echoes_.samples[sample + 1] += std::complex<double>(split.amplitude[2], split.amplitude[3]);
-    echoes_.first = std::min(echoes_.first, split.sample);
-    echoes_.last = std::max(echoes_.last, split.sample + 1);
-    const auto bin = std::size_t(rangeMm / binMm_);
-    echoes_.power[std::min(bin, echoes_.power.size() - 1)] += double(amplitude) * double(amplitude);
+    echoes_[std::size_t(split.sample)] += std::complex<double>(split.amplitude[0], split.amplitude[1]);
+    echoes_[std::size_t(split.sample) + 1] += std::complex<double>(split.amplitude[2], split.amplitude[3]);
+    firstEcho_ = std::min(firstEcho_, split.sample);
+    lastEcho_ = std::max(lastEcho_, split.sample + 1);
   }
 }
 

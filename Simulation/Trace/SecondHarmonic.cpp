@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 
 namespace sono {
 
@@ -123,8 +122,6 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
     growReverberation(growth, l, doubled);
   });
   doubled.segments += sent.segments;
-  std::transform(sent.paths.begin(), sent.paths.end(), doubled.paths.begin(), doubled.paths.begin(), std::plus<>());
-  doubled.errorDb = std::max(doubled.errorDb, sent.errorDb);
   return doubled;
 }
 

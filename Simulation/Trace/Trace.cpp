@@ -1,4 +1,4 @@
-#include "Trace/LineRounds.h"
+#include "Trace/Trace.h"
 
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
@@ -19,8 +19,6 @@ namespace sono {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Writes the arrays of a line, of what its paths share and of the means of their batches.
 void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std::vector<BinSums<double>>>& batches,
                double frequencyMHz, int line, TracedLines& out)
@@ -35,8 +33,6 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
     out.attenuationNpPerMHz[at] = bin.of[attenuationArray];
   }
 }
-
-} // namespace
 
 /// What lines leave of reverberation, lines x TissueBins, until all are traced.
 struct TracedReverberation
@@ -61,8 +57,6 @@ struct TracedReverberation
     return std::size_t(line) * std::size_t(tissueBins.count) + std::size_t(bin);
   }
 };
-
-namespace {
 
 /// Of the means of a line's batches, and of what the media have taken.
 void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batches, const std::vector<float>& takenNp,
@@ -181,79 +175,49 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   return way;
 }
 
-} // namespace
-
-/// What the paths of a line have left so far, see LineRounds.
-struct LineSums
-{
-  int paths = 0;
-  AxisWay way;
-  LineStart start{};                   // where paths do not start apart
-  std::vector<BinSums<double>> shared; // what all paths leave
-  LineEchoes sharedEchoes;             // the same
-  std::vector<BatchSums> batches;
-  LineEchoes echoes;
-};
-
-namespace {
-
-/// Before a line's first path.
+/// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
 template<class Space>
-void beginLine(const Space& space, const TraceSetup& setup, int index, LineTally& tally, LineSums& sums,
-               TracedLines& out)
-{
-  const TraceLine& line = setup.lines[std::size_t(index)];
-  sums.way = followAxis(space, setup, index, out);
-  sums.shared.assign(std::size_t(out.binCount), BinSums<double>{});
-  sums.echoes = tally.emptyEchoes();
-  if (!setup.view.startsApart)
-  {
-    tally.begin(setup.view, line, std::uint32_t(index), sums.way.view());
-    sums.start = startLine(setup.view, space, line, tally);
-    sums.shared = tally.takeBins(1);
-    sums.sharedEchoes = tally.emptyEchoes();
-    tally.exchange(sums.sharedEchoes);
-  }
-}
-
-/// Lets a line have `paths` altogether. Sums run in the order of the batches and paths.
-template<class Space>
-inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, int paths, const YieldPoint& yieldPoint,
-                        LineTally& tally, LineSums& sums, TracedLines& out)
+inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
+                        LineTally& tally, TracedReverberation& kept, TracedLines& out)
 {
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
-  const int before = sums.paths;
-  sums.paths = paths;
-  if (before == 0)
+  const AxisWay way = followAxis(space, setup, index, out);
+  tally.begin(view, line, std::uint32_t(index), way.view());
+  std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
+  tally.setEchoWeight(1.0f);
+  LineStart start;
+  std::vector<BinSums<double>> shared(std::size_t(out.binCount), BinSums<double>{});
+  std::vector<std::vector<BinSums<double>>> means;           // of batches
+  std::vector<std::vector<ReverberationSums>> reverberation; // the same
+  if (!view.startsApart)
   {
-    beginLine(space, setup, index, tally, sums, out);
-    if (!view.startsApart && !sums.start.meets)
+    start = startLine(view, space, line, tally);
+    shared = tally.takeBins(1);
+    if (!start.meets)
     {
+      writeBins(shared, means, setup.frequencyMHz, index, out);
+      tally.takeEchoes(echoes);
       return;
     }
-    sums.batches.resize(std::size_t(std::min(batchCount, paths)), tally.emptyBatch());
   }
-  const int batches = int(sums.batches.size());
-  tally.begin(view, line, std::uint32_t(index), sums.way.view());
-  tally.exchange(sums.echoes);
+
+  tally.setEchoWeight(1.0f / float(setup.paths));
+  const int batches = std::min(batchCount, setup.paths);
   std::vector<BounceScramble> scrambles(std::size_t(scrambleCount(view)));
   for (int batch = 0; batch < batches; ++batch)
   {
-    const PathRange done = batchRange(before, batches, batch);
-    const PathRange wanted = batchRange(paths, batches, batch);
-    const int last = wanted.last - wanted.first;
-    tally.exchange(sums.batches[std::size_t(batch)]);
+    const auto [first, last] = batchRange(setup.paths, batches, batch);
     for (std::size_t b = 0; b < scrambles.size(); ++b)
     {
       scrambles[b] = makeScramble(view, std::uint32_t(index), std::uint32_t(batch), int(b));
     }
-    for (int path = done.last - done.first; path < last;)
+    for (int path = first; path < last;)
     {
-      const int pause = std::min(last, nextFold(path)); // at most a few milliseconds' worth
+      const int pause = std::min(last, path + pathsPerFold); // a few milliseconds' worth
       for (; path < pause; ++path)
       {
-        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path), scrambles.data() };
+        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() };
         if (view.startsApart)
         {
           const TraceLine own = pathLine(view, line, key);
@@ -262,7 +226,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
         }
         else
         {
-          tracePath(view, space, line, sums.start, key, tally);
+          tracePath(view, space, line, start, key, tally);
         }
       }
       if (path < last)
@@ -271,49 +235,31 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
         yieldPoint();
       }
     }
-    tally.exchange(sums.batches[std::size_t(batch)]);
-  }
-  tally.exchange(sums.echoes);
-}
-
-SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, int paths,
-                                                         const YieldPoint& yieldPoint, LineTally& tally, LineSums& sums,
-                                                         TracedLines& out)
-{
-  traceLineIn(setup.space(), setup, index, paths, yieldPoint, tally, sums, out);
-}
-
-void traceLineByNanoVDB(const TraceSetup& setup, int index, int paths, const YieldPoint& yieldPoint, LineTally& tally,
-                        LineSums& sums, TracedLines& out)
-{
-  traceLineIn(setup.nanoSpace(), setup, index, paths, yieldPoint, tally, sums, out);
-}
-
-/// Writes a line's rows of the result.
-void writeLine(const TraceSetup& setup, const LineSums& sums, int index, TracedReverberation& kept, TracedLines& out)
-{
-  const int batches = int(sums.batches.size());
-  std::vector<std::vector<BinSums<double>>> means;           // of batches
-  std::vector<std::vector<ReverberationSums>> reverberation; // the same
-  for (int batch = 0; batch < batches; ++batch)
-  {
-    const PathRange range = batchRange(sums.paths, batches, batch);
-    means.push_back(meanBins(sums.batches[std::size_t(batch)], range.last - range.first));
+    means.push_back(tally.takeBins(last - first));
     if (!out.reverberation.empty())
     {
-      reverberation.push_back(meanReverberation(sums.batches[std::size_t(batch)], range.last - range.first));
+      reverberation.push_back(tally.takeReverberation(last - first));
     }
   }
-  writeBins(sums.shared, means, setup.frequencyMHz, index, out);
-  if (!out.reverberation.empty() && batches > 0)
+  if (!out.reverberation.empty() && tally.hasReverberated())
   {
-    const TissueBins tissueBins(out.binCount, float(out.binMm));
-    keepReverberation(reverberation, sums.echoes.takenNp(tissueBins), setup.frequencyMHz, index, kept, out);
+    keepReverberation(reverberation, tally.takeReverberatedNp(), setup.frequencyMHz, index, kept, out);
   }
-  std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
-  std::fill_n(echoes, out.echoCount, std::complex<float>());
-  sums.sharedEchoes.addTo(echoes, 1.0);
-  sums.echoes.addTo(echoes, 1.0 / sums.paths);
+  tally.takeEchoes(echoes);
+  writeBins(shared, means, setup.frequencyMHz, index, out);
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index,
+                                                         const YieldPoint& yieldPoint, LineTally& tally,
+                                                         TracedReverberation& kept, TracedLines& out)
+{
+  traceLineIn(setup.space(), setup, index, yieldPoint, tally, kept, out);
+}
+
+void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yieldPoint, LineTally& tally,
+                        TracedReverberation& kept, TracedLines& out)
+{
+  traceLineIn(setup.nanoSpace(), setup, index, yieldPoint, tally, kept, out);
 }
 
 } // namespace
@@ -336,59 +282,46 @@ TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std
   return out;
 }
 
-LineRounds::LineRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                       const std::vector<TargetSurface>& targets, const Progress& progress)
-  : setup_(scene, lines, settings, targets, progress, Records::OnDemand)
-  , march_(settings.march)
-  , out_(tracedLayout(int(lines.size()), settings, targets))
+TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                  const Progress& progress, const std::vector<TargetSurface>& targets)
 {
-  TracedLines::visitArrays(out_, [this](auto& values, const char*, TracedAxis axis) {
-    values.assign(std::size_t(out_.lineCount) * (axis == TracedAxis::EchoSamples ? out_.echoCount : out_.binCount), {});
+  const Progress preparing = partOf(progress, 0.0, 0.3);
+  const TraceSetup setup(scene, lines, settings, targets, preparing, Records::OnDemand);
+  const Progress tracing = partOf(progress, 0.3, 1.0);
+  TracedLines out = tracedLayout(int(lines.size()), settings, targets);
+  TracedLines::visitArrays(out, [&out](auto& values, const char*, TracedAxis axis) {
+    values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::EchoSamples ? out.echoCount : out.binCount), {});
   });
   if (!settings.rangeIsTime())
   {
-    out_.depthOffsetMm.clear();
+    out.depthOffsetMm.clear();
   }
   if (!settings.reverberates())
   {
-    out_.reverberation.clear();
-    out_.reverberationError.clear();
-    out_.reverberationNpPerMHz.clear();
+    out.reverberation.clear();
+    out.reverberationError.clear();
+    out.reverberationNpPerMHz.clear();
   }
-  reverberation_ = std::make_unique<TracedReverberation>(out_);
-  cells_ = cellLayout(out_);
-  echoCells_.level.resize(out_.reverberation.empty() ? 0 : cells_.level.size());
-  echoCells_.error.resize(echoCells_.level.size());
-}
 
-LineRounds::~LineRounds() = default;
-
-void LineRounds::trace(const std::vector<int>& lines, const std::vector<int>& paths, bool more,
-                       const Progress& progress)
-{
-  sums_.resize(more || !sums_.empty() ? std::size_t(out_.lineCount) : 0);
-  const double wavesPerMm = setup_.frequencyMHz / assumedSoundSpeedMmPerUs;
+  TracedReverberation kept(out);
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
-    return LineTally(out_.binCount, out_.binMm, binSumsOf(out_.model), out_.echoCount, out_.echoSampleMm, wavesPerMm);
+    return LineTally(out.binCount, out.binMm, binSumsOf(settings.model), out.echoCount, out.echoSampleMm,
+                     settings.frequencyMHz / assumedSoundSpeedMmPerUs);
   });
-  parallelFor(int(lines.size()), progress, [&](int i, const YieldPoint& yieldPoint) {
-    const int line = lines[std::size_t(i)];
-    LineSums once;
-    LineSums& sums = sums_.empty() ? once : sums_[std::size_t(line)];
-    const auto traceOne = march_ == March::NanoVDB ? traceLineByNanoVDB : traceLine;
-    traceOne(setup_, line, paths[std::size_t(line)], yieldPoint, tallies.local(), sums, out_);
-    writeLine(setup_, sums, line, *reverberation_, out_);
-    if (!echoCells_.level.empty())
+  parallelFor(out.lineCount, tracing, [&](int i, const YieldPoint& yieldPoint) {
+    if (settings.march == March::NanoVDB)
     {
-      fillEchoCells(out_, sums.echoes, line, sums.paths, 4.0 * pi * wavesPerMm, cells_, echoCells_);
+      traceLineByNanoVDB(setup, i, yieldPoint, tallies.local(), kept, out);
+    }
+    else
+    {
+      traceLine(setup, i, yieldPoint, tallies.local(), kept, out);
     }
   });
-  // What reverberates is known of a line and those beside it.
-  TracedReverberation& kept = *reverberation_;
-  if (!out_.reverberation.empty())
+  if (!out.reverberation.empty())
   {
     const auto forHeard = [&](const auto& work) {
-      parallelFor(out_.lineCount, {}, [&](int i) {
+      parallelFor(out.lineCount, {}, [&](int i) {
         if (isHeardAround(kept, i))
         {
           work(i);
@@ -396,13 +329,13 @@ void LineRounds::trace(const std::vector<int>& lines, const std::vector<int>& pa
       });
     };
     forHeard([&](int i) { sumLinesAround(i, kept); });
-    forHeard([&](int i) { writeReverberation(setup_, kept, i, out_); });
+    forHeard([&](int i) { writeReverberation(setup, kept, i, out); });
   }
-  parallelFor(out_.lineCount, {}, [&](int line) { fillCells(out_, echoCells_, line, cells_); });
   for (const LineTally& tally : tallies)
   {
-    out_.segments += tally.segments();
+    out.segments += tally.segments();
   }
+  return out;
 }
 
 } // namespace sono

@@ -46,12 +46,10 @@ struct TracedLines
   std::vector<float> reverberationError;
   /// The same as attenuationNpPerMHz of what reverberates, boundary echoes included.
   std::vector<float> reverberationNpPerMHz;
-  int echoCount = 0;                             ///< 0: none, as of Acoustic without reverberation
-  double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
-  std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
-  std::uint64_t segments = 0;                    ///< path segments traced
-  std::vector<int> paths;                        ///< of each line
-  double errorDb = 0.0; ///< of what is shown, see shownErrorDb (Trace/ShownError.h); 0: not known
+  int echoCount = 0;                                         ///< 0: none, as of Acoustic without reverberation
+  double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm
+  std::vector<std::complex<float>> boundaryEcho;             ///< lineCount x echoCount
+  std::uint64_t segments = 0;                                ///< path segments traced
   std::shared_ptr<const std::vector<TargetSurface>> targets; ///< that it was traced with; null: none
 
   /// The arrays of bins that paths leave, with the names that they have in a pipeline, in the order of BinArray
@@ -79,9 +77,9 @@ struct TracedLines
 /// What trace() will give, without its arrays. Throws Error when it would not fit.
 TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std::vector<TargetSurface>& targets = {});
 
-/// Traces every line on the CPU, whatever device the settings name, with as many paths as the target error asks for
-/// (see RefinedTrace). The result depends on the arguments alone, to the bit, not on the threads. Throws Error when no
-/// line meets the volume or a target is not closed, Aborted when asked to stop.
+/// Traces every line on the CPU, whatever device the settings name. The result depends on the arguments alone, to the
+/// bit, not on the threads. Throws Error when no line meets the volume or a target is not closed, Aborted when asked to
+/// stop.
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
 

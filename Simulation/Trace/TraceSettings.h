@@ -30,9 +30,7 @@ struct TraceSettings
   March march = March::RegionCache;
   InterfaceModel model = InterfaceModel::Acoustic;
   Sampling sampling = Sampling::LowDiscrepancy;
-  int pathsPerLine = 256;     ///< levels within 0.7 dB (rms) in a chest, physics.md 9
-  double targetErrorDb = 0.0; ///< 0: all lines get pathsPerLine. Otherwise lines get more until this is reached, by
-                              ///< rounds (see RefinedTrace), at most as many; on the CPU alone
+  int pathsPerLine = 256; ///< levels within 0.7 dB (rms) in a chest, physics.md 9
   int maxCollisions = 7;
   double coherenceMm =
     100.0; ///< C0 in w_R = C0 / (C0 + distance); the paper's 0.1, read in metres as its other lengths
@@ -62,13 +60,7 @@ struct TraceSettings
   {
     visitor(self.pathsPerLine,
             Parameter{ "pathsPerLine", "Paths per Line", between(1, 1e7),
-                       "Paths per scan line, 1 to 10,000,000, no unit; the noise falls with their square root. With a "
-                       "target error, the most that a line may get." });
-    visitor(self.targetErrorDb,
-            Parameter{ "targetErrorDb", "Target Error (dB)", between(0, 6),
-                       "How exact the levels of the picture are to be, in dB (rms of the standard error where it is "
-                       "not black), 0 to 6: lines get paths until that is reached. 0: every line gets all its paths. "
-                       "On a GPU every line gets all its paths." });
+                       "Paths per scan line, 1 to 10,000,000, no unit; the noise falls with their square root." });
     visitor(self.maxCollisions, Parameter{ "maxCollisions", "Max Collisions", between(0, 1000),
                                            "Boundaries that a path may meet, 0 to 1000, no unit." });
     visitor(self.coherenceMm,

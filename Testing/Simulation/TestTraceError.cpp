@@ -138,6 +138,7 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
     view.model = InterfaceModel::Amadou2024; // whose boundaries echo by paths
     view.coherenceMm = 100.0f;
     tally.begin(view, line, 0, {});
+    tally.setEchoWeight(1.0f / float(count));
     for (int i = 0; i < count; ++i)
     {
       if (i % pathsPerFold == 0)
@@ -147,7 +148,7 @@ TEST(TraceError, ManyLikePathsAddUpToOne)
       tally.segment(segment);
       tally.echo(Vec3f(0.1f, 0.0f, 21.3f), 0.07f);
     }
-    tally.takeEchoes(echoes.data(), 1.0 / count);
+    tally.takeEchoes(echoes.data());
     return tally.takeBins(count);
   };
   std::vector<std::complex<float>> oneEcho(2000);

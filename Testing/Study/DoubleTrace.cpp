@@ -90,10 +90,9 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
   const kernel::LineStart start = kernel::startLine(view, space, line, tally);
   std::complex<double>* echoes = out.boundaryEcho.data() + std::ptrdiff_t(index) * input.echoCount;
   const std::vector<kernel::BinSums<double>> shared = tally.takeBins(1);
-  tally.takeEchoes(echoes, 1.0);
   std::vector<std::vector<kernel::BinSums<double>>> means; // of batches
   const auto finish = [&] {
-    tally.takeEchoes(echoes, 1.0 / input.paths);
+    tally.takeEchoes(echoes);
     for (std::size_t b = 0; b < shared.size(); ++b)
     {
       const std::size_t at = std::size_t(index) * shared.size() + b;
@@ -113,6 +112,7 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
     finish();
     return;
   }
+  tally.setEchoWeight(1.0 / input.paths);
   const int batches = std::min(kernel::batchCount, input.paths);
   std::vector<kernel::BounceScramble> scrambles(std::size_t(view.maxCollisions));
   for (int batch = 0; batch < batches; ++batch)

@@ -1,12 +1,9 @@
-// Tracing, A4C of the bundled thorax at 1 mm: time, growth with what lies outside the fan, error against paths, time to
-// a target error, closed forms.
+// Tracing, A4C of the bundled thorax at 1 mm: time, growth with what lies outside the fan, error against paths, closed
+// forms.
 #include "Trace/Trace.h"
-#include "ApicalImage.h"
 #include "Core/Progress.h"
 #include "Core/SoundSpeed.h"
-#include "Echo/FormRf.h"
 #include "FalseRehits.h"
-#include "Image/BMode.h"
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -18,8 +15,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <numeric>
-#include <utility>
 
 namespace sono {
 namespace {
@@ -32,7 +27,7 @@ TraceSettings a4cSettings()
   return settings;
 }
 
-std::vector<ScanLine> plainLines()
+std::vector<ScanLine> a4cLines()
 {
   return makeScanLines(ScanGeometry(), thoraxPhantomA4C().orthonormalized());
 }
@@ -232,78 +227,9 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
   }
 }
 
-/// Rms of an image's levels against a reference's, of the samples that it shows above black, dB.
-double bmodeErrorDb(const Scene& scene, const ImageSettings& work, const std::vector<ScanLine>& lines,
-                    const TracedLines& traced, const TracedLines& reference)
-{
-  const auto greyOf = [&](const TracedLines& of, const BModeSettings& settings) {
-    const RfLines rf = formRf(scene, lines, of, work.echo);
-    return makeBMode(rf.envelope(), rf.lineCount, rf.sampleCount, rf.sampleMm, settings);
-  };
-  BModeSettings settings = work.bmode;
-  const BModeLines wanted = greyOf(reference, settings);
-  settings.automaticReference = false;
-  settings.referenceAmplitude = wanted.referenceAmplitude;
-  const BModeLines is = greyOf(traced, settings);
-  double squares = 0.0;
-  int shown = 0;
-  for (std::size_t i = 0; i < wanted.grey.size(); ++i)
-  {
-    if (wanted.grey[i] > 0.0f)
-    {
-      squares += std::pow(settings.dynamicRangeDb * double(is.grey[i] - wanted.grey[i]), 2.0);
-      ++shown;
-    }
-  }
-  return std::sqrt(squares / shown);
-}
-
-/// How long a chest's image takes to a target error, and what of it is true; and against independent sampling.
-void measureTargets(const Scene& scene)
-{
-  ImageSettings work = a4cWith(InterfaceModel::Acoustic);
-  work.tracing.maxCollisions = 20; // a chest's, as in vtkSonoUltrasound
-  work.tracing.coherenceMm = 20.0;
-  const std::vector<ScanLine> lines = a4cLines(work);
-  TraceSettings tracing = work.tracing;
-  tracing.pathsPerLine = 100000;
-  tracing.seed = 99;
-  const TracedLines reference = trace(scene, lines, tracing);
-  tracing.seed = 1;
-  for (const auto& [targetDb, name] : { std::pair(1.0, "1"), std::pair(0.5, "05") })
-  {
-    tracing.targetErrorDb = targetDb;
-    double secondsByError2[2] = { 0.0, 0.0 };
-    for (const Sampling sampling : { Sampling::Independent, Sampling::LowDiscrepancy })
-    {
-      tracing.sampling = sampling;
-      std::vector<double> seconds;
-      TracedLines traced;
-      for (int i = 0; i < 5; ++i)
-      {
-        Stopwatch watch;
-        traced = trace(scene, lines, tracing);
-        seconds.push_back(watch.lap());
-      }
-      const double error = bmodeErrorDb(scene, work, lines, traced, reference);
-      secondsByError2[sampling == Sampling::LowDiscrepancy ? 1 : 0] = medianOf(seconds) * error * error;
-      if (sampling == Sampling::LowDiscrepancy)
-      {
-        const std::string to = std::string("_to_") + name + "db";
-        printFigure("time" + to + "_s", medianOf(seconds), "s", targetDb == 1.0 ? "at most 0.05" : "at most 0.15");
-        printFigure("bmode_error" + to, error, "dB");
-        const double paths = std::accumulate(traced.paths.begin(), traced.paths.end(), 0.0);
-        printFigure("mean_paths" + to, paths / double(lines.size()), "paths_per_line");
-      }
-    }
-    printFigure(std::string("equal_error_time_ratio_") + name + "db", secondsByError2[0] / secondsByError2[1], "times",
-                "at least 10");
-  }
-}
-
 void measureTrace()
 {
-  const auto lines = plainLines();
+  const auto lines = a4cLines();
   const auto scene = makePhantomScene(makeThoraxPhantom(1.0));
   tracingSeconds(*scene, lines);
   std::vector<double> seconds;
@@ -328,7 +254,6 @@ void measureTrace()
   example.maxCollisions = 20;
   example.coherenceMm = 20.0;
   printErrorCurve(*scene, third, example, "trace_example");
-  measureTargets(*scene);
 }
 
 const Stage stage("trace", measureTrace);
