@@ -1,13 +1,13 @@
 #include "FieldScenes.h"
 #include "GpuParity.h"
 #include "Probe/PulseFile.h"
+#include "RelativeRms.h"
 #include "TargetScenes.h"
 #include "TestScenes.h"
 
-#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <random>
+#include <string>
 
 namespace {
 
@@ -102,30 +102,24 @@ private:
   Vec3d extent_{ 0.0 };
 };
 
-double rmsOf(const std::vector<float>& values)
+/// Of the second's rms; where that is nothing, nothing is the first, too.
+template<class Values>
+void expectClose(const Values& gpu, const Values& cpu, double most, const std::string& what)
 {
-  double sum = 0.0;
-  for (const float v : values)
+  ASSERT_EQ(gpu.size(), cpu.size()) << what;
+  if (cpu == Values(cpu.size()))
   {
-    sum += double(v) * double(v);
+    EXPECT_EQ(gpu, cpu) << what;
+    return;
   }
-  return std::sqrt(sum / double(std::max<std::size_t>(1, values.size())));
-}
-
-/// Rms of the differences of two arrays as long.
-template<class Value>
-double rmsApart(const std::vector<Value>& a, const std::vector<Value>& b)
-{
-  std::vector<float> apart;
-  for (std::size_t i = 0; i < b.size(); ++i)
-  {
-    apart.push_back(float(std::abs(a[i] - b[i])));
-  }
-  return rmsOf(apart);
+  const double apart = relativeRms(gpu, cpu);
+  std::printf("%s: %.2g\n", what.c_str(), apart);
+  EXPECT_LE(apart, most) << what;
 }
 
 /// Of the direct sound the RF; of what reverberates the boundaries' echoes and what the media have taken. Its levels
-/// are compared in GpuStages.TheIntensityAndItsErrorAgree.
+/// are compared in GpuStages.TheIntensityAndItsErrorAgree: here, where paths bounce more than once, the devices still
+/// differ in some scenes, and nobody knows why.
 void expectAgreement(const RandomScene& random, unsigned seed)
 {
   const EchoSources sources{ random.scene.get(), nullptr, nullptr };
@@ -134,19 +128,13 @@ void expectAgreement(const RandomScene& random, unsigned seed)
     tracing.reverberation = reverberation;
     return runChain(sources, random.lines, tracing, random.echo, device, random.targets);
   };
-  expectSameRf(run(Device::Cuda, false), run(Device::Cpu, false), "scene " + std::to_string(seed));
+  const std::string scene = "scene " + std::to_string(seed);
+  expectSameRf(run(Device::Cuda, false), run(Device::Cpu, false), scene);
   const TracedLines gpu = run(Device::Cuda, true).traced;
   const TracedLines cpu = run(Device::Cpu, true).traced;
-  ASSERT_EQ(gpu.reverberation.size(), cpu.reverberation.size()) << "scene " << seed;
-  ASSERT_EQ(gpu.boundaryEcho.size(), cpu.boundaryEcho.size()) << "scene " << seed;
-  const std::vector<std::complex<float>> none(cpu.boundaryEcho.size());
-  const double echoes =
-    rmsApart(gpu.boundaryEcho, cpu.boundaryEcho) / std::max(1e-30, rmsApart(none, cpu.boundaryEcho));
-  const double taken =
-    rmsApart(gpu.reverberationNpPerMHz, cpu.reverberationNpPerMHz) / std::max(1e-30, rmsOf(cpu.reverberationNpPerMHz));
-  std::printf("scene %u: echoes %.2g, taken %.2g\n", seed, echoes, taken);
-  EXPECT_LE(echoes, 0.02) << "scene " << seed; // paths that several bounces have led apart
-  EXPECT_LE(taken, 0.001) << "scene " << seed;
+  ASSERT_EQ(gpu.reverberation.size(), cpu.reverberation.size()) << scene;
+  expectClose(gpu.boundaryEcho, cpu.boundaryEcho, 0.02, scene + ", echoes of boundaries");
+  expectClose(gpu.reverberationNpPerMHz, cpu.reverberationNpPerMHz, 0.001, scene + ", taken");
 }
 
 /// Small enough for compute-sanitizer (see run-gpu.sh); together they run every kernel.

@@ -1,6 +1,7 @@
 #include "GpuThorax.h"
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
+#include "RelativeRms.h"
 #include "TestScenes.h"
 
 #include <cmath>
@@ -93,16 +94,9 @@ TEST(GpuStages, TheIntensityAndItsErrorAgree)
     }
     std::printf("intensity, %s: %.2g\n", aperture.isNamed() ? "aperture" : "along the axis", worst);
     ASSERT_EQ(gpu.reverberation.size(), cpu.reverberation.size());
-    double reverberation = 0.0;
-    double apart = 0.0;
-    for (std::size_t i = 0; i < cpu.reverberation.size(); ++i)
-    {
-      reverberation += double(cpu.reverberation[i]) * cpu.reverberation[i];
-      apart += std::pow(double(gpu.reverberation[i]) - cpu.reverberation[i], 2.0);
-    }
-    EXPECT_GT(reverberation, 0.0);
-    std::printf("reverberation: %.2g\n", std::sqrt(apart / reverberation));
-    EXPECT_LT(apart, 1e-4 * reverberation);
+    const double apart = relativeRms(gpu.reverberation, cpu.reverberation); // not a number where nothing reverberates
+    std::printf("reverberation: %.2g\n", apart);
+    EXPECT_LT(apart, 0.01);
   }
 }
 
@@ -338,7 +332,7 @@ TEST(GpuStages, ScanConversionOfEveryGeometry)
     s.geometry.compoundFans = 3; // of linear and curvilinear
     s.geometry.assumedSoundSpeedMPerS = 1480.0;
     s.tracing.pathsPerLine = 200;
-    s.tracing.reverberation = false; // few paths' levels may differ by a cell's sign
+    s.tracing.reverberation = false; // see GpuScenes: its levels may differ yet
     s.bmode.automaticReference = false;
     s.bmode.referenceAmplitude = 0.05;
     s.bmode.greyMap = { 0.0f, 0.1f, 0.5f, 0.9f, 1.0f };
