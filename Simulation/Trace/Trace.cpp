@@ -58,6 +58,15 @@ struct TracedReverberation
   }
 };
 
+template<class BinOf>
+void keepAlong(int line, const BinOf& binOf, TracedReverberation& kept)
+{
+  for (int t = 0; t < kept.tissueBins.count; ++t)
+  {
+    kept.along[kept.at(line, t)] = sumAlongLine(t, kept.tissueBins.count, kept.tissueBins.mm, binOf);
+  }
+}
+
 /// Of the means of a line's batches, and of what the media have taken.
 void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batches, const std::vector<float>& takenNp,
                        double frequencyMHz, int line, TracedReverberation& kept, TracedLines& out)
@@ -80,11 +89,8 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
       out.reverberationNpPerMHz[first + std::size_t(b)] = float(double(takenNp[std::size_t(b)]) / frequencyMHz);
     }
   }
-  for (int t = 0; t < tissueBins.count; ++t)
-  {
-    kept.along[kept.at(line, t)] =
-      sumAlongLine(t, tissueBins.count, tissueBins.mm, [&](int near) { return bins[std::size_t(near)]; });
-  }
+  keepAlong(
+    line, [&](int bin) { return bins[std::size_t(bin)]; }, kept);
 }
 
 /// Whether a line or one around it has any.
@@ -328,6 +334,13 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
         }
       });
     };
+    forHeard([&](int i) {
+      if (!kept.isHeard[std::size_t(i)])
+      {
+        keepAlong(
+          i, [](int) { return aroundOf(ReverberationMeans{}); }, kept); // silence counts in the means around it
+      }
+    });
     forHeard([&](int i) { sumLinesAround(i, kept); });
     forHeard([&](int i) { writeReverberation(setup, kept, i, out); });
   }

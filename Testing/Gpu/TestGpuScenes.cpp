@@ -5,7 +5,9 @@
 #include "TargetScenes.h"
 #include "TestScenes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
 
@@ -102,14 +104,20 @@ private:
   Vec3d extent_{ 0.0 };
 };
 
-/// Of the second's rms; where that is nothing, nothing is the first, too.
+/// Of the second's rms. What is far below any echo, a mirror's being 1, is nothing: a device sums in units of some
+/// 1e-12.
 template<class Values>
 void expectClose(const Values& gpu, const Values& cpu, double most, const std::string& what)
 {
+  constexpr double nothing = 1e-9;
   ASSERT_EQ(gpu.size(), cpu.size()) << what;
-  if (cpu == Values(cpu.size()))
+  const auto loudest = [](const Values& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0,
+                           [](double most, auto value) { return std::max(most, double(std::abs(value))); });
+  };
+  if (loudest(cpu) < nothing)
   {
-    EXPECT_EQ(gpu, cpu) << what;
+    EXPECT_LT(loudest(gpu), nothing) << what;
     return;
   }
   const double apart = relativeRms(gpu, cpu);
@@ -117,9 +125,8 @@ void expectClose(const Values& gpu, const Values& cpu, double most, const std::s
   EXPECT_LE(apart, most) << what;
 }
 
-/// Of the direct sound the RF; of what reverberates the boundaries' echoes and what the media have taken. Its levels
-/// are compared in GpuStages.TheIntensityAndItsErrorAgree: here, where paths bounce more than once, the devices still
-/// differ in some scenes, and nobody knows why.
+/// Of the direct sound the RF; of what reverberates the boundaries' echoes, the levels and what the media have taken.
+/// Rounding that moves an echo by 5e-5 mm of range puts 0.005 of it into the next sample of 0.01 mm.
 void expectAgreement(const RandomScene& random, unsigned seed)
 {
   const EchoSources sources{ random.scene.get(), nullptr, nullptr };
@@ -133,7 +140,8 @@ void expectAgreement(const RandomScene& random, unsigned seed)
   const TracedLines gpu = run(Device::Cuda, true).traced;
   const TracedLines cpu = run(Device::Cpu, true).traced;
   ASSERT_EQ(gpu.reverberation.size(), cpu.reverberation.size()) << scene;
-  expectClose(gpu.boundaryEcho, cpu.boundaryEcho, 0.02, scene + ", echoes of boundaries");
+  expectClose(gpu.boundaryEcho, cpu.boundaryEcho, 0.005, scene + ", echoes of boundaries");
+  expectClose(gpu.reverberation, cpu.reverberation, 0.001, scene + ", levels");
   expectClose(gpu.reverberationNpPerMHz, cpu.reverberationNpPerMHz, 0.001, scene + ", taken");
 }
 

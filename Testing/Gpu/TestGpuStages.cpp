@@ -38,8 +38,8 @@ TEST(GpuStages, WeightsOverOrdersOfMagnitudeWithManySeeds)
 {
   SONO_GPU_OR_SKIP();
   // The seed's equations give some paths a thousand times the weight of others, so a few that part on the two devices
-  // show. After all collisions some have parted whatever the arithmetic is; after four, none that counts. Directions
-  // that are 4e-7 off fail with two of these twenty.
+  // show. Each collision with a curved wall widens what rounding set apart: after four the CPU's own two marches differ
+  // by 2.7e-3 with the second seed, as this device does; after three by 2e-4.
   for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::Independent })
   {
     for (std::uint64_t seed = 1; seed <= 10; ++seed)
@@ -49,7 +49,7 @@ TEST(GpuStages, WeightsOverOrdersOfMagnitudeWithManySeeds)
       s.tracing.sampling = sampling;
       s.tracing.seed = seed;
       s.tracing.pathsPerLine = 8000;
-      s.tracing.maxCollisions = 4;
+      s.tracing.maxCollisions = 3;
       expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu),
                    "sampling " + std::to_string(int(sampling)) + ", seed " + std::to_string(seed));
     }
@@ -332,7 +332,6 @@ TEST(GpuStages, ScanConversionOfEveryGeometry)
     s.geometry.compoundFans = 3; // of linear and curvilinear
     s.geometry.assumedSoundSpeedMPerS = 1480.0;
     s.tracing.pathsPerLine = 200;
-    s.tracing.reverberation = false; // see GpuScenes: its levels may differ yet
     s.bmode.automaticReference = false;
     s.bmode.referenceAmplitude = 0.05;
     s.bmode.greyMap = { 0.0f, 0.1f, 0.5f, 0.9f, 1.0f };

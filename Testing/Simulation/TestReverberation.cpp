@@ -144,6 +144,18 @@ TEST(Reverberation, TissueIsRepeatedBehindTheMirror)
   EXPECT_NEAR(level(50.1), 0.16 + 2.0 * 0.16, 0.02);
 }
 
+TEST(Reverberation, SilentLinesCountInTheMeanPowerOfWhatComesStraightBack)
+{
+  // The same at 30 mm between two lines that look out of the body: weights over lines fall from 9 by one a line.
+  const auto scene = smoothLayers({ { 20.0, 1.6, 1540.0, 0.0 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
+  TraceSettings s = settings(2000);
+  s.faceReflection = 0.4;
+  const ScanLine silent = makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, -1.0 });
+  const TracedLines traced = trace(*scene, { silent, line().front(), silent }, s);
+  const double level = traced.reverberation[std::size_t(traced.binCount) + std::size_t(30.1 / traced.binMm)];
+  EXPECT_NEAR(level, 1.0 + 2.0 * 0.4 * std::sqrt(9.0 / (8.0 + 9.0 + 8.0)), 0.02);
+}
+
 TEST(Reverberation, SpeckleHasTheLevelOfItsTissue)
 {
   // What the gas mirrors is as strong as the tissue itself.
