@@ -147,6 +147,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
 {
   const EchoSetup setup(sources, lines, settings);
   RfLines out = setup.emptyRf();
+  const ReverberationNodes nodes = setup.finisher.reverberationNodes();
   const auto formGroup = [&](int group) {
     const int first = group * groupLines;
     const int last = std::min(first + groupLines, out.lineCount);
@@ -186,7 +187,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     for (int l = first; l < last; ++l)
     {
       const std::size_t at = std::size_t(l - first);
-      setup.finisher.finish(l, sums[at], setup.surfaces ? &surfaces[at] : nullptr,
+      setup.finisher.finish(l, sums[at], setup.surfaces ? &surfaces[at] : nullptr, nodes,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
   };

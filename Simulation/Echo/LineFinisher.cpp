@@ -202,7 +202,17 @@ void LineFinisher::showDepths(const RangeMap& map, const LineSum& sum, float* re
   }
 }
 
-void LineFinisher::addReverberation(int line, float* re, float* im) const
+ReverberationNodes LineFinisher::reverberationNodes() const
+{
+  const auto isHeard = [](float level) { return level > faintestReverberation; };
+  if (!traced_ || std::none_of(traced_->reverberation.begin(), traced_->reverberation.end(), isHeard))
+  {
+    return {};
+  }
+  return ReverberationNodes(speckle_.noise, traced_->lineCount, rangeCount());
+}
+
+void LineFinisher::addReverberation(int line, const ReverberationNodes& nodes, float* re, float* im) const
 {
   const float* bins = traced_->reverberation.data() + std::size_t(line) * std::size_t(traced_->binCount);
   const float binsPerSample = float(sampleMm_ / traced_->binMm);
@@ -211,7 +221,7 @@ void LineFinisher::addReverberation(int line, float* re, float* im) const
     const float level = levelAtRange(bins, traced_->binCount, binsPerSample, s);
     if (level > faintestReverberation)
     {
-      const Vec2f noise = level * speckle_.rms[std::size_t(s)] * speckle_.noise.at(line, s);
+      const Vec2f noise = level * speckle_.rms[std::size_t(s)] * nodes.at(line, s);
       re[s] += noise.x;
       im[s] += noise.y;
     }
@@ -258,7 +268,8 @@ SurfaceIntensity LineFinisher::intensity(int line) const
            float(1.0 / traced_->binMm) };
 }
 
-void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::complex<float>* iq) const
+void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
+                          std::complex<float>* iq) const
 {
   if (traced_)
   {
@@ -290,7 +301,7 @@ void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, std::
   }
   if (isLate && !traced_->reverberation.empty())
   {
-    addReverberation(line, lateRe.data(), lateIm.data());
+    addReverberation(line, nodes, lateRe.data(), lateIm.data());
     sinkReverberation(line, lateRe.data(), lateIm.data());
   }
   if (!sinks(line))

@@ -40,16 +40,19 @@ public:
   /// A sum by range with the traced boundary echoes of a line, times the field's level, phases kept.
   LineSum boundaryEchoes(int line) const;
   const ReverberationSpeckle& reverberation() const { return speckle_; }
+  /// What the lines share of its noise: nothing where none reverberates.
+  ReverberationNodes reverberationNodes() const;
   /// Writes the settings' sampleCount() samples; the sum is used up. `surfaces`, which may be null, carries its
   /// intensity already.
-  void finish(int line, LineSum& sum, const LineSum* surfaces, std::complex<float>* iq) const;
+  void finish(int line, LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
+              std::complex<float>* iq) const;
 
 private:
   void applyIntensity(int line, LineSum& sum) const;
   RangeMap rangeMap(int line) const;
   void demodulate(const LineSum& sum, float* re, float* im) const;
   void showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const;
-  void addReverberation(int line, float* re, float* im) const;
+  void addReverberation(int line, const ReverberationNodes& nodes, float* re, float* im) const;
   void sinkReverberation(int line, float* re, float* im) const;
   bool hasPathEchoes(int line) const;
   bool sinks(int line) const;

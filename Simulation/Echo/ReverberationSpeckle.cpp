@@ -1,5 +1,6 @@
 #include "Echo/ReverberationSpeckle.h"
 
+#include "Core/ParallelFor.h"
 #include "Core/SoundSpeed.h"
 #include "Kernel/Reverberation.h"
 
@@ -49,6 +50,20 @@ ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const Be
     speckle.rms.push_back(float(nodes[node] + (nodes[node + 1] - nodes[node]) * (position - double(node))));
   }
   return speckle;
+}
+
+ReverberationNodes::ReverberationNodes(const ReverberationNoise& noise, int lines, int samples)
+  : noise_(noise)
+  , rows_(std::size_t(noise.firstNode(lines - 1)) + 4)
+{
+  parallelFor(int(rows_.size()), {}, [&](int node) {
+    std::vector<Vec2f>& row = rows_[std::size_t(node)];
+    row.reserve(std::size_t(samples));
+    for (int s = 0; s < samples; ++s)
+    {
+      row.push_back(noise.node(node, s));
+    }
+  });
 }
 
 } // namespace sono

@@ -18,4 +18,23 @@ struct ReverberationSpeckle
 ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const BeamModel& beams,
                                           const std::vector<ScanLine>& lines, int samples);
 
+/// The nodes of its noise at each sample, which lines side by side share.
+class ReverberationNodes
+{
+public:
+  ReverberationNodes() = default;
+  ReverberationNodes(const ReverberationNoise& noise, int lines, int samples);
+
+  /// As ReverberationNoise::at.
+  Vec2f at(int line, int sample) const
+  {
+    const std::vector<Vec2f>* rows = rows_.data() + noise_.firstNode(line);
+    return noise_.blend(line, [&](int k) { return rows[k][std::size_t(sample)]; });
+  }
+
+private:
+  ReverberationNoise noise_;
+  std::vector<std::vector<Vec2f>> rows_;
+};
+
 } // namespace sono

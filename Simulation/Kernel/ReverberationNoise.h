@@ -17,20 +17,30 @@ struct ReverberationNoise
     return a.seed == b.seed && a.nodesPerLine == b.nodesPerLine;
   }
 
-  SONO_HD Vec2f at(int line, int sample) const
+  SONO_HD Vec2f node(int index, int sample) const
   {
     constexpr std::uint64_t ownStream = 0x7265766572623aull;
-    const float position = float(line) * nodesPerLine;
-    const int node = int(position);
-    const SplineWeights s = cubicSpline(position - float(node));
+    return noiseNode(seed ^ ownStream, std::uint32_t(index), std::uint32_t(sample));
+  }
+  /// The first of the four nodes that a line blends.
+  SONO_HD int firstNode(int line) const { return int(float(line) * nodesPerLine); }
+  /// `nodeOf` gives the four nodes of a sample, from 0 on.
+  template<class NodeOf>
+  SONO_HD Vec2f blend(int line, const NodeOf& nodeOf) const
+  {
+    const SplineWeights s = cubicSpline(float(line) * nodesPerLine - float(firstNode(line)));
     Vec2f sum(0.0f);
     float squares = 0.0f;
     for (int k = 0; k < 4; ++k)
     {
-      sum += s.w[k] * noiseNode(seed ^ ownStream, std::uint32_t(node + k), std::uint32_t(sample));
+      sum += s.w[k] * nodeOf(k);
       squares += s.w[k] * s.w[k];
     }
     return sum / sqrtf(squares);
+  }
+  SONO_HD Vec2f at(int line, int sample) const
+  {
+    return blend(line, [&](int k) { return node(firstNode(line) + k, sample); });
   }
 };
 

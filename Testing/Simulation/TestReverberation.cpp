@@ -1,6 +1,7 @@
 #include "LayeredScene.h"
 
 #include "Echo/FormRf.h"
+#include "Echo/ReverberationSpeckle.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
@@ -185,6 +186,28 @@ TEST(Reverberation, SpeckleHasTheLevelOfItsTissue)
     return 10.0 * std::log10(sum / count);
   };
   EXPECT_NEAR(power(45.0, 75.0), power(8.0, 36.0), 0.4);
+}
+
+TEST(Reverberation, NodesThatLinesShareGiveTheNoiseOfEach)
+{
+  constexpr int lines = 33;
+  constexpr int samples = 4000;
+  for (const float nodesPerLine : { 1e-3f, 0.3f, 1.0f })
+  {
+    const ReverberationNoise noise{ 7, nodesPerLine };
+    const ReverberationNodes nodes(noise, lines, samples);
+    double power = 0.0;
+    for (int l = 0; l < lines; ++l)
+    {
+      for (int s = 0; s < samples; ++s)
+      {
+        const Vec2f shared = nodes.at(l, s);
+        ASSERT_EQ(shared, noise.at(l, s)) << "line " << l << ", sample " << s;
+        power += double(glm::dot(shared, shared));
+      }
+    }
+    EXPECT_NEAR(power / (lines * samples), 1.0, 5.0 / std::sqrt(samples)) << nodesPerLine;
+  }
 }
 
 TEST(Reverberation, OffPathsEndWhereTheyAreReflected)

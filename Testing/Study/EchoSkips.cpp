@@ -75,6 +75,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
   const EchoSources sources{ bench.scene.get(), skips.dark ? &traced : &lit, nullptr };
   const EchoSetup setup(sources, bench.lines, bench.echo);
   RfLines out = setup.emptyRf();
+  const ReverberationNodes nodes = setup.finisher.reverberationNodes();
   const int group = skips.madeTwice ? 8 : 1;
   for (int first = 0; first < out.lineCount; first += group)
   {
@@ -109,7 +110,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
     }
     for (int l = first; l < last; ++l)
     {
-      setup.finisher.finish(l, sums[std::size_t(l - first)], nullptr,
+      setup.finisher.finish(l, sums[std::size_t(l - first)], nullptr, nodes,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
   }
