@@ -13,6 +13,11 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr float darkIntensity = 1e-8f; // -160 dB
 
+bool isWorthItsNoise(float level)
+{
+  return level > faintestReverberation;
+}
+
 } // namespace
 
 LineFinisher::LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced,
@@ -120,7 +125,7 @@ bool LineFinisher::hasPathEchoes(int line) const
     return false;
   }
   const auto bins = traced_->reverberation.begin() + std::ptrdiff_t(line) * traced_->binCount;
-  return std::any_of(bins, bins + traced_->binCount, [](float level) { return level > faintestReverberation; });
+  return std::any_of(bins, bins + traced_->binCount, isWorthItsNoise);
 }
 
 bool LineFinisher::sinks(int line) const
@@ -204,8 +209,7 @@ void LineFinisher::showDepths(const RangeMap& map, const LineSum& sum, float* re
 
 ReverberationNodes LineFinisher::reverberationNodes() const
 {
-  const auto isHeard = [](float level) { return level > faintestReverberation; };
-  if (!traced_ || std::none_of(traced_->reverberation.begin(), traced_->reverberation.end(), isHeard))
+  if (!traced_ || std::none_of(traced_->reverberation.begin(), traced_->reverberation.end(), isWorthItsNoise))
   {
     return {};
   }
@@ -219,7 +223,7 @@ void LineFinisher::addReverberation(int line, const ReverberationNodes& nodes, f
   for (int s = 0; s < int(carrierRe_.size()); ++s)
   {
     const float level = levelAtRange(bins, traced_->binCount, binsPerSample, s);
-    if (level > faintestReverberation)
+    if (isWorthItsNoise(level))
     {
       const Vec2f noise = level * speckle_.rms[std::size_t(s)] * nodes.at(line, s);
       re[s] += noise.x;

@@ -152,10 +152,10 @@ std::vector<BoundaryDrift> boundaryDrifts(const Scene& scene, const std::vector<
       places.push_back(std::move(found));
     }
   }
+  tracing.reverberation = false; // what lies around an echo has a drift of its own: see `measure time`
   for (const int paths : pathsPerLine)
   {
     tracing.pathsPerLine = paths;
-    tracing.reverberation = false; // what lies around an echo has a drift of its own: see `measure time`
     const TracedLines traced = trace(scene, lines, tracing);
     const RfLines rf = formRf(scene, lines, traced, echo);
     const std::vector<float> envelope = rf.envelope();

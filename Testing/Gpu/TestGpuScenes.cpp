@@ -113,11 +113,11 @@ void expectClose(const Values& gpu, const Values& cpu, double most, const std::s
   ASSERT_EQ(gpu.size(), cpu.size()) << what;
   const auto loudest = [](const Values& values) {
     return std::accumulate(values.begin(), values.end(), 0.0,
-                           [](double most, auto value) { return std::max(most, double(std::abs(value))); });
+                           [](double so, auto value) { return std::max(so, double(std::abs(value))); });
   };
   if (loudest(cpu) < nothing)
   {
-    EXPECT_LT(loudest(gpu), nothing) << what;
+    EXPECT_LE(loudest(gpu), 2.0 * loudest(cpu)) << what;
     return;
   }
   const double apart = relativeRms(gpu, cpu);
