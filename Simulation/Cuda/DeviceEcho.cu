@@ -192,6 +192,8 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
                              downshift_.value_or(Downshift{}),
                              sinks ? turns_.data() : nullptr,
                              carrier_.data(),
+                             { float(std::cos(0.5 * carrierRadPerSample_)),
+                               float(-std::sin(0.5 * carrierRadPerSample_)) },
                              pulse_.data(),
                              half_,
                              sumCount_,

@@ -23,6 +23,7 @@ struct FinishLaunch
   Downshift downshift;
   const float* turns; // lines x rangeCount, of the downshift's phase; null: the frequency stays
   const float2* carrier;
+  float2 halfTurn;    // of the carrier from a sample to halfway behind it
   const float* pulse; // re, then im where it is complex
   int half;
   int sumCount;   // samples by depth
@@ -172,11 +173,13 @@ __device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeStep
 {
   float2 v{ 0.0f, 0.0f };
   const float2 c = launch.carrier[s];
+  const float2 t = launch.halfTurn;
+  const float2 middle{ c.x * t.x - c.y * t.y, c.x * t.y + c.y * t.x };
   for (int d = step.first; d < min(step.end, launch.sumCount); ++d)
   {
     const float2 sum = summedAt(launch, line, d);
     const float share = step.shareOf(d);
-    const ShownSample shown = shownSample(sum.x, sum.y, share * launch.radPerSample, c.x, c.y);
+    const ShownSample shown = shownSample(sum.x, sum.y, (share - 0.5f) * launch.radPerSample, middle.x, middle.y);
     const float part = near ? 1.0f - share : share;
     v.x += part * shown.re;
     v.y += part * shown.im;

@@ -184,10 +184,11 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       }
       setup.surfaces->add(beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), intensities, surfaces);
     }
+    LineFinisher::Room room = setup.finisher.room();
     for (int l = first; l < last; ++l)
     {
       const std::size_t at = std::size_t(l - first);
-      setup.finisher.finish(l, sums[at], setup.surfaces ? &surfaces[at] : nullptr, nodes,
+      setup.finisher.finish(l, sums[at], setup.surfaces ? &surfaces[at] : nullptr, nodes, room,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
   };

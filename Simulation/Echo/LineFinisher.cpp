@@ -27,26 +27,15 @@ LineFinisher::LineFinisher(const EchoSettings& settings, InterfaceModel model, c
   , sampleMm_(settings.sampleMm())
   , radPerMm_(4.0 * pi * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs)
   , pulse_(settings)
+  , rangeCount_(samples_ + pulse_.half())
+  , sumCount_(std::size_t(rangeCount_))
+  , carrier_(radPerMm_ * sampleMm_, std::size_t(rangeCount_))
+  , binsPerSample_(traced ? sampleMm_ / traced->binMm : 0.0)
   , speckle_(std::move(speckle))
 {
-  for (int s = 0; s < samples_ + pulse_.half(); ++s)
-  {
-    const double phase = radPerMm_ * s * sampleMm_;
-    carrierRe_.push_back(float(std::cos(phase)));
-    carrierIm_.push_back(float(-std::sin(phase)));
-  }
-  sumCount_ = carrierRe_.size();
   if (model == InterfaceModel::Acoustic)
   {
     sumCount_ = std::size_t(std::ceil(double(sumCount_) * deepestPerRange));
-  }
-  for (std::size_t s = 0; traced && s < sumCount_; ++s)
-  {
-    // Linear between the centres of the tracer's bins.
-    const double position = std::clamp(double(s) * sampleMm_ / traced->binMm - 0.5, 0.0, double(traced->binCount - 1));
-    const int bin = std::min(int(position), std::max(0, traced->binCount - 2));
-    bin_.push_back(bin);
-    binShare_.push_back(float(position - bin));
   }
   if (traced && traced->model == InterfaceModel::Acoustic && !traced->attenuationNpPerMHz.empty())
   {
@@ -80,38 +69,6 @@ float LineFinisher::reachMm(int line) const
   return b == 0 ? 0.0f : float(std::min(deepest, b == traced_->binCount ? deepest : (b + 0.5) * traced_->binMm));
 }
 
-void LineFinisher::applyIntensity(int line, LineSum& sum) const
-{
-  const float* bins = traced_->intensity.data() + std::size_t(line) * std::size_t(traced_->binCount);
-  const int step = traced_->binCount > 1 ? 1 : 0;
-  for (std::size_t s = 0; s < bin_.size(); ++s)
-  {
-    const float* bin = bins + bin_[s];
-    const float intensity = bin[0] + (bin[step] - bin[0]) * binShare_[s];
-    sum.iq[2 * s] *= intensity;
-    sum.iq[2 * s + 1] *= intensity;
-  }
-}
-
-/// As weak as a pulse is that has been attenuated like it; the little that its frequency differs from that of what is
-/// heard directly does not show in the envelope.
-void LineFinisher::sinkReverberation(int line, float* re, float* im) const
-{
-  if (!downshift_ || traced_->reverberationNpPerMHz.empty())
-  {
-    return;
-  }
-  const float* bins = traced_->reverberationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
-  const float binsPerSample = float(sampleMm_ / traced_->binMm);
-  for (int s = 0; s < int(carrierRe_.size()); ++s)
-  {
-    const int bin = std::min(int(float(s) * binsPerSample), traced_->binCount - 1);
-    const float gain = downshiftGain(*downshift_, shiftingExponent(*downshift_, bins[bin]));
-    re[s] *= gain;
-    im[s] *= gain;
-  }
-}
-
 /// Whether paths have left boundary echoes or reverberation: where nothing reverberates, nothing is spent on it.
 bool LineFinisher::hasPathEchoes(int line) const
 {
@@ -120,6 +77,11 @@ bool LineFinisher::hasPathEchoes(int line) const
   {
     return true;
   }
+  return reverberates(line);
+}
+
+bool LineFinisher::reverberates(int line) const
+{
   if (traced_->reverberation.empty())
   {
     return false;
@@ -148,65 +110,6 @@ RangeMap LineFinisher::rangeMap(int line) const
            float(1.0 / traced_->binMm) };
 }
 
-/// B at each sample of range, as far as it lowers the frequency.
-std::vector<float> LineFinisher::exponents(int line) const
-{
-  const float* bins = traced_->attenuationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
-  const int step = traced_->binCount > 1 ? 1 : 0;
-  const RangeMap map = rangeMap(line);
-  std::vector<float> result(carrierRe_.size());
-  for (std::size_t s = 0; s < result.size(); ++s)
-  {
-    const std::size_t d = std::size_t(depthSample(map, float(sampleMm_), int(s), int(sumCount_)));
-    const float* bin = bins + bin_[d];
-    result[s] = shiftingExponent(*downshift_, bin[0] + (bin[step] - bin[0]) * binShare_[d]);
-  }
-  return result;
-}
-
-/// In baseband the phases no longer depend on the sample: the pulse is its envelope.
-void LineFinisher::demodulate(const LineSum& sum, float* re, float* im) const
-{
-  for (std::size_t s = 0; s < carrierRe_.size(); ++s)
-  {
-    const float a = sum.iq[2 * s];
-    const float b = sum.iq[2 * s + 1];
-    re[s] += a * carrierRe_[s] - b * carrierIm_[s];
-    im[s] += a * carrierIm_[s] + b * carrierRe_[s];
-  }
-}
-
-/// Where range is time, what lies between the depths of two samples of range goes to both, with the phase of where it
-/// is shown.
-void LineFinisher::showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const
-{
-  const float sampleMm = float(sampleMm_);
-  const float radPerSample = float(radPerMm_ * sampleMm_);
-  const int count = int(carrierRe_.size());
-  float from = depthInSamples(map, sampleMm, 0);
-  for (int s = 0; s < count; ++s)
-  {
-    const float to = depthInSamples(map, sampleMm, s + 1);
-    const RangeStep step = stepBetween(from, to);
-    from = to;
-    const int last = std::min(step.end, int(sumCount_));
-    for (int d = step.first; d < last; ++d)
-    {
-      const float share = step.shareOf(d);
-      const ShownSample shown =
-        shownSample(sum.iq[2 * std::size_t(d)], sum.iq[2 * std::size_t(d) + 1], share * radPerSample,
-                    carrierRe_[std::size_t(s)], carrierIm_[std::size_t(s)]);
-      re[s] += (1.0f - share) * shown.re;
-      im[s] += (1.0f - share) * shown.im;
-      if (s + 1 < count)
-      {
-        re[s + 1] += share * shown.re;
-        im[s + 1] += share * shown.im;
-      }
-    }
-  }
-}
-
 ReverberationNodes LineFinisher::reverberationNodes() const
 {
   if (!traced_ || std::none_of(traced_->reverberation.begin(), traced_->reverberation.end(), isWorthItsNoise))
@@ -216,26 +119,10 @@ ReverberationNodes LineFinisher::reverberationNodes() const
   return ReverberationNodes(speckle_.noise, traced_->lineCount, rangeCount());
 }
 
-void LineFinisher::addReverberation(int line, const ReverberationNodes& nodes, float* re, float* im) const
-{
-  const float* bins = traced_->reverberation.data() + std::size_t(line) * std::size_t(traced_->binCount);
-  const float binsPerSample = float(sampleMm_ / traced_->binMm);
-  for (int s = 0; s < int(carrierRe_.size()); ++s)
-  {
-    const float level = levelAtRange(bins, traced_->binCount, binsPerSample, s);
-    if (isWorthItsNoise(level))
-    {
-      const Vec2f noise = level * speckle_.rms[std::size_t(s)] * nodes.at(line, s);
-      re[s] += noise.x;
-      im[s] += noise.y;
-    }
-  }
-}
-
 /// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
 LineSum LineFinisher::boundaryEchoes(int line) const
 {
-  LineSum sum{ std::vector<float>(2 * carrierRe_.size(), 0.0f), float(sampleMm_), radPerMm_ };
+  LineSum sum{ std::vector<float>(2 * std::size_t(rangeCount_), 0.0f), float(sampleMm_), radPerMm_ };
   const std::complex<float>* echo = traced_->boundaryEcho.data() + std::size_t(line) * std::size_t(traced_->echoCount);
   for (int e = 0; e < traced_->echoCount; ++e)
   {
@@ -245,12 +132,21 @@ LineSum LineFinisher::boundaryEchoes(int line) const
     }
     const std::complex<float> seen = boundaryLevel_.empty() ? echo[e] : echo[e] * boundaryLevel_[std::size_t(e)];
     const double position = e * traced_->echoSampleMm / sampleMm_;
-    const int s = int(std::floor(position + 1e-6)); // on a common grid, exactly the sample
-    const double fraction = std::max(0.0, position - s);
+    const int s = int(std::floor(position + 1e-6));
+    const double fraction = position - s;
+    if (fraction < 1e-6) // on a common grid, exactly the sample
+    {
+      if (s < sum.sampleCount())
+      {
+        sum.iq[2 * std::size_t(s)] += seen.real();
+        sum.iq[2 * std::size_t(s) + 1] += seen.imag();
+      }
+      continue;
+    }
     for (int i = 0; i < 2; ++i)
     {
       const double share = i == 0 ? 1.0 - fraction : fraction;
-      if (share > 0.0 && s + i < sum.sampleCount())
+      if (s + i < sum.sampleCount())
       {
         const double phase = radPerMm_ * sampleMm_ * (fraction - i);
         const std::complex<float> v = seen * std::complex<float>(std::polar(share, -phase));
@@ -272,74 +168,107 @@ SurfaceIntensity LineFinisher::intensity(int line) const
            float(1.0 / traced_->binMm) };
 }
 
-void LineFinisher::finish(int line, LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
-                          std::complex<float>* iq) const
+LineFinisher::Room LineFinisher::room() const
 {
+  Room room;
+  for (std::vector<float>* values : { &room.tableByDepth, &room.depthRe, &room.depthIm })
+  {
+    *values = sampleRoom(sumCount_);
+  }
+  for (std::vector<float>* values : { &room.offset, &room.exponent, &room.table, &room.lateRe, &room.lateIm,
+                                      &room.turnRe, &room.turnIm, &room.outRe, &room.outIm })
+  {
+    *values = sampleRoom(std::size_t(rangeCount_) + 1);
+  }
+  for (std::vector<float>* values : { &room.re, &room.im }) // nothing lies above the first sample
+  {
+    *values = sampleRoom(std::size_t(pulse_.half() + rangeCount_));
+  }
+  return room;
+}
+
+/// What paths have left, which of Acoustic have been reflected, and attenuated by ways of their own. What reverberates
+/// is as weak as a pulse is that has been attenuated like it; the little that its frequency differs from that of what
+/// is heard directly does not show in the envelope.
+void LineFinisher::addLate(int line, const ReverberationNodes& nodes, Room& room) const
+{
+  const SamplePair late{ room.lateRe.data(), room.lateIm.data() };
+  std::fill_n(late.re, rangeCount_, 0.0f);
+  std::fill_n(late.im, rangeCount_, 0.0f);
+  if (traced_->echoCount > 0)
+  {
+    addDemodulated(boundaryEchoes(line).iq.data(), carrier_, rangeCount_, late);
+  }
+  const std::size_t firstBin = std::size_t(line) * std::size_t(traced_->binCount);
+  float* table = room.table.data();
+  if (reverberates(line))
+  {
+    linearAtSamples(traced_->reverberation.data() + firstBin, traced_->binCount, binsPerSample_, rangeCount_, table);
+    nodes.add(line, table, speckle_.rms.data(), rangeCount_, late);
+  }
+  if (downshift_ && !traced_->reverberation.empty() && !traced_->reverberationNpPerMHz.empty())
+  {
+    binAtSamples(traced_->reverberationNpPerMHz.data() + firstBin, traced_->binCount, binsPerSample_, rangeCount_,
+                 table);
+    applySinkGain(*downshift_, table, rangeCount_, late);
+  }
+}
+
+void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
+                          Room& room, std::complex<float>* iq) const
+{
+  const std::size_t firstBin = traced_ ? std::size_t(line) * std::size_t(traced_->binCount) : 0;
+  const int depthCount = int(sumCount_);
+  const float* intensity = nullptr;
   if (traced_)
   {
-    applyIntensity(line, sum);
+    linearAtSamples(traced_->intensity.data() + firstBin, traced_->binCount, binsPerSample_, depthCount,
+                    room.tableByDepth.data());
+    intensity = room.tableByDepth.data();
   }
-  if (surfaces)
-  {
-    std::transform(sum.iq.begin(), sum.iq.end(), surfaces->iq.begin(), sum.iq.begin(), std::plus<float>());
-  }
-  const std::size_t half = std::size_t(pulse_.half()); // nothing lies above the first sample
-  std::vector<float> re(half + carrierRe_.size(), 0.0f);
-  std::vector<float> im(half + carrierRe_.size(), 0.0f);
+  const SamplePair byDepth{ room.depthRe.data(), room.depthIm.data() };
+  scaleAndAdd(sum.iq.data(), intensity, surfaces ? surfaces->iq.data() : nullptr, depthCount, byDepth);
+  const int half = pulse_.half();
+  const SamplePair heard{ room.re.data() + half, room.im.data() + half };
   const RangeMap map = rangeMap(line);
   if (map.offsetMm)
   {
-    showDepths(map, sum, re.data() + half, im.data() + half);
+    offsetsAtSamples(map, float(sampleMm_), rangeCount_ + 1, room.offset.data());
+    showDepths(byDepth, depthCount, room.offset.data(), carrier_, rangeCount_, heard, room.far);
   }
   else
   {
-    demodulate(sum, re.data() + half, im.data() + half);
+    demodulate(byDepth, carrier_, rangeCount_, heard);
   }
-  // Of Acoustic these have been reflected, and attenuated by ways of their own.
-  const bool isLate = traced_ && hasPathEchoes(line);
-  std::vector<float> lateRe(isLate ? carrierRe_.size() : 0, 0.0f);
-  std::vector<float> lateIm(lateRe.size(), 0.0f);
-  if (isLate && traced_->echoCount > 0)
+  const bool isSinking = sinks(line);
+  if (isSinking)
   {
-    demodulate(boundaryEchoes(line), lateRe.data(), lateIm.data());
+    linearAtSamples(traced_->attenuationNpPerMHz.data() + firstBin, traced_->binCount, binsPerSample_, depthCount,
+                    room.tableByDepth.data());
+    exponentsAtSamples(*downshift_, room.tableByDepth.data(), depthCount, map.offsetMm ? room.offset.data() : nullptr,
+                       rangeCount_, room.exponent.data());
+    applySinkGain(*downshift_, room.exponent.data(), rangeCount_, heard);
   }
-  if (isLate && !traced_->reverberation.empty())
+  if (traced_ && hasPathEchoes(line))
   {
-    addReverberation(line, nodes, lateRe.data(), lateIm.data());
-    sinkReverberation(line, lateRe.data(), lateIm.data());
+    addLate(line, nodes, room);
+    std::transform(room.lateRe.begin(), room.lateRe.begin() + rangeCount_, heard.re, heard.re, std::plus<float>());
+    std::transform(room.lateIm.begin(), room.lateIm.begin() + rangeCount_, heard.im, heard.im, std::plus<float>());
   }
-  if (!sinks(line))
+  const SamplePair turns{ room.turnRe.data(), room.turnIm.data() };
+  if (isSinking)
   {
-    std::transform(lateRe.begin(), lateRe.end(), re.begin() + std::ptrdiff_t(half), re.begin() + std::ptrdiff_t(half),
-                   std::plus<float>());
-    std::transform(lateIm.begin(), lateIm.end(), im.begin() + std::ptrdiff_t(half), im.begin() + std::ptrdiff_t(half),
-                   std::plus<float>());
-    pulse_.convolve(re.data(), im.data(), samples_, iq);
-    return;
+    downshiftRotations(*downshift_, room.exponent.data(), rangeCount_, turns);
+    rotate(turns.re, turns.im, rangeCount_, heard);
   }
-  const std::vector<float> exponent = exponents(line);
-  std::vector<DownshiftAt> turned(exponent.size());
-  double turns = 0.0;
-  for (std::size_t s = 0; s < exponent.size(); ++s)
+  pulse_.convolve(room.re.data(), room.im.data(), samples_, { room.outRe.data(), room.outIm.data() });
+  if (isSinking)
   {
-    turned[s] = downshiftRotation(float(turns - std::floor(turns + 0.5)));
-    const float mean = s + 1 < exponent.size() ? 0.5f * (exponent[s] + exponent[s + 1]) : exponent[s];
-    turns += double(downshiftTurns(*downshift_, mean));
+    rotateBack(room.outRe.data(), room.outIm.data(), turns.re, turns.im, samples_, iq);
   }
-  for (std::size_t s = 0; s < exponent.size(); ++s)
+  else
   {
-    const float gain = downshiftGain(*downshift_, exponent[s]);
-    const float a = gain * re[half + s] + (isLate ? lateRe[s] : 0.0f);
-    const float b = gain * im[half + s] + (isLate ? lateIm[s] : 0.0f);
-    re[half + s] = a * turned[s].re - b * turned[s].im;
-    im[half + s] = a * turned[s].im + b * turned[s].re;
-  }
-  pulse_.convolve(re.data(), im.data(), samples_, iq);
-  for (std::size_t s = 0; s < std::size_t(samples_); ++s)
-  {
-    const float a = iq[s].real();
-    const float b = iq[s].imag();
-    iq[s] = { a * turned[s].re + b * turned[s].im, b * turned[s].re - a * turned[s].im };
+    interleave(room.outRe.data(), room.outIm.data(), samples_, iq);
   }
 }
 

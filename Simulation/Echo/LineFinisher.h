@@ -5,7 +5,7 @@
 #include "Echo/FormRf.h"
 #include "Echo/Pulse.h"
 #include "Echo/ReverberationSpeckle.h"
-#include "Kernel/Downshift.h"
+#include "Echo/SampleLoops.h"
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/TimeOfFlight.h"
 
@@ -28,8 +28,8 @@ public:
   LineFinisher(const EchoSettings& settings, InterfaceModel model, const TracedLines* traced, const FieldLevel* level,
                ReverberationSpeckle speckle);
 
-  int sumCount() const { return int(sumCount_); }           ///< samples by depth
-  int rangeCount() const { return int(carrierRe_.size()); } ///< samples by range
+  int sumCount() const { return int(sumCount_); } ///< samples by depth
+  int rangeCount() const { return rangeCount_; }  ///< samples by range
   double radPerMm() const { return radPerMm_; }
   const PulseKernel& pulse() const { return pulse_; }
   LineSum emptySum() const;
@@ -42,21 +42,24 @@ public:
   const ReverberationSpeckle& reverberation() const { return speckle_; }
   /// What the lines share of its noise: nothing where none reverberates.
   ReverberationNodes reverberationNodes() const;
-  /// Writes the settings' sampleCount() samples; the sum is used up. `surfaces`, which may be null, carries its
-  /// intensity already.
-  void finish(int line, LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
+  /// Room for finish(), to be used again.
+  struct Room
+  {
+    std::vector<float> tableByDepth, depthRe, depthIm;
+    std::vector<float> offset, exponent, table, re, im, lateRe, lateIm, turnRe, turnIm, far; ///< by range
+    std::vector<float> outRe, outIm;
+  };
+  Room room() const;
+  /// Writes the settings' sampleCount() samples. `surfaces`, which may be null, carries its intensity already.
+  void finish(int line, const LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes, Room& room,
               std::complex<float>* iq) const;
 
 private:
-  void applyIntensity(int line, LineSum& sum) const;
   RangeMap rangeMap(int line) const;
-  void demodulate(const LineSum& sum, float* re, float* im) const;
-  void showDepths(const RangeMap& map, const LineSum& sum, float* re, float* im) const;
-  void addReverberation(int line, const ReverberationNodes& nodes, float* re, float* im) const;
-  void sinkReverberation(int line, float* re, float* im) const;
+  void addLate(int line, const ReverberationNodes& nodes, Room& room) const;
   bool hasPathEchoes(int line) const;
+  bool reverberates(int line) const;
   bool sinks(int line) const;
-  std::vector<float> exponents(int line) const;
 
   const TracedLines* traced_;
   int samples_;
@@ -64,11 +67,10 @@ private:
   double radPerMm_;
   PulseKernel pulse_;
   std::vector<float> boundaryLevel_; // at each sample of the traced echoes; empty: 1
+  int rangeCount_;
   std::size_t sumCount_;
-  std::vector<float> carrierRe_; // of the demodulation, for each sample of range
-  std::vector<float> carrierIm_;
-  std::vector<int> bin_; // of the traced intensity before each sample of depth, and the share of the one behind it
-  std::vector<float> binShare_;
+  Carrier carrier_;      // of the demodulation, for each sample of range
+  double binsPerSample_; // of the traced lines
   ReverberationSpeckle speckle_;
   std::optional<Downshift> downshift_; // nothing where the frequency stays
 };

@@ -130,29 +130,22 @@ PulseKernel::PulseKernel(const EchoSettings& settings)
   }
 }
 
-void PulseKernel::convolve(const float* re, const float* im, int count, std::complex<float>* out) const
+void PulseKernel::convolve(const float* re, const float* im, int count, SamplePair out) const
 {
   const int taps = int(re_.size());
-  const std::size_t samples = std::size_t(count);
-  std::vector<float> outRe(samples);
-  std::vector<float> outIm(samples);
-  weightedSums(re, re_.data(), taps, count, outRe.data());
-  weightedSums(im, re_.data(), taps, count, outIm.data());
+  weightedSums(re, re_.data(), taps, count, out.re);
+  weightedSums(im, re_.data(), taps, count, out.im);
   if (!im_.empty())
   {
-    std::vector<float> crossRe(samples);
-    std::vector<float> crossIm(samples);
+    std::vector<float> crossRe(std::size_t(count), 0.0f);
+    std::vector<float> crossIm(std::size_t(count), 0.0f);
     weightedSums(im, im_.data(), taps, count, crossRe.data());
     weightedSums(re, im_.data(), taps, count, crossIm.data());
-    for (std::size_t s = 0; s < samples; ++s)
+    for (std::size_t s = 0; s < std::size_t(count); ++s)
     {
-      outRe[s] -= crossRe[s];
-      outIm[s] += crossIm[s];
+      out.re[s] -= crossRe[s];
+      out.im[s] += crossIm[s];
     }
-  }
-  for (std::size_t s = 0; s < samples; ++s)
-  {
-    out[s] = { outRe[s], outIm[s] };
   }
 }
 

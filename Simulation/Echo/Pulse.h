@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Echo/SampleLoops.h"
 #include "Kernel/Downshift.h"
 
-#include <complex>
 #include <optional>
 #include <vector>
 
@@ -36,7 +36,7 @@ public:
   const std::vector<float>& im() const { return im_; }
   /// out[s] = sum over n in [-half, half] of envelope(n) in[s - n] for s in [0, count); in[s - n] is given as re and
   /// im at [s - n + half], count + 2 half values each.
-  void convolve(const float* re, const float* im, int count, std::complex<float>* out) const;
+  void convolve(const float* re, const float* im, int count, SamplePair out) const;
 
 private:
   std::vector<float> re_; // envelope(half), ..., envelope(-half)

@@ -66,4 +66,12 @@ ReverberationNodes::ReverberationNodes(const ReverberationNoise& noise, int line
   });
 }
 
+void ReverberationNodes::add(int line, const float* level, const float* rms, int count, SamplePair out) const
+{
+  const std::vector<Vec2f>* rows = rows_.data() + noise_.firstNode(line);
+  const SplineWeights weights = noise_.weights(line);
+  const Vec2f* const nodes[4] = { rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data() };
+  addSpeckle(nodes, weights.w, level, rms, count, out);
+}
+
 } // namespace sono

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Echo/BeamModel.h"
+#include "Echo/SampleLoops.h"
 #include "Kernel/ReverberationNoise.h"
 
 #include <vector>
@@ -25,12 +26,8 @@ public:
   ReverberationNodes() = default;
   ReverberationNodes(const ReverberationNoise& noise, int lines, int samples);
 
-  /// As ReverberationNoise::at.
-  Vec2f at(int line, int sample) const
-  {
-    const std::vector<Vec2f>* rows = rows_.data() + noise_.firstNode(line);
-    return noise_.blend(line, [&](int k) { return rows[k][std::size_t(sample)]; });
-  }
+  /// Adds ReverberationNoise::at, times level and rms, to `count` samples of a line where the level is worth it.
+  void add(int line, const float* level, const float* rms, int count, SamplePair out) const;
 
 private:
   ReverberationNoise noise_;

@@ -24,23 +24,26 @@ struct ReverberationNoise
   }
   /// The first of the four nodes that a line blends.
   SONO_HD int firstNode(int line) const { return int(float(line) * nodesPerLine); }
-  /// `nodeOf` gives the four nodes of a sample, from 0 on.
-  template<class NodeOf>
-  SONO_HD Vec2f blend(int line, const NodeOf& nodeOf) const
+  /// Of the four nodes that a line blends; their squares add up to 1.
+  SONO_HD SplineWeights weights(int line) const
   {
-    const SplineWeights s = cubicSpline(float(line) * nodesPerLine - float(firstNode(line)));
-    Vec2f sum(0.0f);
-    float squares = 0.0f;
-    for (int k = 0; k < 4; ++k)
+    SplineWeights s = cubicSpline(float(line) * nodesPerLine - float(firstNode(line)));
+    const float length = sqrtf(s.w[0] * s.w[0] + s.w[1] * s.w[1] + s.w[2] * s.w[2] + s.w[3] * s.w[3]);
+    for (float& w : s.w)
     {
-      sum += s.w[k] * nodeOf(k);
-      squares += s.w[k] * s.w[k];
+      w /= length;
     }
-    return sum / sqrtf(squares);
+    return s;
   }
   SONO_HD Vec2f at(int line, int sample) const
   {
-    return blend(line, [&](int k) { return node(firstNode(line) + k, sample); });
+    const SplineWeights s = weights(line);
+    Vec2f sum(0.0f);
+    for (int k = 0; k < 4; ++k)
+    {
+      sum += s.w[k] * node(firstNode(line) + k, sample);
+    }
+    return sum;
   }
 };
 

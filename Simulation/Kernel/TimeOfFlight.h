@@ -209,7 +209,8 @@ SONO_HD inline float depthInSamples(const RangeMap& map, float sampleMm, int s)
   return map.depthOf(float(s) * sampleMm) / sampleMm;
 }
 
-/// A demodulated sample of depth where it is shown: `rad` behind a sample of range whose carrier this is.
+/// A demodulated sample of depth where it is shown: `rad` behind a place with this carrier, at most 1.6 to either side,
+/// as a turn between two samples is from its middle.
 struct ShownSample
 {
   float re;
@@ -218,9 +219,8 @@ struct ShownSample
 
 SONO_HD inline ShownSample shownSample(float a, float b, float rad, float carrierRe, float carrierIm)
 {
-  float sine;
-  float cosine;
-  sinCos(rad, sine, cosine);
+  const float cosine = cosSmall(rad);
+  const float sine = sinSmall(rad);
   const float re = carrierRe * cosine + carrierIm * sine;
   const float im = carrierIm * cosine - carrierRe * sine;
   return { a * re - b * im, a * im + b * re };

@@ -196,14 +196,20 @@ TEST(Reverberation, NodesThatLinesShareGiveTheNoiseOfEach)
   {
     const ReverberationNoise noise{ 7, nodesPerLine };
     const ReverberationNodes nodes(noise, lines, samples);
+    const std::vector<float> level(samples, 0.5f);
+    const std::vector<float> rms(samples, 2.0f);
     double power = 0.0;
     for (int l = 0; l < lines; ++l)
     {
-      for (int s = 0; s < samples; ++s)
+      std::vector<float> re(samples, 3.0f);
+      std::vector<float> im(samples, -1.0f);
+      nodes.add(l, level.data(), rms.data(), samples, { re.data(), im.data() });
+      for (std::size_t s = 0; s < samples; ++s)
       {
-        const Vec2f shared = nodes.at(l, s);
-        ASSERT_EQ(shared, noise.at(l, s)) << "line " << l << ", sample " << s;
-        power += double(glm::dot(shared, shared));
+        const Vec2f own = noise.at(l, int(s));
+        ASSERT_NEAR(re[s], 3.0f + own.x, 2e-6f) << "line " << l << ", sample " << s;
+        ASSERT_NEAR(im[s], -1.0f + own.y, 2e-6f) << "line " << l << ", sample " << s;
+        power += double(glm::dot(own, own));
       }
     }
     EXPECT_NEAR(power / (lines * samples), 1.0, 5.0 / std::sqrt(samples)) << nodesPerLine;

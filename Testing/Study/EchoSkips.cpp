@@ -76,6 +76,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
   const EchoSetup setup(sources, bench.lines, bench.echo);
   RfLines out = setup.emptyRf();
   const ReverberationNodes nodes = setup.finisher.reverberationNodes();
+  LineFinisher::Room room = setup.finisher.room();
   const int group = skips.madeTwice ? 8 : 1;
   for (int first = 0; first < out.lineCount; first += group)
   {
@@ -110,7 +111,7 @@ RfLines formRfBySkipping(const BenchScene& bench, const TracedLines& traced, con
     }
     for (int l = first; l < last; ++l)
     {
-      setup.finisher.finish(l, sums[std::size_t(l - first)], nullptr, nodes,
+      setup.finisher.finish(l, sums[std::size_t(l - first)], nullptr, nodes, room,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
   }
