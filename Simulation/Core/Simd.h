@@ -9,3 +9,17 @@
 #else
 #define SONO_SIMD_CLONES
 #endif
+
+namespace sono {
+
+/// Single-precision numbers in the widest vector. A loop over a multiple of so many has no rest to go through one by
+/// one, which would take most of the time of a short one.
+constexpr int vectorWidth = 16;
+
+/// The next such multiple.
+constexpr int inWholeVectors(int count)
+{
+  return (count + vectorWidth - 1) / vectorWidth * vectorWidth;
+}
+
+} // namespace sono

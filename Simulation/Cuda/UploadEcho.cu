@@ -187,7 +187,7 @@ void DeviceEcho::uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic&
   }
   // A few come together in a sample, with random signs: 32 bits hold 256 of the largest.
   largest *= (job.voxels.detail->empty() ? 1.0f : largestDetailFactor) *
-             makeNestedShare(0.0f, nestedCellMm(density_.coarsest)).scale *
+             nestedShareOf(0.125f, nestedCellMm(density_.coarsest)).scale *
              std::max(1.0f, float(echo.beam.largestWeight));
   nestedScale_ = largest > 0.0f ? 2147483647.0f / (256.0f * largest) : 1.0f;
 }

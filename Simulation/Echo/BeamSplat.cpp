@@ -10,13 +10,13 @@ namespace sono {
 
 namespace {
 
-constexpr int chunk = SplatBatch::most;
+constexpr int chunk = 4 * vectorWidth;
 
 /// What each scatterer of a chunk adds, (re, im) to the sample before it and to the one behind it.
 struct Splats
 {
   std::int32_t sample[chunk];
-  float added[chunk][4];
+  float added[4][chunk];
 };
 
 inline BeamPlace placeOf(const ScattererView& v, int i, const Beam& b, const LineGrid& g)
@@ -29,7 +29,7 @@ inline void split(float a, float position, bool seen, const LineGrid& g, int i, 
   const ScattererSplit s = splitScatterer(a, position, g);
   for (int c = 0; c < 4; ++c)
   {
-    out.added[i][c] = s.added[c];
+    out.added[c][i] = s.added[c];
   }
   out.sample[i] = seen ? std::int32_t(s.sample) : 0;
 }
@@ -193,7 +193,7 @@ SONO_SIMD_CLONES void weighByArray(const ScattererView v, int first, int count, 
     const ScattererSplit s = splitScatterer(weight[i], position[i], g);
     for (int c = 0; c < 4; ++c)
     {
-      out.added[i][c] = s.added[c];
+      out.added[c][i] = s.added[c];
     }
     out.sample[i] = amplitude[i] != 0.0f ? std::int32_t(s.sample) : 0;
   }
@@ -204,28 +204,31 @@ void splatChunk(const ScattererView& scatterers, int first, int count, const Bea
                 LineSum& sum)
 {
   Splats splats;
+  const int weighed = scatterers.isPadded ? inWholeVectors(count) : count;
   switch (beam.kind)
   {
     case BeamKind::Gaussian:
-      weigh(scatterers, first, count, beam, grid, splats);
+      weigh(scatterers, first, weighed, beam, grid, splats);
       break;
     case BeamKind::Aperture:
-      weighByAperture(scatterers, first, count, beam, grid, splats);
+      weighByAperture(scatterers, first, weighed, beam, grid, splats);
       break;
     case BeamKind::Field:
-      weighByField(scatterers, first, count, beam, *beam.field, grid, splats);
+      weighByField(scatterers, first, weighed, beam, *beam.field, grid, splats);
       break;
     case BeamKind::Array:
-      weighByArray(scatterers, first, count, beam, *beam.array, grid, splats);
+      weighByArray(scatterers, first, weighed, beam, *beam.array, grid, splats);
       break;
   }
   for (int i = 0; i < count; ++i)
   {
     float* to = sum.iq.data() + 2 * std::size_t(splats.sample[i]);
+    float sum4[4];
     for (int c = 0; c < 4; ++c) // adjacent: one vector addition
     {
-      to[c] += splats.added[i][c];
+      sum4[c] = to[c] + splats.added[c][i];
     }
+    std::copy_n(sum4, 4, to);
   }
 }
 
@@ -236,47 +239,6 @@ void splat(const ScattererView& scatterers, const Beam& beam, const LineGrid& gr
   for (int first = 0; first < scatterers.count; first += chunk)
   {
     splatChunk(scatterers, first, std::min(chunk, scatterers.count - first), beam, grid, sum);
-  }
-}
-
-SplatBatch::SplatBatch(const Beam& beam, LineSum& sum)
-  : beam_(beam)
-  , gain_(beam.kind == BeamKind::Array ? beam.gain : 1.0f)
-  , grid_(lineGrid(sum))
-  , sum_(&sum)
-{
-  beam_.gain = 1.0f; // it is in the amplitudes that wait
-}
-
-void SplatBatch::add(const ScattererView& scatterers)
-{
-  const float scale = scatterers.scale * gain_;
-  const std::size_t at = std::size_t(count_);
-  const std::size_t count = std::size_t(scatterers.count);
-  std::copy_n(scatterers.x, count, x_.data() + at);
-  std::copy_n(scatterers.y, count, y_.data() + at);
-  std::copy_n(scatterers.z, count, z_.data() + at);
-  std::transform(scatterers.amplitude, scatterers.amplitude + count, amplitude_.data() + at,
-                 [scale](float a) { return scale * a; });
-  count_ += scatterers.count;
-  if (count_ >= most)
-  {
-    addFirst(most);
-  }
-}
-
-void SplatBatch::finish()
-{
-  addFirst(count_);
-}
-
-void SplatBatch::addFirst(int count)
-{
-  splatChunk({ x_.data(), y_.data(), z_.data(), amplitude_.data(), count, 1.0f }, 0, count, beam_, grid_, *sum_);
-  count_ -= count;
-  for (std::array<float, 2 * most>* values : { &x_, &y_, &z_, &amplitude_ })
-  {
-    std::copy_n(values->data() + count, count_, values->data());
   }
 }
 

@@ -3,7 +3,6 @@
 #include "Echo/ScattererView.h"
 #include "Kernel/EchoSplat.h"
 
-#include <array>
 #include <vector>
 
 namespace sono {
@@ -28,28 +27,5 @@ inline LineGrid lineGrid(const LineSum& sum)
 /// Adds the scatterers at depths in [0, last sample). Beyond its last depth a field stays as it is there. `grid` is
 /// that of the sum.
 void splat(const ScattererView& scatterers, const Beam& beam, const LineGrid& grid, LineSum& sum);
-
-/// The same for many bricks of a few scatterers each, which are weighted together: in full vectors. They are added in
-/// their order. The sum must outlive this.
-class SplatBatch
-{
-public:
-  static constexpr int most = 64; ///< scatterers that are given at once
-
-  SplatBatch(const Beam& beam, LineSum& sum);
-  void add(const ScattererView& scatterers);
-  /// Adds those that wait. To be called once, after the last brick.
-  void finish();
-
-private:
-  void addFirst(int count);
-
-  Beam beam_;
-  float gain_;
-  LineGrid grid_;
-  LineSum* sum_;
-  int count_ = 0;
-  std::array<float, 2 * most> x_, y_, z_, amplitude_;
-};
 
 } // namespace sono

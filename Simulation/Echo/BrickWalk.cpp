@@ -25,8 +25,6 @@ struct BeamCulling
   bool isInLayer = false;
   Vec2f besideMm{ 0.0f }; ///< no centre that is seen in the layer is further from the axis, lateral and elevational
   Vec3f perBrick{ 0.0f }; ///< of one brick along a row: 1 / change of depth, lateral and elevational place, 1/mm
-  int rowFirst = 0;       ///< first and last brick of a row that may be seen
-  int rowLast = -1;
 };
 
 float halfExtent(const Vec3f& direction, float edge)
@@ -190,6 +188,8 @@ Vec2f besideAxis(const BeamCulling& s, float fromMm, float toMm)
   return beamCutSigma * reach.share * Vec2f(reach.beam.lateralSigmaMm, reach.beam.elevationalSigmaMm) + brick;
 }
 
+constexpr BrickRow::Span noBricks{ 0, -1 };
+
 /// Narrows [first, last] to the bricks n of a row with |at + n step| <= most, and some more for rounding.
 void narrow(float at, float perStep, float most, float& first, float& last)
 {
@@ -199,8 +199,8 @@ void narrow(float at, float perStep, float most, float& first, float& last)
   last = std::min(last, middle + half);
 }
 
-/// Sets which bricks of a row a beam may see: `start` is the centre of its brick 0.
-void clipRow(const Vec3f& start, int firstBrick, int lastBrick, BeamCulling& s)
+/// Which bricks of a row a beam may see: `start` is the centre of its brick 0.
+BrickRow::Span clipRow(const Vec3f& start, int firstBrick, int lastBrick, const BeamCulling& s)
 {
   float first = float(firstBrick);
   float last = float(lastBrick);
@@ -210,14 +210,66 @@ void clipRow(const Vec3f& start, int firstBrick, int lastBrick, BeamCulling& s)
   narrow(glm::dot(q, b.axis) - middleMm, s.perBrick.x, s.reach.depthMm - middleMm + s.axial, first, last);
   narrow(glm::dot(q, b.lateral), s.perBrick.y, s.besideMm.x, first, last);
   narrow(glm::dot(q, b.elevation), s.perBrick.z, s.besideMm.y, first, last);
-  s.rowFirst = first <= last ? int(std::ceil(first)) : 0;
-  s.rowLast = first <= last ? int(std::floor(last)) : -1;
+  return first <= last ? BrickRow::Span{ int(std::ceil(first)), int(std::floor(last)) } : noBricks;
 }
+
+/// The row that is walked through.
+class WalkedRow : public BrickRow
+{
+public:
+  WalkedRow(const std::vector<BeamCulling>& beams, std::size_t groupSize, float edgeMm)
+    : beams_(beams)
+    , cullingOf_(groupSize, nullptr)
+    , edgeMm_(edgeMm)
+  {
+    spans_.assign(groupSize, noBricks);
+    for (const BeamCulling& s : beams)
+    {
+      cullingOf_[s.index] = &s;
+    }
+  }
+
+  /// From `brick` on, up to the brick `last` along the axis; those at its ends that no beam sees are left out.
+  void place(const Vec3i& brick, int axis, int last)
+  {
+    Vec3i zero = brick;
+    zero[axis] = 0;
+    const Vec3f start = (Vec3f(zero) + 0.5f) * edgeMm_;
+    int from = last + 1;
+    int to = brick[axis] - 1;
+    for (const BeamCulling& s : beams_)
+    {
+      Span& span = spans_[s.index];
+      span = s.isInLayer ? clipRow(start, brick[axis], last, s) : noBricks;
+      from = span.first <= span.last ? std::min(from, span.first) : from;
+      to = span.first <= span.last ? std::max(to, span.last) : to;
+    }
+    for (const BeamCulling& s : beams_)
+    {
+      Span& span = spans_[s.index];
+      span = span.first <= span.last ? Span{ span.first - from, span.last - from } : noBricks;
+    }
+    first_ = zero;
+    first_[axis] = from;
+    axis_ = axis;
+    count_ = std::max(0, to - from + 1);
+  }
+  bool sees(std::size_t beam, int n) const override
+  {
+    const Span& span = spans_[beam];
+    return n >= span.first && n <= span.last && sono::sees(*cullingOf_[beam], (Vec3f(brick(n)) + 0.5f) * edgeMm_);
+  }
+
+private:
+  const std::vector<BeamCulling>& beams_;
+  std::vector<const BeamCulling*> cullingOf_;
+  float edgeMm_;
+};
 
 } // namespace
 
-void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
-                   const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit)
+void forBrickRows(const BrickGrid& grid, const std::vector<BeamReach>& group,
+                  const std::function<void(const BrickRow&)>& visit)
 {
   const float edge = grid.edgeMm;
   std::vector<BeamCulling> beams = makeBeamCulling(group, edge);
@@ -238,7 +290,7 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
     s.perBrick = { perBrick(b.axis), perBrick(b.lateral), perBrick(b.elevation) };
   }
 
-  std::vector<std::size_t> seeing;
+  WalkedRow row(beams, group.size(), edge);
   for (int layer = int(std::floor(low[axis] / edge)); float(layer) * edge < high[axis]; ++layer)
   {
     Vec2f first(1e30f);
@@ -283,39 +335,37 @@ void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
       Vec3i brick;
       brick[axis] = layer;
       brick[u] = j;
-      brick[v] = 0;
-      const Vec3f start = (Vec3f(brick) + 0.5f) * edge;
-      int from = rowLast + 1;
-      int to = rowFirst - 1;
-      for (BeamCulling& s : beams)
+      brick[v] = rowFirst;
+      row.place(brick, v, rowLast);
+      if (row.count() > 0)
       {
-        s.rowLast = s.rowFirst - 1;
-        if (s.isInLayer)
-        {
-          clipRow(start, rowFirst, rowLast, s);
-          from = s.rowFirst <= s.rowLast ? std::min(from, s.rowFirst) : from;
-          to = s.rowFirst <= s.rowLast ? std::max(to, s.rowLast) : to;
-        }
-      }
-      for (int k = from; k <= to; ++k)
-      {
-        brick[v] = k;
-        const Vec3f centre = (Vec3f(brick) + 0.5f) * edge;
-        seeing.clear();
-        for (const BeamCulling& s : beams)
-        {
-          if (k >= s.rowFirst && k <= s.rowLast && sees(s, centre))
-          {
-            seeing.push_back(s.index);
-          }
-        }
-        if (!seeing.empty())
-        {
-          visit(brick, seeing);
-        }
+        visit(row);
       }
     }
   }
+}
+
+void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
+                   const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit)
+{
+  std::vector<std::size_t> seeing;
+  forBrickRows(grid, group, [&](const BrickRow& row) {
+    for (int n = 0; n < row.count(); ++n)
+    {
+      seeing.clear();
+      for (std::size_t beam = 0; beam < group.size(); ++beam)
+      {
+        if (row.sees(beam, n))
+        {
+          seeing.push_back(beam);
+        }
+      }
+      if (!seeing.empty())
+      {
+        visit(row.brick(n), seeing);
+      }
+    }
+  });
 }
 
 } // namespace sono

@@ -32,8 +32,44 @@ struct BrickGrid
   Vec3f highMm{ 0.0f };
 };
 
-/// Calls visit(brick, beams) for every brick that a beam of the group may see, in a fixed order, with the beams that
-/// may see it (indices into the group, ascending). Neighbouring beams make a good group: they share their bricks.
+/// A row of bricks along an axis of the grid, and which of them the beams of a group may see.
+class BrickRow
+{
+public:
+  /// Numbers of bricks in the row, [first, last]; none where last < first.
+  struct Span
+  {
+    int first;
+    int last;
+  };
+
+  virtual ~BrickRow() = default;
+  int count() const { return count_; }
+  Vec3i brick(int n) const
+  {
+    Vec3i brick = first_;
+    brick[axis_] += n;
+    return brick;
+  }
+  int axis() const { return axis_; }
+  /// Those that a beam of the group may see, by its reach along the row alone.
+  const Span& span(std::size_t beam) const { return spans_[beam]; }
+  /// Whether it may see one of them.
+  virtual bool sees(std::size_t beam, int n) const = 0;
+
+protected:
+  Vec3i first_{ 0 };
+  int axis_ = 0;
+  int count_ = 0;
+  std::vector<Span> spans_;
+};
+
+/// Calls visit(row) for rows that hold every brick that a beam of the group may see, in a fixed order.
+void forBrickRows(const BrickGrid& grid, const std::vector<BeamReach>& group,
+                  const std::function<void(const BrickRow&)>& visit);
+
+/// Calls visit(brick, beams) for every brick that a beam of the group may see, in the order of the rows, with the beams
+/// that may see it (indices into the group, ascending). Neighbouring beams make a good group: they share their bricks.
 void forSeenBricks(const BrickGrid& grid, const std::vector<BeamReach>& group,
                    const std::function<void(const Vec3i&, const std::vector<std::size_t>&)>& visit);
 

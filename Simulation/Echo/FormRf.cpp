@@ -1,8 +1,10 @@
 #include "Echo/FormRf.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
+#include "Echo/NestedShares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +15,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
-static_assert(NestedScatterers::cellCount <= SplatBatch::most, "a brick is added to a batch at once");
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
 {
@@ -28,71 +29,59 @@ void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& b
   });
 }
 
-/// Bricks of each level, each line those that it takes.
+/// Bricks of each level, row by row, of each line those that it takes.
 void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
 {
-  struct Taken
-  {
-    std::size_t beam;
-    NestedShare share;
-  };
   const NestedScatterers& nested = *setup.nested;
   const DensityView density = setup.density->view();
-  std::vector<SplatBatch> batches;
-  for (std::size_t i = 0; i < beams.size(); ++i)
-  {
-    batches.emplace_back(beams[i].beam, sums[i]);
-  }
-  NestedScatterers::Buffer buffer;
-  std::vector<Taken> taken;
-  std::vector<BeamReach> reaching;
-  std::vector<Vec2f> halfMm; // of a brick
+  const LineGrid grid = lineGrid(sums.front());
+  NestedScatterers::Row scatterers;
+  std::vector<NestedShares> shares(beams.size());
+  std::vector<int> wanted;
+  std::vector<float> heard;
   for (int level = density.finest; level <= density.coarsest; ++level)
   {
     const ScattererDensity::Range range = setup.density->range(level);
-    reaching = beams;
-    halfMm.clear();
+    std::vector<BeamReach> reaching = beams;
     for (BeamReach& beam : reaching)
     {
-      halfMm.push_back(nestedHalfExtent(beam.beam, level));
       beam.share = isGaussian(beam.beam) ? nestedReach : 1.0f;
       beam.fromMm = range.fromMm;
       beam.depthMm = std::min(beam.depthMm, range.toMm);
       beam.sight = setup.nestedSight.empty() ? nullptr : &setup.nestedSight[std::size_t(level - density.finest)];
     }
-    forSeenBricks(nested.grid(level), reaching, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
-      const Vec3f centre = nestedBrickCentre(brick, level);
-      const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, level + 1);
-      int most = 0;
-      taken.clear();
-      for (const std::size_t i : seeing)
+    forBrickRows(nested.grid(level), reaching, [&](const BrickRow& row) {
+      wanted.assign(std::size_t(row.count()), 0);
+      bool isWanted = false;
+      for (std::size_t i = 0; i < beams.size(); ++i)
       {
-        const Beam& b = beams[i].beam;
-        const Vec3f q = centre - b.origin;
-        const float depthMm = glm::dot(q, b.axis);
-        if (density.takes(level, depthMm, glm::dot(parent - b.origin, b.axis)))
+        shares[i].look(beams[i].beam, i, row, density, level);
+        for (int b = shares[i].first(); b <= shares[i].last(); ++b)
         {
-          if (relativeWeight(b, q, depthMm, halfMm[i]) >= nestedLeastWeight)
-          {
-            taken.push_back({ i, density.share(level, depthMm, relativeWeight(b, q, depthMm)) });
-            most = std::max(most, taken.back().share.count);
-          }
+          wanted[std::size_t(b)] = std::max(wanted[std::size_t(b)], shares[i].count(b));
+          isWanted = true;
         }
       }
-      if (taken.empty())
+      if (!isWanted)
       {
         return;
       }
-      nested.generate(level, brick, most, buffer);
-      for (const Taken& t : taken)
+      nested.generate(level, { row.brick(0), row.axis(), row.count() }, wanted.data(), scatterers);
+      heard.resize(scatterers.amplitude.size() + vectorWidth);
+      for (std::size_t i = 0; i < beams.size(); ++i)
       {
-        batches[t.beam].add(NestedScatterers::seen(buffer, t.share, beams[t.beam].beam.axis));
+        const NestedShares& share = shares[i];
+        if (share.first() <= share.last())
+        {
+          const int from = scatterers.before[std::size_t(share.first())];
+          const int to = scatterers.before[std::size_t(share.last()) + 1];
+          share.hear(scatterers, beams[i].beam.axis, from, to, heard.data());
+          splat({ scatterers.x.data() + from, scatterers.y.data() + from, scatterers.z.data() + from, heard.data(),
+                  to - from, 1.0f, true },
+                beams[i].beam, grid, sums[i]);
+        }
       }
     });
-  }
-  for (SplatBatch& batch : batches)
-  {
-    batch.finish();
   }
 }
 

@@ -18,7 +18,8 @@
 //   density follows the beam's cell;
 //   Amadou2024: TissueScatterers)
 //           \                                  /
-//            bricks that a beam sees: forSeenBricks; with a field, FieldSight culls those that do not matter
+//            bricks that a beam sees: forSeenBricks, forBrickRows; with a field, FieldSight culls those that do not
+//            matter
 //                              |
 //            LineSum: w a exp(-i 2k (r - r_s)) on the RF's samples (splat, BeamSplat.h), w the beam's weight
 //                              |

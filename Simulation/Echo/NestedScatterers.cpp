@@ -10,70 +10,130 @@ namespace sono {
 
 namespace {
 
-constexpr int cells = NestedScatterers::cellCount;
 constexpr std::uint8_t nowhere = 255;           // never a tissue: a scene has at most 255, from 0
 constexpr double npPerDb = 0.11512925464970229; // ln(10) / 20
 
-/// The candidates of a brick by number, with the voxel in which each lies.
-struct Candidates
-{
-  float x[cells], y[cells], z[cells];
-  std::int32_t i[cells], j[cells], k[cells]; // cell, then voxel
-  std::uint32_t hash[cells];
-  float presence[cells], sign[cells];
-};
+using Row = NestedScatterers::Row;
 
-inline void descend(Candidates& c, int n, std::uint32_t child)
+/// nestedBrickHash of each brick.
+SONO_SIMD_CLONES __attribute__((flatten)) void hashBricks(std::uint64_t seed, int level,
+                                                          const NestedScatterers::BrickLine& bricks,
+                                                          std::uint32_t* hash)
 {
-  const NestedCell to = NestedCell{ { c.i[n], c.j[n], c.k[n] }, c.hash[n] }.child(child);
-  c.i[n] = to.cell.x;
-  c.j[n] = to.cell.y;
-  c.k[n] = to.cell.z;
-  c.hash[n] = to.hash;
-}
-
-/// nestedFinestCell and nestedCandidate, level by level for all.
-SONO_SIMD_CLONES void draw(const NestedCell brick, int level, int count, const Vec3f perMm, Candidates& c)
-{
+  const Vec3i first = bricks.first;
+  const Vec3i step(bricks.axis == 0, bricks.axis == 1, bricks.axis == 2);
+  const int up = nestedRootLevel - (level + 2);
+  const int count = inWholeVectors(bricks.count);
   for (int n = 0; n < count; ++n)
   {
-    c.i[n] = brick.cell.x;
-    c.j[n] = brick.cell.y;
-    c.k[n] = brick.cell.z;
-    c.hash[n] = brick.hash;
-    descend(c, n, childOfRank(c.hash[n], std::uint32_t(n & 7)));
-    descend(c, n, childOfRank(c.hash[n], std::uint32_t(n >> 3)));
+    hash[n] =
+      nestedRoot(seed, { (first.x + n * step.x) >> up, (first.y + n * step.y) >> up, (first.z + n * step.z) >> up });
   }
-  for (int l = level; l > 0; --l)
+  for (int l = up - 1; l >= 0; --l)
   {
     for (int n = 0; n < count; ++n)
     {
-      descend(c, n, chosenChild(c.hash[n]));
+      const std::uint32_t x = std::uint32_t(((first.x + n * step.x) >> l) & 1);
+      const std::uint32_t y = std::uint32_t(((first.y + n * step.y) >> l) & 1);
+      const std::uint32_t z = std::uint32_t(((first.z + n * step.z) >> l) & 1);
+      hash[n] = nestedDescend(hash[n], x | (y << 1) | (z << 2));
     }
-  }
-  for (int n = 0; n < count; ++n)
-  {
-    const NestedCandidate candidate = nestedCandidate({ { c.i[n], c.j[n], c.k[n] }, c.hash[n] });
-    c.x[n] = candidate.positionMm.x;
-    c.y[n] = candidate.positionMm.y;
-    c.z[n] = candidate.positionMm.z;
-    c.i[n] = std::int32_t(std::floor(c.x[n] * perMm.x));
-    c.j[n] = std::int32_t(std::floor(c.y[n] * perMm.y));
-    c.k[n] = std::int32_t(std::floor(c.z[n] * perMm.z));
-    c.presence[n] = candidate.presence;
-    c.sign[n] = candidate.sign;
   }
 }
 
-/// B(t) = B_par + anisotropy sin^2 t (Data/docs/physics.md eq. 11.4); the amplitudes are those across the fibres.
-SONO_SIMD_CLONES void seeAlong(const Vec3f axis, const float* fx, const float* fy, const float* fz,
-                               const float* amplitude, int count, float* along)
+inline void descend(std::int32_t& i, std::int32_t& j, std::int32_t& k, std::uint32_t& hash, std::uint32_t child)
 {
+  const NestedCell to = NestedCell{ { i, j, k }, hash }.child(child);
+  i = to.cell.x;
+  j = to.cell.y;
+  k = to.cell.z;
+  hash = to.hash;
+}
+
+/// nestedFinestCell and nestedCandidate, level by level for all, of which brick and number are known.
+SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedScatterers::BrickLine& bricks, int level, int count,
+                                                    const Vec3f& perMm, Row& row, float* sign)
+{
+  std::int32_t* i = row.i.data();
+  std::int32_t* j = row.j.data();
+  std::int32_t* k = row.k.data();
+  std::uint32_t* hash = row.hash.data();
+  const std::int32_t* brick = row.brick.data();
+  const std::int32_t* number = row.number.data();
+  const std::uint32_t* brickHash = row.brickHash.data();
+  const Vec3i first = bricks.first;
+  const Vec3i step(bricks.axis == 0, bricks.axis == 1, bricks.axis == 2);
+#pragma GCC ivdep
   for (int n = 0; n < count; ++n)
   {
-    const float cosine = fx[n] * axis.x + fy[n] * axis.y + fz[n] * axis.z; // times the root of the anisotropy
-    along[n] = amplitude[n] * expNegative(-cosine * cosine);
+    std::int32_t ci = first.x + brick[n] * step.x;
+    std::int32_t cj = first.y + brick[n] * step.y;
+    std::int32_t ck = first.z + brick[n] * step.z;
+    std::uint32_t h = brickHash[brick[n]];
+    descend(ci, cj, ck, h, childOfRank(h, std::uint32_t(number[n] & 7)));
+    descend(ci, cj, ck, h, childOfRank(h, std::uint32_t(number[n] >> 3)));
+    i[n] = ci;
+    j[n] = cj;
+    k[n] = ck;
+    hash[n] = h;
   }
+  for (int l = level; l > 0; --l)
+  {
+#pragma GCC ivdep
+    for (int n = 0; n < count; ++n)
+    {
+      descend(i[n], j[n], k[n], hash[n], chosenChild(hash[n]));
+    }
+  }
+  float* x = row.x.data();
+  float* y = row.y.data();
+  float* z = row.z.data();
+  float* presence = row.presence.data();
+#pragma GCC ivdep
+  for (int n = 0; n < count; ++n)
+  {
+    const NestedCandidate candidate = nestedCandidate({ { i[n], j[n], k[n] }, hash[n] });
+    x[n] = candidate.positionMm.x;
+    y[n] = candidate.positionMm.y;
+    z[n] = candidate.positionMm.z;
+    i[n] = std::int32_t(std::floor(candidate.positionMm.x * perMm.x));
+    j[n] = std::int32_t(std::floor(candidate.positionMm.y * perMm.y));
+    k[n] = std::int32_t(std::floor(candidate.positionMm.z * perMm.z));
+    presence[n] = candidate.presence;
+    sign[n] = candidate.sign;
+  }
+}
+
+/// Numbers the candidates of a row, and makes room for them.
+int layOut(const NestedScatterers::BrickLine& bricks, const int* wanted, Row& row)
+{
+  std::size_t count = 0;
+  for (int b = 0; b < bricks.count; ++b)
+  {
+    count += std::size_t(wanted[b]);
+  }
+  for (std::vector<float>* values : { &row.x, &row.y, &row.z, &row.amplitude, &row.presence })
+  {
+    values->resize(count + vectorWidth);
+  }
+  for (std::vector<std::int32_t>* values : { &row.i, &row.j, &row.k, &row.brick, &row.number })
+  {
+    values->resize(count + vectorWidth);
+  }
+  row.hash.resize(count + vectorWidth);
+  row.brickHash.resize(std::size_t(inWholeVectors(bricks.count)));
+  std::size_t n = 0;
+  for (int b = 0; b < bricks.count; ++b)
+  {
+    for (int number = 0; number < wanted[b]; ++number, ++n)
+    {
+      row.brick[n] = b;
+      row.number[n] = number;
+    }
+  }
+  std::fill_n(row.brick.begin() + std::ptrdiff_t(count), vectorWidth, 0);
+  std::fill_n(row.number.begin() + std::ptrdiff_t(count), vectorWidth, 0);
+  return int(count);
 }
 
 NestedMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitudePerRoot)
@@ -117,67 +177,71 @@ BrickGrid NestedScatterers::grid(int level) const
   return grid;
 }
 
-void NestedScatterers::generate(int level, const Vec3i& brick, int candidates, Buffer& buffer) const
+void NestedScatterers::generate(int level, const BrickLine& bricks, const int* wanted, Row& row) const
 {
   const Vec3i size = scene_.placement().size;
   const std::uint8_t* tissues = scene_.tissueVoxels().data();
-  std::uint8_t tissue[cells];
-  Candidates c;
-  draw({ brick, nestedBrickHash(seed_, brick, level) }, level, candidates, 1.0f / Vec3f(scene_.placement().spacingMm),
-       c);
-  bool hasFibres = false;
-  for (int n = 0; n < candidates; ++n)
+  const int candidates = layOut(bricks, wanted, row);
+  hashBricks(seed_, level, bricks, row.brickHash.data());
+  draw(bricks, level, inWholeVectors(candidates), 1.0f / Vec3f(scene_.placement().spacingMm), row,
+       row.amplitude.data());
+  if (fibres_)
   {
-    const Vec3i voxel(c.i[n], c.j[n], c.k[n]);
-    const bool inside = glm::all(glm::greaterThanEqual(voxel, Vec3i(0))) && glm::all(glm::lessThan(voxel, size));
-    const std::size_t at =
-      std::size_t(voxel.x) + std::size_t(size.x) * (std::size_t(voxel.y) + std::size_t(size.y) * std::size_t(voxel.z));
-    tissue[n] = inside ? tissues[at] : nowhere;
-    c.sign[n] *= inside ? scene_.detailAt(at) : 1.0f;
-    hasFibres |= fibreScale_[tissue[n]] > 0.0f;
-  }
-  buffer.hasFibres = hasFibres && fibres_;
-  int count = 0;
-  for (int n = 0; n < candidates; ++n)
-  {
-    // Written first and counted afterwards: without a branch, which would often be mispredicted.
-    const std::size_t to = std::size_t(count);
-    const NestedMedium& medium = media_[tissue[n]];
-    buffer.before[std::size_t(n)] = count;
-    buffer.x[to] = c.x[n];
-    buffer.y[to] = c.y[n];
-    buffer.z[to] = c.z[n];
-    buffer.amplitude[to] = c.sign[n] * medium.amplitude;
-    if (buffer.hasFibres)
+    for (std::vector<float>* values : { &row.fibreX, &row.fibreY, &row.fibreZ })
     {
-      const Vec3f fibre = fibres_->at({ c.i[n], c.j[n], c.k[n] }) * fibreScale_[tissue[n]];
-      buffer.fibreX[to] = fibre.x;
-      buffer.fibreY[to] = fibre.y;
-      buffer.fibreZ[to] = fibre.z;
+      values->resize(std::size_t(candidates) + vectorWidth);
     }
-    count += c.presence[n] < medium.probability;
   }
-  buffer.before[std::size_t(candidates)] = count;
-}
-
-ScattererView NestedScatterers::seen(Buffer& buffer, const NestedShare& share, const Vec3f& axis)
-{
-  const int count = buffer.before[std::size_t(share.count)];
-  float* along = buffer.along.data();
-  if (buffer.hasFibres)
+  row.before.assign(std::size_t(bricks.count) + 1, 0);
+  // Pointers of their own let the compiler see that none changes.
+  float* const x = row.x.data();
+  float* const y = row.y.data();
+  float* const z = row.z.data();
+  float* const amplitude = row.amplitude.data();
+  std::int32_t* const brick = row.brick.data();
+  std::int32_t* const number = row.number.data();
+  const float* const presence = row.presence.data();
+  const std::int32_t* const i = row.i.data();
+  const std::int32_t* const j = row.j.data();
+  const std::int32_t* const k = row.k.data();
+  int* const before = row.before.data() + 1;
+  bool hasFibres = false;
+  int to = 0;
+  for (int n = 0; n < candidates; ++n)
   {
-    seeAlong(axis, buffer.fibreX.data(), buffer.fibreY.data(), buffer.fibreZ.data(), buffer.amplitude.data(), count,
-             along);
+    const bool inside = (std::uint32_t(i[n]) < std::uint32_t(size.x)) & (std::uint32_t(j[n]) < std::uint32_t(size.y)) &
+                        (std::uint32_t(k[n]) < std::uint32_t(size.z));
+    const std::size_t at =
+      std::size_t(i[n]) + std::size_t(size.x) * (std::size_t(j[n]) + std::size_t(size.y) * std::size_t(k[n]));
+    const std::uint8_t tissue = inside ? tissues[at] : nowhere;
+    const NestedMedium medium = media_[tissue];
+    // Written first and counted afterwards: without a branch, which would often be mispredicted. None overtakes its
+    // candidate.
+    const std::int32_t own = brick[n];
+    x[to] = x[n];
+    y[to] = y[n];
+    z[to] = z[n];
+    amplitude[to] = amplitude[n] * (inside ? scene_.detailAt(at) : 1.0f) * medium.amplitude;
+    brick[to] = own;
+    number[to] = number[n];
+    if (fibres_)
+    {
+      const float scale = fibreScale_[tissue];
+      const Vec3f fibre = scale > 0.0f ? fibres_->at({ i[n], j[n], k[n] }) * scale : Vec3f(0.0f);
+      row.fibreX[std::size_t(to)] = fibre.x;
+      row.fibreY[std::size_t(to)] = fibre.y;
+      row.fibreZ[std::size_t(to)] = fibre.z;
+      hasFibres |= scale > 0.0f;
+    }
+    const bool isThere = presence[n] < medium.probability;
+    before[own] += isThere;
+    to += isThere;
   }
-  else
+  row.hasFibres = hasFibres;
+  for (int b = 1; b < bricks.count; ++b)
   {
-    std::copy_n(buffer.amplitude.data(), count, along);
+    before[b] += before[b - 1];
   }
-  for (int n = buffer.before[std::size_t(share.whole)]; n < count; ++n)
-  {
-    along[n] *= share.last;
-  }
-  return { buffer.x.data(), buffer.y.data(), buffer.z.data(), along, count, share.scale };
 }
 
 } // namespace sono

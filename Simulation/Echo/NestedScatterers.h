@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Echo/BrickWalk.h"
-#include "Echo/ScattererView.h"
 #include "Kernel/NestedCells.h"
 #include "Kernel/Scatterer.h"
 #include "Scene/FibreField.h"
@@ -9,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace sono {
 
@@ -22,14 +22,29 @@ class NestedScatterers
 public:
   static constexpr int cellCount = nestedBrickCells * nestedBrickCells * nestedBrickCells;
 
-  /// Room for the scatterers of one brick.
-  struct Buffer
+  /// A row of bricks: from `first` on, `count` along an axis.
+  struct BrickLine
   {
-    std::array<float, cellCount> x, y, z, amplitude;
-    std::array<float, cellCount> fibreX, fibreY, fibreZ; ///< only where `hasFibres`
-    std::array<float, cellCount> along;                  ///< amplitudes as one beam sees them
-    std::array<int, cellCount + 1> before; ///< scatterers among the first n candidates, up to those that were made
+    Vec3i first;
+    int axis;
+    int count;
+  };
+
+  /// The scatterers of such a row, brick by brick, ascending by the number of their candidates. The arrays hold a
+  /// vector more, of anything.
+  struct Row
+  {
+    std::vector<float> x, y, z, amplitude;
+    std::vector<std::int32_t> brick;           ///< in the row
+    std::vector<std::int32_t> number;          ///< of the candidate
+    std::vector<float> fibreX, fibreY, fibreZ; ///< times the root of the anisotropy; only where `hasFibres`
+    std::vector<int> before;                   ///< scatterers before each brick, and all
     bool hasFibres = false;
+
+    // The candidates, on the way there.
+    std::vector<std::int32_t> i, j, k; ///< cell, then voxel
+    std::vector<std::uint32_t> hash, brickHash;
+    std::vector<float> presence;
   };
 
   /// A cross-section dq, mm^2/sr, echoes `amplitudePerRoot` sqrt(dq): lambda / A_b. The scene must outlive this. Its
@@ -44,11 +59,9 @@ public:
   const std::array<float, 256>& fibreScale() const { return fibreScale_; }
   /// Null where no tissue has any.
   const FibreField* fibres() const { return fibres_; }
-  /// Fills the buffer with the scatterers among the first so many candidates of a brick, ascending by number;
-  /// amplitudes for one candidate a mm^3.
-  void generate(int level, const Vec3i& brick, int candidates, Buffer& buffer) const;
-  /// The scatterers of a share as a beam along `axis` (local, unit) sees them. In the buffer until its next use.
-  static ScattererView seen(Buffer& buffer, const NestedShare& share, const Vec3f& axis);
+  /// The scatterers among the first candidates of each brick, as many as `wanted` says of it; amplitudes for one
+  /// candidate a mm^3.
+  void generate(int level, const BrickLine& bricks, const int* wanted, Row& row) const;
 
 private:
   const Scene& scene_;

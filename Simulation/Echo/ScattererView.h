@@ -10,7 +10,8 @@ struct ScattererView
   const float* z = nullptr;
   const float* amplitude = nullptr;
   int count = 0;
-  float scale = 1.0f; ///< of all amplitudes
+  float scale = 1.0f;    ///< of all amplitudes
+  bool isPadded = false; ///< whether there is more behind, of any place and amplitude, to whole vectors (Core/Simd.h)
 };
 
 } // namespace sono

@@ -173,15 +173,22 @@ struct NestedShare
   SONO_HD float scaleOf(int number) const { return number < whole ? scale : scale * last; }
 };
 
-/// Of cells of this edge so many eighths, taken as 1/8, which is one candidate of a brick, to 8.
-SONO_HD inline NestedShare makeNestedShare(float eighths, float edgeMm)
+/// Of cells of this edge so many eighths, 1/8, which is one candidate of a brick, to 8.
+SONO_HD inline NestedShare nestedShareOf(float eighths, float edgeMm)
 {
-  const float n = larger(0.125f, smaller(8.0f, eighths));
-  const int together = n > 1.0f ? 8 : 1; // that fade in
-  const float steps = n > 1.0f ? n : 8.0f * n;
+  const float steps = eighths * (eighths > 1.0f ? 1.0f : 8.0f);
+  const int together = eighths > 1.0f ? 8 : 1; // that fade in
   const int last = int(ceilf(steps));
   return { together * last, together * (last - 1), sqrtf(steps - float(last - 1)),
-           sqrtf(edgeMm * edgeMm * edgeMm * 8.0f / n) };
+           sqrtf(edgeMm * edgeMm * edgeMm * 8.0f / eighths) };
+}
+
+/// The eighths of cells of this edge where so many candidates are needed, at a weight of the beam.
+SONO_HD inline float nestedEighths(float perMm3, float edgeMm, float weight)
+{
+  const float full = weight * nestedFullWeight;
+  const float needed = 8.0f * perMm3 * (full < 1.0f ? full : 1.0f) * edgeMm * edgeMm * edgeMm;
+  return larger(0.125f, smaller(8.0f, needed));
 }
 
 /// Which bricks a line takes its scatterers from, and which part of them. Trivially copyable; see
@@ -206,8 +213,13 @@ struct DensityView
   /// the next level in which it lies.
   SONO_HD bool takes(int level, float depthMm, float parentDepthMm) const
   {
-    const bool enough = level == finest || ((coarseEnough[at(depthMm)] >> level) & 1u);
-    const bool parentHas = level < coarsest && ((coarseEnough[at(parentDepthMm)] >> (level + 1)) & 1u);
+    return takesAt(level, at(depthMm), at(parentDepthMm));
+  }
+  /// The same with the depths' places in the tables.
+  SONO_HD bool takesAt(int level, int depth, int parentDepth) const
+  {
+    const bool enough = level == finest || ((coarseEnough[depth] >> level) & 1u);
+    const bool parentHas = level < coarsest && ((coarseEnough[parentDepth] >> (level + 1)) & 1u);
     return enough && !parentHas;
   }
   /// Eighths of the candidates of this level that do at this depth and at this weight of the beam, which is 1 on its
@@ -216,9 +228,7 @@ struct DensityView
   SONO_HD NestedShare share(int level, float depthMm, float weight) const
   {
     const float edge = nestedCellMm(level);
-    const float full = weight * nestedFullWeight;
-    const float needed = 8.0f * perMm3[at(depthMm)] * (full < 1.0f ? full : 1.0f) * edge * edge * edge;
-    return makeNestedShare(needed, edge);
+    return nestedShareOf(nestedEighths(perMm3[at(depthMm)], edge, weight), edge);
   }
 };
 

@@ -180,15 +180,16 @@ std::vector<Vec3f> candidatesOf(int level, int count, int edgeMm)
   Tissue tissue = backscattering("tissue", 1.0, 0.0, 1.0, 0.0, 1.0);
   const auto scene = uniformBox(Vec3i(edgeMm), tissue);
   const NestedScatterers nested(*scene, 2.5, 1.0, 5);
-  NestedScatterers::Buffer buffer;
   const int bricks = int(double(edgeMm) / double(nested.grid(level).edgeMm));
+  const std::vector<int> wanted(std::size_t(bricks), count);
+  NestedScatterers::Row row;
   std::vector<Vec3f> out;
-  for (int i = 0; i < bricks * bricks * bricks; ++i)
+  for (int i = 0; i < bricks * bricks; ++i)
   {
-    nested.generate(level, { i % bricks, (i / bricks) % bricks, i / (bricks * bricks) }, count, buffer);
-    for (int n = 0; n < buffer.before[std::size_t(count)]; ++n)
+    nested.generate(level, { { i % bricks, 0, i / bricks }, 1, bricks }, wanted.data(), row);
+    for (std::size_t n = 0; n < std::size_t(row.before.back()); ++n)
     {
-      out.push_back({ buffer.x[std::size_t(n)], buffer.y[std::size_t(n)], buffer.z[std::size_t(n)] });
+      out.push_back({ row.x[n], row.y[n], row.z[n] });
     }
   }
   const auto order = [](const Vec3f& a, const Vec3f& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };

@@ -1,7 +1,8 @@
-// Scatterers of many small bricks, weighted together, add up to what each adds by itself.
+// Scatterers that are weighted in vectors add up to what each adds by itself.
 #include "BeamFigures.h"
 #include "TraceFigures.h"
 
+#include "Core/Simd.h"
 #include "Echo/BeamModel.h"
 #include "Echo/BeamSplat.h"
 #include "Probe/ArrayAperture.h"
@@ -62,10 +63,9 @@ void expectSameSum(const EchoSettings& settings, InterfaceModel model)
   std::vector<std::complex<double>> exact(6000);
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
-  SplatBatch batch(beam, sum);
   for (int brick = 0; brick < 400; ++brick)
   {
-    const int count = brick < 300 ? brick % 10 : brick % (SplatBatch::most + 1);
+    const int count = brick < 300 ? brick % 10 : brick % 150;
     std::vector<float> x, y, z, amplitude;
     for (int i = 0; i < count; ++i)
     {
@@ -77,11 +77,16 @@ void expectSameSum(const EchoSettings& settings, InterfaceModel model)
       z.push_back(at.z);
       amplitude.push_back(unit(random));
     }
-    const ScattererView view{ x.data(), y.data(), z.data(), amplitude.data(), count, 0.5f + 0.001f * float(brick) };
-    batch.add(view);
+    const bool isPadded = brick % 2 == 1;
+    for (std::vector<float>* values : { &x, &y, &z, &amplitude })
+    {
+      values->resize(std::size_t(isPadded ? inWholeVectors(count) : count), 1.0f); // which is heard if it is taken
+    }
+    const ScattererView view{ x.data(), y.data(), z.data(), amplitude.data(), count, 0.5f + 0.001f * float(brick),
+                              isPadded };
+    splat(view, beam, grid, sum);
     addExactly(view, beam, grid, exact);
   }
-  batch.finish();
   double largest = 0.0;
   double worst = 0.0;
   for (std::size_t s = 0; s < exact.size(); ++s)
@@ -93,7 +98,7 @@ void expectSameSum(const EchoSettings& settings, InterfaceModel model)
   EXPECT_LT(worst, 1e-3 * largest); // the place between two samples in single precision
 }
 
-TEST(SplatBatch, AddsWhatItsBricksAdd)
+TEST(Splat, AddsWhatEachScattererAdds)
 {
   EchoSettings settings = echoOf(p42(), depthMm);
   expectSameSum(settings, InterfaceModel::Acoustic);
