@@ -1,6 +1,7 @@
 #include "Echo/ReverberationSpeckle.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Kernel/Reverberation.h"
 
@@ -21,6 +22,18 @@ float nodesPerLine(const BeamModel& beams, const std::vector<ScanLine>& lines)
   const auto focusOf = [&](const ScanLine& line) { return line.originMm + line.axis * beams.focusMm(); };
   const double pitchMm = glm::distance(focusOf(lines[lines.size() / 2]), focusOf(lines[lines.size() / 2 - 1]));
   return float(std::clamp(pitchMm / (std::sqrt(3.0) * beams.focusWidth().lateralSigmaMm), 1e-3, 1.0));
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void drawNodes(const ReverberationNoise& of, int node, int samples,
+                                                         float* out)
+{
+  const ReverberationNoise noise = of;
+  for (int s = 0; s < samples; ++s)
+  {
+    const Vec2f drawn = noise.node(node, s);
+    out[2 * s] = drawn.x;
+    out[2 * s + 1] = drawn.y;
+  }
 }
 
 } // namespace
@@ -58,11 +71,8 @@ ReverberationNodes::ReverberationNodes(const ReverberationNoise& noise, int line
 {
   parallelFor(int(rows_.size()), {}, [&](int node) {
     std::vector<Vec2f>& row = rows_[std::size_t(node)];
-    row.reserve(std::size_t(samples));
-    for (int s = 0; s < samples; ++s)
-    {
-      row.push_back(noise.node(node, s));
-    }
+    row.resize(std::size_t(samples));
+    drawNodes(noise, node, samples, &row.front().x);
   });
 }
 

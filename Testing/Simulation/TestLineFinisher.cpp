@@ -1,0 +1,170 @@
+// A line from its sum to IQ against the same in double precision, each depth added to each sample of range and each
+// sample convolved directly.
+#include "EchoScenes.h"
+
+#include "Core/SoundSpeed.h"
+#include "Echo/LineFinisher.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <random>
+#include <vector>
+
+namespace sono::test {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double bendMm = 20.07; // behind it, sound is faster
+
+/// Depth less range; of no slope with which depths lie halfway between two samples.
+double offsetMm(double rangeMm)
+{
+  return -0.0613 * std::min(rangeMm, bendMm) + 0.0397 * std::max(0.0, rangeMm - bendMm);
+}
+
+EchoSettings settingsOf(double samplingMHz)
+{
+  EchoSettings s;
+  s.depthMm = 60.0;
+  s.samplingMHz = samplingMHz;
+  return s;
+}
+
+/// A line of everything that the tracer leaves.
+TracedLines busyLine(const EchoSettings& settings)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  TracedLines traced;
+  traced.model = InterfaceModel::Acoustic;
+  traced.lineCount = 1;
+  traced.binMm = 0.25;
+  traced.binCount = int(settings.depthMm * deepestPerRange / traced.binMm) + 1;
+  traced.echoCount = settings.sampleCount();
+  traced.echoSampleMm = settings.sampleMm();
+  for (int b = 0; b < traced.binCount; ++b)
+  {
+    traced.intensity.push_back(unit(random));
+    traced.attenuationNpPerMHz.push_back(0.01f * float(b) + 0.002f * unit(random));
+    traced.reverberation.push_back(b % 7 < 4 ? unit(random) : 0.0f);
+    traced.reverberationNpPerMHz.push_back(0.012f * float(b));
+    traced.depthOffsetMm.push_back(float(offsetMm(b * traced.binMm)));
+  }
+  for (int e = 0; e < traced.echoCount; ++e)
+  {
+    traced.boundaryEcho.emplace_back(e % 97 == 0 ? unit(random) : 0.0f, e % 97 == 0 ? unit(random) : 0.0f);
+  }
+  return traced;
+}
+
+double betweenMiddles(const std::vector<float>& bins, double position)
+{
+  const double held = std::clamp(position - 0.5, 0.0, double(bins.size() - 1));
+  const std::size_t bin = std::min(std::size_t(held), bins.size() - 2);
+  return bins[bin] + (double(bins[bin + 1]) - bins[bin]) * (held - double(bin));
+}
+
+std::vector<Complex> directly(const EchoSettings& settings, const TracedLines& traced, const LineSum& sum,
+                              const ReverberationSpeckle& speckle, const PulseKernel& pulse)
+{
+  const double sampleMm = settings.sampleMm();
+  const double radPerSample = 4.0 * M_PI * settings.centreFrequencyMHz / assumedSoundSpeedMmPerUs * sampleMm;
+  const double binsPerSample = sampleMm / traced.binMm;
+  const int ranges = settings.sampleCount() + pulse.half();
+  const Downshift down = *pulseDownshift(settings);
+  const auto depthAt = [&](int s) { return s + offsetMm(s * sampleMm) / sampleMm; };
+  const auto sinks = [&](double np) { return std::clamp(np, 0.0, double(down.maxNpPerMHz)); };
+  const auto gain = [&](double np) { return std::exp(0.5 * down.spectrumMHz2 * np * np); };
+
+  std::vector<Complex> heard(std::size_t(ranges) + 1);
+  int s = 0;
+  for (int d = 0; d < sum.sampleCount(); ++d)
+  {
+    while (s < ranges && depthAt(s + 1) <= d)
+    {
+      ++s;
+    }
+    if (s < ranges)
+    {
+      const double share = (d - depthAt(s)) / (depthAt(s + 1) - depthAt(s));
+      const Complex v = Complex(sum.iq[2 * std::size_t(d)], sum.iq[2 * std::size_t(d) + 1]) *
+                        betweenMiddles(traced.intensity, d * binsPerSample) *
+                        std::polar(1.0, -radPerSample * (s + share));
+      heard[std::size_t(s)] += (1.0 - share) * v;
+      heard[std::size_t(s) + 1] += share * v;
+    }
+  }
+  std::vector<double> exponent;
+  for (s = 0; s < ranges; ++s)
+  {
+    exponent.push_back(sinks(betweenMiddles(traced.attenuationNpPerMHz, std::floor(depthAt(s) + 0.5) * binsPerSample)));
+  }
+  std::vector<double> turns(std::size_t(ranges), 0.0);
+  for (std::size_t n = 1; n < turns.size(); ++n)
+  {
+    turns[n] = turns[n - 1] + double(down.turnsPerMHz) * down.spectrumMHz2 * 0.5 * (exponent[n - 1] + exponent[n]);
+  }
+  for (s = 0; s < ranges; ++s)
+  {
+    const std::size_t n = std::size_t(s);
+    const double level = betweenMiddles(traced.reverberation, s * binsPerSample);
+    const Vec2f noise = speckle.noise.at(0, s);
+    Complex late = s < traced.echoCount ? Complex(traced.boundaryEcho[n]) * std::polar(1.0, -radPerSample * s) : 0.0;
+    late += level > faintestReverberation ? level * double(speckle.rms[n]) * Complex(noise.x, noise.y) : 0.0;
+    const std::size_t bin = std::min(std::size_t(s * binsPerSample), traced.reverberationNpPerMHz.size() - 1);
+    heard[n] = gain(exponent[n]) * heard[n] + gain(sinks(traced.reverberationNpPerMHz[bin])) * late;
+    heard[n] *= std::polar(1.0, 2.0 * M_PI * turns[n]);
+  }
+  std::vector<Complex> iq(std::size_t(settings.sampleCount()));
+  for (int out = 0; out < settings.sampleCount(); ++out)
+  {
+    for (int k = -pulse.half(); k <= pulse.half(); ++k)
+    {
+      if (out - k >= 0 && out - k < ranges)
+      {
+        iq[std::size_t(out)] += double(pulse.re()[std::size_t(pulse.half() - k)]) * heard[std::size_t(out - k)];
+      }
+    }
+    iq[std::size_t(out)] *= std::polar(1.0, -2.0 * M_PI * turns[std::size_t(out)]);
+  }
+  return iq;
+}
+
+TEST(LineFinisher, AgreesWithTheDirectSum)
+{
+  for (const double samplingMHz : { 50.0, 17.3 })
+  {
+    const EchoSettings settings = settingsOf(samplingMHz);
+    const TracedLines traced = busyLine(settings);
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    const ReverberationSpeckle speckle{ { 9, 0.4f },
+                                        std::vector<float>(std::size_t(settings.sampleCount()) + 500, 0.3f) };
+    const LineFinisher finisher(settings, InterfaceModel::Acoustic, &traced, nullptr, speckle);
+    LineSum sum = finisher.emptySum();
+    for (float& v : sum.iq)
+    {
+      v = normal(random);
+    }
+    std::vector<std::complex<float>> iq(std::size_t(settings.sampleCount()));
+    LineFinisher::Room room = finisher.room();
+    finisher.finish(0, sum, nullptr, finisher.reverberationNodes(), room, iq.data());
+    const std::vector<Complex> exact = directly(settings, traced, sum, speckle, finisher.pulse());
+    double largest = 0.0;
+    double worst = 0.0;
+    for (std::size_t s = 0; s < exact.size(); ++s)
+    {
+      largest = std::max(largest, std::abs(exact[s]));
+      worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
+    }
+    EXPECT_GT(largest, 1.0);
+    EXPECT_LT(worst, 1e-5 * largest) << samplingMHz;
+  }
+}
+
+} // namespace
+} // namespace sono::test
