@@ -2,6 +2,7 @@
 
 #include "Core/Simd.h"
 #include "Kernel/ReverberationNoise.h"
+#include "Kernel/TimeOfFlight.h"
 
 #include <algorithm>
 #include <cmath>

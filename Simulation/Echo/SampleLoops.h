@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Kernel/Downshift.h"
-#include "Kernel/TimeOfFlight.h"
+#include "Kernel/Vec.h"
 
 #include <complex>
 #include <vector>
@@ -11,6 +11,8 @@
 // whole vectors, the next one over its end: what such a loop fills has samplePadding more than it says.
 
 namespace sono {
+
+struct RangeMap;
 
 constexpr int samplePadding = 16;
 
