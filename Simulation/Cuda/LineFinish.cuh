@@ -187,8 +187,21 @@ __device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeStep
   return v;
 }
 
-/// The boundary echoes of paths and the speckle that reverberates at a sample of range, demodulated. Of Acoustic they
-/// have been attenuated by ways of their own.
+/// How much stronger what reverberates is at a sample, by the frequency that its own way leaves of the pulse's.
+__device__ inline float reverberationGain(const FinishLaunch& launch, int line, int s)
+{
+  const TracedOnDevice& traced = launch.traced;
+  if (!traced.reverberation || !traced.attenuation)
+  {
+    return 1.0f;
+  }
+  const int bin = min(int(float(s) * float(launch.binsPerSample)), traced.binCount - 1);
+  const float taken = traced.reverberationNp[std::size_t(line) * traced.binCount + bin];
+  return downshiftGain(launch.downshift, shiftingExponent(launch.downshift, taken));
+}
+
+/// The boundary echoes of paths at a sample of range, demodulated. Of Acoustic they have been attenuated by ways of
+/// their own.
 __device__ inline float2 reflectedAt(const FinishLaunch& launch, int line, int s)
 {
   const TracedOnDevice& traced = launch.traced;
@@ -206,31 +219,37 @@ __device__ inline float2 reflectedAt(const FinishLaunch& launch, int line, int s
     v.x += traced.echo[at].x;
     v.y += traced.echo[at].y;
   }
-  const float2 c = launch.carrier[s];
-  v = { v.x * c.x - v.y * c.y, v.x * c.y + v.y * c.x };
-  if (!traced.reverberation)
+  if (v.x != 0.0f || v.y != 0.0f)
   {
-    return v;
-  }
-  const float* bins = traced.reverberation + std::size_t(line) * traced.binCount;
-  const float strength = levelAtRange(bins, traced.binCount, float(launch.binsPerSample), s);
-  if (strength > faintestReverberation)
-  {
-    const float2 noise = launch.speckle[std::size_t(line % launch.linesPerImage) * launch.rangeCount + s];
-    v = { v.x + strength * noise.x, v.y + strength * noise.y };
-  }
-  if (traced.attenuation && (v.x != 0.0f || v.y != 0.0f))
-  {
-    const int bin = min(int(float(s) * float(launch.binsPerSample)), traced.binCount - 1);
-    const float taken = traced.reverberationNp[std::size_t(line) * traced.binCount + bin];
-    const float gain = downshiftGain(launch.downshift, shiftingExponent(launch.downshift, taken));
-    v = { gain * v.x, gain * v.y };
+    const float2 c = launch.carrier[s];
+    const float gain = reverberationGain(launch, line, s);
+    v = { gain * (v.x * c.x - v.y * c.y), gain * (v.x * c.y + v.y * c.x) };
   }
   return v;
 }
 
+/// The speckle that reverberates at a sample of range. White noise is so however it is turned: it does not depend on
+/// what is known of the attenuation.
+__device__ inline float2 reverberatingAt(const FinishLaunch& launch, int line, int s)
+{
+  const TracedOnDevice& traced = launch.traced;
+  if (!traced.reverberation)
+  {
+    return { 0.0f, 0.0f };
+  }
+  const float* bins = traced.reverberation + std::size_t(line) * traced.binCount;
+  const float level = levelAtRange(bins, traced.binCount, float(launch.binsPerSample), s);
+  if (level <= faintestReverberation)
+  {
+    return { 0.0f, 0.0f };
+  }
+  const float strength = level * reverberationGain(launch, line, s);
+  const float2 noise = launch.speckle[std::size_t(line % launch.linesPerImage) * launch.rangeCount + s];
+  return { strength * noise.x, strength * noise.y };
+}
+
 /// What is shown at a sample of range, and the boundary echoes, demodulated; where the frequency sinks, as strong as it
-/// then is and turned by the phase.
+/// then is and turned by the phase; and what reverberates.
 __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
 {
   if (s < 0 || s >= launch.rangeCount)
@@ -273,7 +292,8 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
     const DownshiftAt turned = downshiftRotation(launch.turns[at]);
     v = { v.x * turned.re - v.y * turned.im, v.x * turned.im + v.y * turned.re };
   }
-  return v;
+  const float2 speckle = reverberatingAt(launch, line, s);
+  return { v.x + speckle.x, v.y + speckle.y };
 }
 
 /// Convolves a tile of a line with the pulse; each thread keeps the sums of neighbouring samples in registers.

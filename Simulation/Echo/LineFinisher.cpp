@@ -69,17 +69,14 @@ float LineFinisher::reachMm(int line) const
   return b == 0 ? 0.0f : float(std::min(deepest, b == traced_->binCount ? deepest : (b + 0.5) * traced_->binMm));
 }
 
-/// Whether paths have left boundary echoes or reverberation: where nothing reverberates, nothing is spent on it.
-bool LineFinisher::hasPathEchoes(int line) const
+bool LineFinisher::hasBoundaryEchoes(int line) const
 {
   const auto first = traced_->boundaryEcho.begin() + std::ptrdiff_t(line) * traced_->echoCount;
-  if (std::any_of(first, first + traced_->echoCount, [](std::complex<float> e) { return e != std::complex<float>{}; }))
-  {
-    return true;
-  }
-  return reverberates(line);
+  return std::any_of(first, first + traced_->echoCount,
+                     [](std::complex<float> e) { return e != std::complex<float>{}; });
 }
 
+/// Where nothing reverberates, nothing is spent on it.
 bool LineFinisher::reverberates(int line) const
 {
   if (traced_->reverberation.empty())
@@ -187,31 +184,21 @@ LineFinisher::Room LineFinisher::room() const
   return room;
 }
 
-/// What paths have left, which of Acoustic have been reflected, and attenuated by ways of their own. What reverberates
-/// is as weak as a pulse is that has been attenuated like it; the little that its frequency differs from that of what
-/// is heard directly does not show in the envelope.
-void LineFinisher::addLate(int line, const ReverberationNodes& nodes, Room& room) const
+/// What has been reflected is as weak as a pulse is that has been attenuated on its own way; the little that its
+/// frequency differs from that of what is heard directly does not show in the envelope.
+void LineFinisher::addReflected(int line, Room& room, const SamplePair& heard) const
 {
   const SamplePair late{ room.lateRe.data(), room.lateIm.data() };
-  std::fill_n(late.re, rangeCount_, 0.0f);
-  std::fill_n(late.im, rangeCount_, 0.0f);
-  if (traced_->echoCount > 0)
-  {
-    addDemodulated(boundaryEchoes(line).iq.data(), carrier_, rangeCount_, late);
-  }
-  const std::size_t firstBin = std::size_t(line) * std::size_t(traced_->binCount);
-  float* table = room.table.data();
-  if (reverberates(line))
-  {
-    linearAtSamples(traced_->reverberation.data() + firstBin, traced_->binCount, binsPerSample_, rangeCount_, table);
-    nodes.add(line, table, speckle_.rms.data(), rangeCount_, late);
-  }
   if (downshift_ && !traced_->reverberation.empty() && !traced_->reverberationNpPerMHz.empty())
   {
-    binAtSamples(traced_->reverberationNpPerMHz.data() + firstBin, traced_->binCount, binsPerSample_, rangeCount_,
-                 table);
-    applySinkGain(*downshift_, table, rangeCount_, late);
+    const float* bins = traced_->reverberationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
+    binAtSamples(bins, traced_->binCount, binsPerSample_, rangeCount_, room.table.data());
+    applySinkGain(*downshift_, room.table.data(), rangeCount_, late);
   }
+  std::transform(late.re, late.re + rangeCount_, heard.re, heard.re, std::plus<float>());
+  std::transform(late.im, late.im + rangeCount_, heard.im, heard.im, std::plus<float>());
+  std::fill_n(late.re, rangeCount_, 0.0f);
+  std::fill_n(late.im, rangeCount_, 0.0f);
 }
 
 void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
@@ -249,17 +236,25 @@ void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces,
                        rangeCount_, room.exponent.data());
     applySinkGain(*downshift_, room.exponent.data(), rangeCount_, heard);
   }
-  if (traced_ && hasPathEchoes(line))
+  const SamplePair late{ room.lateRe.data(), room.lateIm.data() };
+  if (traced_ && hasBoundaryEchoes(line))
   {
-    addLate(line, nodes, room);
-    std::transform(room.lateRe.begin(), room.lateRe.begin() + rangeCount_, heard.re, heard.re, std::plus<float>());
-    std::transform(room.lateIm.begin(), room.lateIm.begin() + rangeCount_, heard.im, heard.im, std::plus<float>());
+    addDemodulated(boundaryEchoes(line).iq.data(), carrier_, rangeCount_, late);
+    addReflected(line, room, heard);
   }
   const SamplePair turns{ room.turnRe.data(), room.turnIm.data() };
   if (isSinking)
   {
     downshiftRotations(*downshift_, room.exponent.data(), rangeCount_, turns);
     rotate(turns.re, turns.im, rangeCount_, heard);
+  }
+  // White noise is so however it is turned. Unturned, its speckle does not depend on what is known of the attenuation.
+  if (traced_ && reverberates(line))
+  {
+    linearAtSamples(traced_->reverberation.data() + firstBin, traced_->binCount, binsPerSample_, rangeCount_,
+                    room.table.data());
+    nodes.add(line, room.table.data(), speckle_.rms.data(), rangeCount_, late);
+    addReflected(line, room, heard);
   }
   pulse_.convolve(room.re.data(), room.im.data(), samples_, { room.outRe.data(), room.outIm.data() });
   if (isSinking)

@@ -42,7 +42,7 @@ public:
   const ReverberationSpeckle& reverberation() const { return speckle_; }
   /// What the lines share of its noise: nothing where none reverberates.
   ReverberationNodes reverberationNodes() const;
-  /// Room for finish(), to be used again.
+  /// Room for finish(), to be used again; `late` is zero.
   struct Room
   {
     std::vector<float> tableByDepth, depthRe, depthIm;
@@ -56,8 +56,9 @@ public:
 
 private:
   RangeMap rangeMap(int line) const;
-  void addLate(int line, const ReverberationNodes& nodes, Room& room) const;
-  bool hasPathEchoes(int line) const;
+  /// Adds what is in the room's `late`, which is empty then.
+  void addReflected(int line, Room& room, const SamplePair& heard) const;
+  bool hasBoundaryEchoes(int line) const;
   bool reverberates(int line) const;
   bool sinks(int line) const;
 
