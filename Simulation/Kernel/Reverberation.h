@@ -52,13 +52,18 @@ constexpr float unnamedHalfMm = 5.0f;
 /// Echoes against the tissue that all levels of reverberation refer to: soft tissue's 5e-4 /(cm sr).
 constexpr double reverberationPerMmSr = 5e-5;
 
-/// How well what is at a place of a path, `lengthMm` along it, is heard by the line: 1 where it has got to where it
-/// would between mirrors across the axis, which leave all but the depth as it was.
-SONO_HD inline float heardAside(const TraceLine& axis, const TraceLine& own, const Vec3f& place, float lengthMm)
+/// How far the place of a path, `lengthMm` along it, is beside where it would have got to between mirrors across the
+/// axis, which leave all but the depth as it was.
+SONO_HD inline Vec3f placeAside(const TraceLine& axis, const TraceLine& own, const Vec3f& place, float lengthMm)
 {
-  Vec3f aside = place - own.origin - own.axis * lengthMm;
-  aside -= axis.axis * glm::dot(aside, axis.axis);
-  return expNegative(-glm::dot(aside, aside) / (2.0f * heardAsideMm * heardAsideMm));
+  const Vec3f aside = place - own.origin - own.axis * lengthMm;
+  return aside - axis.axis * glm::dot(aside, axis.axis);
+}
+
+/// Exponent of how well it is heard there, of the amplitude: exp(-x).
+SONO_HD inline float unheardAside(const Vec3f& aside)
+{
+  return glm::dot(aside, aside) / (2.0f * heardAsideMm * heardAsideMm);
 }
 
 /// The echo of tissue along a segment of a path that has been reflected, by range: r0 + mu s, an amplitude
@@ -69,9 +74,9 @@ struct TissueEcho
   float mu;
   float level;
   float decay;
-  float absorbed; ///< what the media have taken at its start, two-way exponent of the amplitude
-  Vec3f start;
-  Vec3f direction;
+  float absorbed;  ///< what the media have taken at its start, two-way exponent of the amplitude
+  Vec3f start;     ///< of its own way; straight back, as seen from where mirrors would have taken the path: placeAside
+  Vec3f direction; ///< how either changes with s
   bool straightBack;
 };
 
@@ -97,9 +102,11 @@ SONO_HD inline TissueEcho tissueEcho(const StraightWay& way, const TraceLine& ax
   echo.r0 = 0.5f * (s.rangeMm + back.rangeMm);
   echo.mu = s.rangePerMm * mean;
   // (13.6) for the two senses of the loop, twice for the paths that show their own way.
-  echo.level = sqrtf(8.0f * s.intensity * heardAside(axis, own, s.start, s.lengthMm)) * back.amplitude * s.scatter;
+  echo.level = sqrtf(8.0f * s.intensity) * back.amplitude * s.scatter;
   echo.decay = s.decayPerMm * mean;
   echo.absorbed = 0.5f * (s.absorbed + back.absorbedNp);
+  echo.start = placeAside(axis, own, s.start, s.lengthMm);
+  echo.direction = placeAside(axis, own, s.start + s.direction, s.lengthMm + 1.0f) - echo.start;
   echo.straightBack = true;
   return echo;
 }
@@ -125,9 +132,12 @@ SONO_HD inline BinEcho echoInBin(const TissueEcho& echo, const DepthSpan& span, 
   const float near = larger(0.0f, smaller(s0, s1));
   const float step = larger(0.0f, larger(s0, s1) - near);
   const float middle = near + 0.5f * step;
-  return { larger(0.0f, to - from) / binMm, echo.level * expNegative(-echo.decay * near) * meanDecay(echo.decay * step),
-           echo.absorbed + echo.decay * middle,
-           cellSign(echo.start + echo.direction * middle, echo.direction, cellMm, signDraw(line, bin)) };
+  const Vec3f place = echo.start + echo.direction * middle;
+  // Of ways straight back powers count: half of it.
+  const float unheard = echo.straightBack ? 0.5f * unheardAside(place) : 0.0f;
+  return { larger(0.0f, to - from) / binMm,
+           echo.level * expNegative(-echo.decay * near - unheard) * meanDecay(echo.decay * step),
+           echo.absorbed + echo.decay * middle, cellSign(place, echo.direction, cellMm, signDraw(line, bin)) };
 }
 
 /// An echo that arrives at a range, with its sign.
@@ -183,8 +193,8 @@ SONO_HD inline Arrival boundaryArrival(const TraceView& view, const StraightWay&
   const Vec3f turned = mirrored - straight;
   const float halfMm = larger(glm::length(axis.lateral), axis.lateral == Vec3f(0.0f) ? unnamedHalfMm : 0.0f);
   const float shift = glm::length(turned) * larger(depthMm, 5.0f) / halfMm;
-  const float heard = heardAside(axis, own, place, path.length + boundary.surface.t - boundary.restart) *
-                      expNegative(-0.5f * shift * shift);
+  const Vec3f aside = placeAside(axis, own, place, path.length + boundary.surface.t - boundary.restart);
+  const float heard = expNegative(-unheardAside(aside) - 0.5f * shift * shift);
   if (heard < 1e-3f)
   {
     return arrival;

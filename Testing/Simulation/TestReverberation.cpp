@@ -2,6 +2,7 @@
 
 #include "Echo/FormRf.h"
 #include "Echo/ReverberationSpeckle.h"
+#include "Trace/Deposit.h"
 #include "Trace/Trace.h"
 
 #include <gtest/gtest.h>
@@ -186,6 +187,78 @@ TEST(Reverberation, SpeckleHasTheLevelOfItsTissue)
     return 10.0 * std::log10(sum / count);
   };
   EXPECT_NEAR(power(45.0, 75.0), power(8.0, 36.0), 0.4);
+}
+
+TEST(Reverberation, ItsSpeckleDoesNotDependOnWhatIsKnownOfTheAttenuation)
+{
+  // Which paths of the direct sound arrive behind a wall is chance, and so is how far its frequency is said to sink.
+  const auto scene = smoothLayers({ { 20.0, 1.6, 1540.0, 0.5 }, { 60.0, 0.0004, 340.0, 0.0 } }, 5e-4);
+  TracedLines traced = trace(*scene, line(), settings(500));
+  std::fill(traced.intensity.begin(), traced.intensity.end(), 0.0f);
+  std::fill(traced.boundaryEcho.begin(), traced.boundaryEcho.end(), 0.0f);
+  EchoSettings e;
+  e.device = Device::Cpu;
+  e.depthMm = 90.0;
+  const RfLines one = formRf(*scene, line(), traced, e);
+  for (std::size_t b = 0; b < traced.attenuationNpPerMHz.size(); ++b)
+  {
+    traced.attenuationNpPerMHz[b] = b / 7 % 3 == 0 ? 0.0f : 0.4f;
+  }
+  const RfLines two = formRf(*scene, line(), traced, e);
+  float peak = 0.0f;
+  float worst = 0.0f;
+  for (std::size_t i = 0; i < one.iq.size(); ++i)
+  {
+    peak = std::max(peak, std::abs(one.iq[i]));
+    worst = std::max(worst, std::fabs(std::abs(one.iq[i]) - std::abs(two.iq[i])));
+  }
+  EXPECT_GT(peak, 0.0f);
+  EXPECT_LT(worst, 1e-5f * peak);
+}
+
+TEST(Reverberation, WhatComesStraightBackIsHeardAsFarAsItIsOnTheAxis)
+{
+  // A path across the axis at 40 degrees, which it meets 20 mm below the face: its power is the Gaussian of (13.6), of
+  // 1.5 mm beside the axis, at each depth, however the way is cut into pieces.
+  const TraceLine axis{ Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f) };
+  const float angle = 0.7f;
+  const Vec3f direction(std::sin(angle), 0.0f, std::cos(angle));
+  const std::vector<float> range{ 0.0f, 50.0f };
+  const std::vector<float> arrives{ 1.0f, 1.0f };
+  const std::vector<float> absorbed{ 0.0f, 0.0f };
+  const StraightWay way{ range.data(), arrives.data(), absorbed.data(), 1, 50.0f };
+  const float lengthMm = 20.0f / direction.z;
+  for (const int pieces : { 1, 7 })
+  {
+    LineTally tally(100, 0.5, binSumCount, 0, 0.0154, 1.6);
+    const TraceView view;
+    tally.begin(view, axis, 0, way);
+    for (int i = 0; i < pieces; ++i)
+    {
+      PathSegment s{};
+      const float from = 2.0f * lengthMm * float(i) / float(pieces);
+      s.start = direction * (from - lengthMm) + Vec3f(0.0f, 0.0f, 20.0f);
+      s.direction = direction;
+      s.length = 2.0f * lengthMm / float(pieces);
+      s.intensity = 0.01f;
+      s.lengthMm = from;
+      s.rangeMm = from;
+      s.scatter = 1.0f;
+      s.reflections = 2;
+      s.straightBack = true;
+      tally.segment(s);
+    }
+    const std::vector<ReverberationSums> sums = tally.takeReverberation(1);
+    // r = (L_out + L_back) / 2 grows by (1 + cos) / 2 a mm of the way; a bin is 0.5 mm.
+    for (int b = 2; b < 78; ++b)
+    {
+      const double along = (b + 0.5) / (1.0 + double(direction.z)) - lengthMm;
+      const double asideMm = along * direction.x;
+      EXPECT_NEAR(sums[std::size_t(b)].of[straightPowerSum], 0.08 * std::exp(-asideMm * asideMm / (2.0 * 1.5 * 1.5)),
+                  0.02 * 0.08)
+        << b << " of " << pieces;
+    }
+  }
 }
 
 TEST(Reverberation, NodesThatLinesShareGiveTheNoiseOfEach)

@@ -1,12 +1,14 @@
-// Tracing, A4C of the bundled thorax at 1 mm: time, growth with what lies outside the fan, error against paths, closed
-// forms.
+// Tracing, A4C of the bundled thorax at 1 mm: time, growth with what lies outside the fan, error against paths, time to
+// a picture of little noise, closed forms.
 #include "Trace/Trace.h"
+#include "ApicalImage.h"
 #include "Core/Progress.h"
 #include "Core/SoundSpeed.h"
 #include "FalseRehits.h"
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
+#include "PictureNoise.h"
 #include "RelativeRms.h"
 #include "SamplingName.h"
 #include "Stage.h"
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <utility>
 
 namespace sono {
 namespace {
@@ -227,6 +230,25 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
   }
 }
 
+/// The time of a whole image of so many paths that its noise is 1 or 0.5 dB.
+void printTimeToNoise(const Scene& scene)
+{
+  ImageSettings settings;
+  settings.matchStages();
+  const PictureNoise noise(scene, settings);
+  for (const auto& [db, name] : { std::pair{ 1.0, "1db" }, std::pair{ 0.5, "05db" } })
+  {
+    settings.tracing.pathsPerLine = noise.pathsWithin(db);
+    std::vector<double> seconds;
+    for (int i = 0; i < 9; ++i)
+    {
+      seconds.push_back(warmImageSeconds(scene, settings).image);
+    }
+    printFigure(std::string("paths_to_") + name, settings.tracing.pathsPerLine, "paths");
+    printFigure(std::string("time_to_") + name + "_s", medianOf(seconds), "s");
+  }
+}
+
 void measureTrace()
 {
   const auto lines = a4cLines();
@@ -238,6 +260,7 @@ void measureTrace()
     seconds.push_back(tracingSeconds(*scene, lines));
   }
   printFigure("trace_a4c_s", medianOf(seconds), "s");
+  printTimeToNoise(*scene);
   {
     const auto ten = sceneWithFarLabels(10, 165.0);
     const auto hundred = sceneWithFarLabels(100, 165.0);
