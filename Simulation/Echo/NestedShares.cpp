@@ -10,6 +10,10 @@ namespace sono {
 
 namespace {
 
+// Which level gives a place is asked of a brick by itself and of it as a parent of others. The answers are the same
+// only if depths are rounded alike in both: this file is compiled without fused multiplication and addition, which the
+// compiler would use in one and not in the other.
+
 /// A row's bricks as a beam meets them; arrays by brick, up to whole vectors. Loops are from `from` to in front of
 /// `to`.
 struct MetBricks
@@ -211,9 +215,10 @@ void NestedShares::look(const Beam& beam, std::size_t index, const BrickRow& row
   for (int n = span.first; !isByGaussian && n <= span.last; ++n)
   {
     const Vec3f q = nestedBrickCentre(row.brick(n), level) - beam.origin;
-    const bool isTaken = perMm3_[std::size_t(n)] > 0.0f;
-    met.lateralMm[n] = isTaken ? relativeWeight(beam, q, met.depthMm[n]) : 0.0f;
-    met.elevationalMm[n] = isTaken ? relativeWeight(beam, q, met.depthMm[n], halfMm) : 0.0f;
+    const float depthMm = met.depthMm[n];
+    const float most = perMm3_[std::size_t(n)] > 0.0f ? relativeWeight(beam, q, depthMm, halfMm) : 0.0f;
+    met.lateralMm[n] = most >= nestedLeastWeight ? relativeWeight(beam, q, depthMm) : 0.0f;
+    met.elevationalMm[n] = most;
   }
   takeShares(met.lateralMm, met.elevationalMm, nestedCellMm(level), span.first, end,
              { perMm3_.data(), count_.data(), whole_.data(), scale_.data(), faded_.data() });
