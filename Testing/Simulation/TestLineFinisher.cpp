@@ -113,11 +113,12 @@ std::vector<Complex> directly(const EchoSettings& settings, const TracedLines& t
     const std::size_t n = std::size_t(s);
     const double level = betweenMiddles(traced.reverberation, s * binsPerSample);
     const Vec2f noise = speckle.noise.at(0, s);
-    Complex late = s < traced.echoCount ? Complex(traced.boundaryEcho[n]) * std::polar(1.0, -radPerSample * s) : 0.0;
-    late += level > faintestReverberation ? level * double(speckle.rms[n]) * Complex(noise.x, noise.y) : 0.0;
+    const Complex echo =
+      s < traced.echoCount ? Complex(traced.boundaryEcho[n]) * std::polar(1.0, -radPerSample * s) : 0.0;
     const std::size_t bin = std::min(std::size_t(s * binsPerSample), traced.reverberationNpPerMHz.size() - 1);
-    heard[n] = gain(exponent[n]) * heard[n] + gain(sinks(traced.reverberationNpPerMHz[bin])) * late;
-    heard[n] *= std::polar(1.0, 2.0 * M_PI * turns[n]);
+    const double late = gain(sinks(traced.reverberationNpPerMHz[bin]));
+    heard[n] = (gain(exponent[n]) * heard[n] + late * echo) * std::polar(1.0, 2.0 * M_PI * turns[n]);
+    heard[n] += level > faintestReverberation ? late * level * double(speckle.rms[n]) * Complex(noise.x, noise.y) : 0.0;
   }
   std::vector<Complex> iq(std::size_t(settings.sampleCount()));
   for (int out = 0; out < settings.sampleCount(); ++out)
