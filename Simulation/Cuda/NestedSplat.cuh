@@ -113,13 +113,13 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
       return none;
     }
     const Vec3f q = centre - beam.origin;
-    const float depthMm = glm::dot(q, beam.axis);
+    const float depthMm = nestedBrickDepth(brick, own.level, beam.origin, beam.axis);
     if (kind != BeamKind::Array && !((isFirst || depthMm >= firstMm) && (isLast || depthMm < endMm)))
     {
       return none;
     }
-    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, own.level + 1);
-    if (!launch.density.takes(own.level, depthMm, glm::dot(parent - beam.origin, beam.axis)))
+    const Vec3i parent(brick.x >> 1, brick.y >> 1, brick.z >> 1);
+    if (!launch.density.takes(own.level, depthMm, nestedBrickDepth(parent, own.level + 1, beam.origin, beam.axis)))
     {
       return none;
     }

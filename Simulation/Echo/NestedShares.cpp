@@ -10,9 +10,7 @@ namespace sono {
 
 namespace {
 
-// Which level gives a place is asked of a brick by itself and of it as a parent of others. The answers are the same
-// only if depths are rounded alike in both: this file is compiled without fused multiplication and addition, which the
-// compiler would use in one and not in the other.
+// This file is compiled without fused multiplication and addition: see roundedProduct.
 
 /// A row's bricks as a beam meets them; arrays by brick, up to whole vectors. Loops are from `from` to in front of
 /// `to`.
@@ -44,13 +42,13 @@ SONO_SIMD_CLONES __attribute__((flatten)) void meetBricks(const Beam& b, const V
   {
     const Vec3i brick(first.x + n * step.x, first.y + n * step.y, first.z + n * step.z);
     const Vec3f q = nestedBrickCentre(brick, level) - origin;
-    const Vec3f parent = nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, level + 1) - origin;
-    const float depth = q.x * axis.x + q.y * axis.y + q.z * axis.z;
+    const Vec3i parent(brick.x >> 1, brick.y >> 1, brick.z >> 1);
+    const float depth = nestedBrickDepth(brick, level, origin, axis);
     depthMm[n] = depth;
     lateralMm[n] = q.x * lateral.x + q.y * lateral.y + q.z * lateral.z;
     elevationalMm[n] = q.x * elevation.x + q.y * elevation.y + q.z * elevation.z;
     at[n] = density.at(depth);
-    parentAt[n] = density.at(parent.x * axis.x + parent.y * axis.y + parent.z * axis.z);
+    parentAt[n] = density.at(nestedBrickDepth(parent, level + 1, origin, axis));
   }
 }
 

@@ -108,6 +108,17 @@ SONO_HD inline float logPositive(float x)
   return m * m * (m * p - 0.5f) + m + float(exponent) * 0.693147181f;
 }
 
+/// A product that goes into no fused multiplication and addition, so that both devices decide alike by it. On a CPU the
+/// file must be compiled with -ffp-contract=off where it is so by default.
+SONO_HD inline float roundedProduct(float a, float b)
+{
+#if defined(__CUDA_ARCH__)
+  return __fmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
 /// fmin and fmax are one instruction of the GPU, but calls on a CPU, where these are one.
 SONO_HD inline float smaller(float a, float b)
 {

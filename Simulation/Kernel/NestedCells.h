@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Kernel/EchoSplat.h"
+#include "Kernel/FastMath.h"
 #include "Kernel/Vec.h"
 
 #include <cmath>
@@ -205,7 +206,7 @@ struct DensityView
 
   SONO_HD int at(float depthMm) const
   {
-    const float place = depthMm * depthsPerMm + 0.5f;
+    const float place = roundedProduct(depthMm, depthsPerMm) + 0.5f;
     const int i = place > 0.0f ? int(place) : 0;
     return i < count ? i : count - 1;
   }
@@ -243,6 +244,14 @@ SONO_HD inline Vec2f nestedHalfExtent(const Beam& b, int level)
 SONO_HD inline Vec3f nestedBrickCentre(const Vec3i& brick, int level)
 {
   return (Vec3f(brick) + 0.5f) * (nestedCellMm(level) * float(nestedBrickCells));
+}
+
+/// Depth of a brick's centre along a beam. Which level gives a place is asked of a brick by itself and of it as a
+/// parent of others, and on either device: products are rounded by themselves everywhere.
+SONO_HD inline float nestedBrickDepth(const Vec3i& brick, int level, const Vec3f& origin, const Vec3f& axis)
+{
+  const Vec3f q = nestedBrickCentre(brick, level) - origin; // a centre is exact
+  return roundedProduct(q.x, axis.x) + roundedProduct(q.y, axis.y) + roundedProduct(q.z, axis.z);
 }
 
 } // namespace sono

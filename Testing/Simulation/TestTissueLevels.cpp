@@ -288,8 +288,8 @@ TEST(ScattererDensity, ALineTakesEachPointOfSpaceOnce)
       const float edge = nestedCellMm(level) * float(nestedBrickCells);
       const Vec3i brick(glm::floor(p / edge));
       const auto depthOf = [&](const Vec3f& centre) { return glm::dot(centre - origin, axis); };
-      const float depth = depthOf(nestedBrickCentre(brick, level));
-      const float parent = depthOf(nestedBrickCentre({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, level + 1));
+      const float depth = nestedBrickDepth(brick, level, origin, axis);
+      const float parent = nestedBrickDepth({ brick.x >> 1, brick.y >> 1, brick.z >> 1 }, level + 1, origin, axis);
       if (view.takes(level, depth, parent))
       {
         ++taken;
