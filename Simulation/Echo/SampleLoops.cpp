@@ -180,7 +180,8 @@ SONO_SIMD_CLONES __attribute__((flatten)) void showDepths(const SamplePair& byDe
   const float* middleRe = carrier.middleRe.data();
   const float* middleIm = carrier.middleIm.data();
   const float radPerSample = carrier.radPerSample;
-  // Depths are counted from the sample of range, since a float would not do for both. The first of each step:
+  // Depths are counted from the sample of range, since a float would not do for both. A step ends where the next one
+  // begins, also where the two round differently. The first depth of each:
 #pragma GCC ivdep
   for (int s = 0; s < count; ++s)
   {
@@ -189,7 +190,8 @@ SONO_SIMD_CLONES __attribute__((flatten)) void showDepths(const SamplePair& byDe
     const float first = std::ceil(from);
     const int d = s + int(first);
     const int held = std::min(std::max(d, 0), depthCount - 1);
-    const float isThere = (first < to) & (d == held) ? 1.0f : 0.0f;
+    const float end = 1.0f + std::ceil(offset[s + 1]);
+    const float isThere = (first < end) & (d == held) ? 1.0f : 0.0f;
     const float share = smaller((first - from) / larger(to - from, 1e-6f), 1.0f);
     const ShownSample shown =
       shownSample(isThere * re[held], isThere * im[held], (share - 0.5f) * radPerSample, middleRe[s], middleIm[s]);
@@ -197,7 +199,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void showDepths(const SamplePair& byDe
     nearIm[s] = (1.0f - share) * shown.im;
     farRe[s] = share * shown.re;
     farIm[s] = share * shown.im;
-    depths[s] = std::ceil(to) - first;
+    depths[s] = end - first;
   }
   // Where sound is faster than assumed there is another now and then.
   for (int s = 0; s < count; ++s)
@@ -207,7 +209,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void showDepths(const SamplePair& byDe
       const float from = offset[s];
       const float perSample = 1.0f / larger(1.0f + offset[s + 1] - from, 1e-6f);
       const int first = int(std::ceil(from));
-      for (int n = 1; n < int(depths[s]) && s + first + n < depthCount; ++n)
+      for (int n = std::max(1, -(s + first)); n < int(depths[s]) && s + first + n < depthCount; ++n)
       {
         const float share = (float(first + n) - from) * perSample;
         const ShownSample shown =

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -164,6 +165,41 @@ TEST(LineFinisher, AgreesWithTheDirectSum)
     }
     EXPECT_GT(largest, 1.0);
     EXPECT_LT(worst, 1e-5 * largest) << samplingMHz;
+  }
+}
+
+/// Depths and ranges that are the same but for rounding, and such that part: each depth is shown once.
+TEST(SampleLoops, EachDepthIsShownOnce)
+{
+  constexpr int count = 400;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  for (const float slope : { 0.0f, -0.04f, 0.03f, 2.8f })
+  {
+    for (const float noise : { 1e-9f, 1e-7f, 1e-3f })
+    {
+      std::vector<float> offset = sampleRoom(count + 1);
+      for (int s = 0; s < count + 1; ++s)
+      {
+        offset[std::size_t(s)] = slope * float(s) + noise * uniform(random);
+      }
+      std::vector<float> re(2000, 1.0f);
+      std::vector<float> im(2000, 0.0f);
+      std::vector<float> outRe = sampleRoom(count);
+      std::vector<float> outIm = sampleRoom(count);
+      std::vector<float> room;
+      showDepths({ re.data(), im.data() }, int(re.size()), offset.data(), Carrier(0.0, count), count,
+                 { outRe.data(), outIm.data() }, room);
+      // Depth 0 may lie in front of the first range, and the last one's far share behind the last.
+      const double shown = std::accumulate(outRe.begin(), outRe.begin() + count, 0.0);
+      const int steps = count - 2;
+      EXPECT_NEAR(shown, (1.0 + double(slope)) * steps, 4.0 + 2.0 * double(std::max(slope, 0.0f)));
+      for (int s = 1; s < steps; ++s)
+      {
+        const float most = std::abs(slope) < 1e-6f ? 2e-3f : 1.0f + std::abs(slope);
+        EXPECT_NEAR(outRe[std::size_t(s)], 1.0f + slope, most) << s << " slope " << slope << " noise " << noise;
+      }
+    }
   }
 }
 
