@@ -67,26 +67,19 @@ SONO_SIMD_CLONES void offsetsAtSamples(const RangeMap& map, float sampleMm, int 
     const bool isLast = k + 1 == map.bins;
     const int to = isLast ? count : sampleAt((k + 1) / binsPerSample, count);
     const float* at = map.offsetMm + k;
-    // As bentAt: the lines from before and from behind, or twice the one that is straight on.
+    // As bentAt.
     const float a = at[0] * perSampleMm;
     const float here = isLast ? 0.0f : at[1] * perSampleMm - a;
     const float before = !isLast && k > 0 ? a - at[-1] * perSampleMm : here;
     const float behind = k + 2 < map.bins ? (at[2] - at[1]) * perSampleMm : here;
-    const bool isHollow = before < here && here < behind;
-    const bool isBent = isHollow || (before > here && here > behind);
-    const float first = isBent ? before : here;
-    const float second = isBent ? behind : here;
-    const float b = a + here;
-    const float sign = isHollow ? -1.0f : 1.0f; // the larger is the smaller of the negative ones
+    const Slopes slopes{ before, here, behind };
     const float share = float(from * binsPerSample - k);
     for (int s = from; s < to; s += block)
     {
       for (int i = 0; i < block; ++i)
       {
         const float way = share + float(s - from + i) * rise;
-        const float low = sign * (a + first * way);
-        const float high = sign * (b - second * (1.0f - way));
-        out[s + i] = sign * (low < high ? low : high);
+        out[s + i] = bentBetween(a, a + here, way, 1.0f - way, slopes);
       }
     }
     from = to;
