@@ -10,7 +10,7 @@ namespace sono {
 
 namespace {
 
-constexpr std::uint8_t nowhere = 255;           // never a tissue: a scene has at most 255, from 0
+constexpr float never = 2.0f;                   // no probability is above it
 constexpr double npPerDb = 0.11512925464970229; // ln(10) / 20
 
 using Row = NestedScatterers::Row;
@@ -50,10 +50,12 @@ inline void descend(std::int32_t& i, std::int32_t& j, std::int32_t& k, std::uint
   hash = to.hash;
 }
 
-/// nestedFinestCell and nestedCandidate, level by level for all, of which brick and number are known.
+/// nestedFinestCell and nestedCandidate, level by level for all, of which brick and number are known; with the voxel
+/// that each lies in. Those outside of the volume are never present.
 SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedScatterers::BrickLine& bricks, int level, int count,
-                                                    const Vec3f& perMm, Row& row, float* sign)
+                                                    const Vec3f& perMm, const Vec3i& volume, Row& row, float* sign)
 {
+  const Vec3i size = volume;
   std::int32_t* i = row.i.data();
   std::int32_t* j = row.j.data();
   std::int32_t* k = row.k.data();
@@ -96,11 +98,37 @@ SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedScatterers::Bric
     x[n] = candidate.positionMm.x;
     y[n] = candidate.positionMm.y;
     z[n] = candidate.positionMm.z;
-    i[n] = std::int32_t(std::floor(candidate.positionMm.x * perMm.x));
-    j[n] = std::int32_t(std::floor(candidate.positionMm.y * perMm.y));
-    k[n] = std::int32_t(std::floor(candidate.positionMm.z * perMm.z));
-    presence[n] = candidate.presence;
+    const std::int32_t vi = std::int32_t(std::floor(candidate.positionMm.x * perMm.x));
+    const std::int32_t vj = std::int32_t(std::floor(candidate.positionMm.y * perMm.y));
+    const std::int32_t vk = std::int32_t(std::floor(candidate.positionMm.z * perMm.z));
+    const bool isInside = (vi >= 0) & (vi < size.x) & (vj >= 0) & (vj < size.y) & (vk >= 0) & (vk < size.z);
+    i[n] = isInside ? vi : 0;
+    j[n] = isInside ? vj : 0;
+    k[n] = isInside ? vk : 0;
+    presence[n] = isInside ? candidate.presence : never;
     sign[n] = candidate.sign;
+  }
+}
+
+/// Leaves the candidates of these numbers, ascending, with their amplitudes.
+SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int count, Row& row)
+{
+  float* x = row.x.data();
+  float* y = row.y.data();
+  float* z = row.z.data();
+  float* amplitude = row.amplitude.data();
+  std::int32_t* brick = row.brick.data();
+  std::int32_t* number = row.number.data();
+#pragma GCC ivdep
+  for (int to = 0; to < count; ++to) // none overtakes its candidate
+  {
+    const std::int32_t n = kept[to];
+    x[to] = x[n];
+    y[to] = y[n];
+    z[to] = z[n];
+    amplitude[to] = amplitude[n] * factor[to];
+    brick[to] = brick[n];
+    number[to] = number[n];
   }
 }
 
@@ -112,11 +140,11 @@ int layOut(const NestedScatterers::BrickLine& bricks, const int* wanted, Row& ro
   {
     count += std::size_t(wanted[b]);
   }
-  for (std::vector<float>* values : { &row.x, &row.y, &row.z, &row.amplitude, &row.presence })
+  for (std::vector<float>* values : { &row.x, &row.y, &row.z, &row.amplitude, &row.presence, &row.factor })
   {
     values->resize(count + vectorWidth);
   }
-  for (std::vector<std::int32_t>* values : { &row.i, &row.j, &row.k, &row.brick, &row.number })
+  for (std::vector<std::int32_t>* values : { &row.i, &row.j, &row.k, &row.brick, &row.number, &row.kept })
   {
     values->resize(count + vectorWidth);
   }
@@ -160,6 +188,8 @@ NestedScatterers::NestedScatterers(const Scene& scene, double frequencyMHz, doub
     media_[t] = mediumOf(tissue, frequencyMHz, amplitudePerRoot);
     const bool echoes = media_[t].amplitude != 0.0f;
     fibreScale_[t] = echoes ? float(std::sqrt(npPerDb * tissue.fibreAnisotropyDb)) : 0.0f;
+    amplitudes_[t] = media_[t].amplitude;
+    probabilities_[t] = media_[t].probability;
     any_ |= echoes;
     anisotropic |= fibreScale_[t] > 0.0f;
   }
@@ -183,65 +213,56 @@ void NestedScatterers::generate(int level, const BrickLine& bricks, const int* w
   const std::uint8_t* tissues = scene_.tissueVoxels().data();
   const int candidates = layOut(bricks, wanted, row);
   hashBricks(seed_, level, bricks, row.brickHash.data());
-  draw(bricks, level, inWholeVectors(candidates), 1.0f / Vec3f(scene_.placement().spacingMm), row,
+  draw(bricks, level, inWholeVectors(candidates), 1.0f / Vec3f(scene_.placement().spacingMm), size, row,
        row.amplitude.data());
-  if (fibres_)
-  {
-    for (std::vector<float>* values : { &row.fibreX, &row.fibreY, &row.fibreZ })
-    {
-      values->resize(std::size_t(candidates) + vectorWidth);
-    }
-  }
   row.before.assign(std::size_t(bricks.count) + 1, 0);
   // Pointers of their own let the compiler see that none changes.
-  float* const x = row.x.data();
-  float* const y = row.y.data();
-  float* const z = row.z.data();
-  float* const amplitude = row.amplitude.data();
-  std::int32_t* const brick = row.brick.data();
-  std::int32_t* const number = row.number.data();
+  std::int32_t* const kept = row.kept.data();
+  float* const factor = row.factor.data();
   const float* const presence = row.presence.data();
   const std::int32_t* const i = row.i.data();
   const std::int32_t* const j = row.j.data();
   const std::int32_t* const k = row.k.data();
-  int* const before = row.before.data() + 1;
-  bool hasFibres = false;
+  const auto voxelOf = [&](int n) {
+    return std::size_t(i[n]) + std::size_t(size.x) * (std::size_t(j[n]) + std::size_t(size.y) * std::size_t(k[n]));
+  };
+  bool anyAligned = false;
+  int n = 0;
   int to = 0;
-  for (int n = 0; n < candidates; ++n)
+  for (int b = 0; b < bricks.count; ++b)
   {
-    const bool inside = (std::uint32_t(i[n]) < std::uint32_t(size.x)) & (std::uint32_t(j[n]) < std::uint32_t(size.y)) &
-                        (std::uint32_t(k[n]) < std::uint32_t(size.z));
-    const std::size_t at =
-      std::size_t(i[n]) + std::size_t(size.x) * (std::size_t(j[n]) + std::size_t(size.y) * std::size_t(k[n]));
-    const std::uint8_t tissue = inside ? tissues[at] : nowhere;
-    const NestedMedium medium = media_[tissue];
-    // Written first and counted afterwards: without a branch, which would often be mispredicted. None overtakes its
-    // candidate.
-    const std::int32_t own = brick[n];
-    x[to] = x[n];
-    y[to] = y[n];
-    z[to] = z[n];
-    amplitude[to] = amplitude[n] * (inside ? scene_.detailAt(at) : 1.0f) * medium.amplitude;
-    brick[to] = own;
-    number[to] = number[n];
-    if (fibres_)
+    for (const int end = n + wanted[b]; n < end; ++n)
     {
-      const float scale = fibreScale_[tissue];
-      const Vec3f fibre = scale > 0.0f ? fibres_->at({ i[n], j[n], k[n] }) * scale : Vec3f(0.0f);
-      row.fibreX[std::size_t(to)] = fibre.x;
-      row.fibreY[std::size_t(to)] = fibre.y;
-      row.fibreZ[std::size_t(to)] = fibre.z;
-      hasFibres |= scale > 0.0f;
+      // Written first and counted afterwards: without a branch, which would often be mispredicted.
+      const std::size_t voxel = voxelOf(n);
+      const std::uint8_t tissue = tissues[voxel];
+      kept[to] = n;
+      factor[to] = scene_.detailAt(voxel) * amplitudes_[tissue];
+      const bool isThere = presence[n] < probabilities_[tissue];
+      anyAligned |= isThere & (fibreScale_[tissue] > 0.0f);
+      to += isThere;
     }
-    const bool isThere = presence[n] < medium.probability;
-    before[own] += isThere;
-    to += isThere;
+    row.before[std::size_t(b) + 1] = to;
   }
-  row.hasFibres = hasFibres;
-  for (int b = 1; b < bricks.count; ++b)
+  anyAligned &= fibres_ != nullptr;
+  row.hasFibres = anyAligned;
+  if (anyAligned)
   {
-    before[b] += before[b - 1];
+    for (std::vector<float>* values : { &row.fibreX, &row.fibreY, &row.fibreZ })
+    {
+      values->resize(std::size_t(to) + vectorWidth);
+    }
   }
+  for (int a = 0; anyAligned && a < to; ++a)
+  {
+    const int from = kept[a];
+    const float scale = fibreScale_[tissues[voxelOf(from)]];
+    const Vec3f fibre = scale > 0.0f ? fibres_->at({ i[from], j[from], k[from] }) * scale : Vec3f(0.0f);
+    row.fibreX[std::size_t(a)] = fibre.x;
+    row.fibreY[std::size_t(a)] = fibre.y;
+    row.fibreZ[std::size_t(a)] = fibre.z;
+  }
+  keep(kept, factor, to, row);
 }
 
 } // namespace sono

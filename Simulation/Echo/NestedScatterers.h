@@ -44,7 +44,8 @@ public:
     // The candidates, on the way there.
     std::vector<std::int32_t> i, j, k; ///< cell, then voxel
     std::vector<std::uint32_t> hash, brickHash;
-    std::vector<float> presence;
+    std::vector<float> presence, factor;
+    std::vector<std::int32_t> kept;
   };
 
   /// A cross-section dq, mm^2/sr, echoes `amplitudePerRoot` sqrt(dq): lambda / A_b. The scene must outlive this. Its
@@ -69,6 +70,8 @@ private:
   bool any_ = false;
   const FibreField* fibres_ = nullptr;
   std::array<NestedMedium, 256> media_; // those that are no tissue of the scene hold nothing
+  std::array<float, 256> amplitudes_{}; // of the media
+  std::array<float, 256> probabilities_{};
   std::array<float, 256> fibreScale_{};
 };
 

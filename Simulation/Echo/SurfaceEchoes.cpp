@@ -1,7 +1,7 @@
 #include "Echo/SurfaceEchoes.h"
 
-#include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
+#include "Echo/SurfaceLoops.h"
 #include "Echo/SurfacePhase.h"
 
 #include <algorithm>
@@ -46,37 +46,60 @@ PieceCuts cutsFor(const Vec3f& spacingMm, double stepMm)
   return { glm::max(Vec3i(glm::ceil(spacingMm / float(stepMm))), Vec3i(1)) };
 }
 
-/// What one line hears of a piece.
-struct Listener
+} // namespace
+
+/// The lines that are added to, and how they hear.
+struct SurfaceEchoes::Group
 {
-  std::size_t line;
-  SurfaceHearing hearing;
+  const std::vector<BeamReach>& beams;
+  const std::vector<SurfaceIntensity>& intensities;
+  std::vector<LineSum>& sums;
+  std::vector<LineGrid> grids;
+  SurfaceTable table;
 };
 
-SONO_SIMD_CLONES __attribute__((flatten)) void addDiffusePoints(const SurfacePoint* points, int count, const Beam& beam,
-                                                                const LineGrid& grid, const SurfaceTable& table,
-                                                                const SurfaceHearing& heard, float* iq)
+/// What is known of a brick.
+struct SurfaceEchoes::Room
 {
-  SurfaceSum sum{ iq };
-  for (int n = 0; n < count; ++n)
-  {
-    addDiffuse(points[n], beam, grid, table, heard, sum);
-  }
-}
+  FaceList faces;
+  std::vector<std::int32_t> mayBeHeard; ///< by face
+  PieceList pieces;
+  std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
+  std::vector<HeardList> heard;             ///< by line
+  PointList diffuse, coherent;
 
-SONO_SIMD_CLONES __attribute__((flatten)) void addCoherentPoints(const SurfacePoint* points, int count,
-                                                                 const Beam& beam, const LineGrid& grid,
-                                                                 const SurfaceTable& table, const SurfaceHearing& heard,
-                                                                 float* iq)
-{
-  SurfaceSum sum{ iq };
-  for (int n = 0; n < count; ++n)
+  void hear(const std::vector<std::size_t>& seeing, const Group& group)
   {
-    addCoherent(points[n], beam, grid, table, heard, sum);
+    heard.resize(group.beams.size());
+    for (const std::size_t i : seeing)
+    {
+      hearPieces(pieces, group.beams[i].beam, group.grids[i], group.table, group.intensities[i], heard[i]);
+    }
   }
-}
-
-} // namespace
+  /// Whether any line hears a piece, by one of its two echoes.
+  bool isHeard(const std::vector<std::size_t>& seeing, std::vector<float> HeardList::*echo, std::size_t piece) const
+  {
+    return std::any_of(seeing.begin(), seeing.end(), [&](std::size_t i) { return (heard[i].*echo)[piece] > 0.0f; });
+  }
+  void addTo(const std::vector<std::size_t>& seeing, const Group& group)
+  {
+    diffuse.pad();
+    coherent.pad();
+    for (const std::size_t i : seeing)
+    {
+      const Beam& beam = group.beams[i].beam;
+      float* iq = group.sums[i].iq.data();
+      if (heard[i].anyDiffuse)
+      {
+        addDiffusePoints(diffuse, heard[i], beam, group.grids[i], group.table, iq);
+      }
+      if (heard[i].anyCoherent)
+      {
+        addCoherentPoints(coherent, heard[i], beam, group.grids[i], group.table, iq);
+      }
+    }
+  }
+};
 
 SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets,
                              const EchoSettings& settings, const BeamModel& beams)
@@ -109,25 +132,57 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   }
 }
 
-int SurfaceEchoes::expand(const SurfacePiece& piece, bool coherent, std::vector<SurfacePoint>& points) const
+void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group,
+                               Room& room) const
 {
-  points.clear();
-  const int row = rows_->row(piece.below, piece.above);
-  const PieceNet diffuseNet = nets_.diffuseNet(piece);
-  const int diffuse = diffuseNet.points();
-  for (int n = 0; n < diffuse; ++n)
+  const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
+  const float longestMm = longestStepMm();
+  room.faces.clear();
+  for (const SurfacePieces::Face& face : faces)
   {
-    points.push_back(piecePoint(piece, diffuseNet, n));
-    points.back().row = row;
-    setPhases(seed_, piece.voxel, piece.axis, std::uint32_t(n), points.back());
+    const int row = rows_->row(face.below, face.above);
+    room.faces.push(pieces_.middleMm(face), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
   }
-  const PieceNet net = nets_.coherentNet(piece);
-  for (int n = 0; coherent && n < net.points(); ++n)
+  room.mayBeHeard.assign(faces.size(), 0);
+  for (const std::size_t i : seeing)
   {
-    points.push_back(piecePoint(piece, net, n));
-    points.back().row = row;
+    markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayBeHeard.data());
   }
-  return diffuse;
+  room.pieces.clear();
+  room.pieceOf.clear();
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    const int row = rows_->row(faces[f].below, faces[f].above);
+    const SurfacePiece* piece = room.mayBeHeard[f] && group.table.counts(row) ? pieces_.piece(brick, f) : nullptr;
+    if (piece)
+    {
+      const PieceBounds bounds = pieceBounds(*piece, longestMm);
+      room.pieces.push(piece->positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(*piece)),
+                       row);
+      room.pieceOf.push_back(piece);
+    }
+  }
+}
+
+void SurfaceEchoes::expand(const std::vector<std::size_t>& seeing, Room& room) const
+{
+  room.diffuse.clear();
+  room.coherent.clear();
+  for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
+  {
+    const SurfacePiece& piece = *room.pieceOf[p];
+    const int row = room.pieces.row[p];
+    if (room.isHeard(seeing, &HeardList::diffuse, p))
+    {
+      const int first = room.diffuse.count;
+      addNet(piece, nets_.diffuseNet(piece), row, int(p), room.diffuse);
+      setPhases(seed_, piece.voxel, piece.axis, first, room.diffuse);
+    }
+    if (room.isHeard(seeing, &HeardList::coherent, p))
+    {
+      addNet(piece, nets_.coherentNet(piece), row, int(p), room.coherent);
+    }
+  }
 }
 
 BrickGrid SurfaceEchoes::pieceGrid() const
@@ -162,13 +217,13 @@ SurfaceTable SurfaceEchoes::pieceTable() const
 void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
                         std::vector<LineSum>& sums) const
 {
-  std::vector<LineGrid> grids;
+  const std::vector<BeamReach> exact = beams;
+  Group group{ exact, intensities, sums, {}, targetTable() };
   for (const LineSum& sum : sums)
   {
-    grids.push_back(makeLineGrid(sum.sampleMm, sum.radPerMm, sum.sampleCount()));
+    group.grids.push_back(lineGrid(sum));
   }
-  const std::vector<BeamReach> exact = beams;
-  std::vector<SurfacePoint> points;
+  Room room;
   if (targets_)
   {
     for (BeamReach& beam : beams)
@@ -176,73 +231,28 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
       beam.sight = targetSight_.get();
       beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
     }
-    const SurfaceTable table = targetTable();
     forSeenBricks(targets_->grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+      room.pieces.clear();
+      room.diffuse.clear();
       for (const SurfacePoint& point : targets_->brick(brick))
       {
-        for (const std::size_t i : seeing)
-        {
-          const Beam& beam = exact[i].beam;
-          const SurfaceHearing heard =
-            hearSurface(point.position, point.normal, 0.0f, false, point.row, beam, grids[i], table, intensities[i]);
-          float* iq = sums[i].iq.data();
-          addDiffusePoints(&point, heard.diffuse ? 1 : 0, beam, grids[i], table, heard, iq);
-          addCoherentPoints(&point, heard.coherent ? 1 : 0, beam, grids[i], table, heard, iq);
-        }
+        room.diffuse.push(point, room.pieces.count);
+        room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
       }
+      room.coherent = room.diffuse;
+      room.hear(seeing, group);
+      room.addTo(seeing, group);
     });
   }
   beams = seeingPieces(std::move(beams));
-  const SurfaceTable table = pieceTable();
-  const float longestMm = longestStepMm();
-  std::vector<Listener> listeners;
+  group.table = pieceTable();
   forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
-    const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
-    for (std::size_t f = 0; f < faces.size(); ++f)
+    findPieces(brick, seeing, group, room);
+    if (room.pieces.count > 0)
     {
-      const SurfacePieces::Face& face = faces[f];
-      const int row = rows_->row(face.below, face.above);
-      const Vec3f middle = pieces_.middleMm(face);
-      const auto mayHear = [&](std::size_t i) {
-        return mayHearSurface(middle, face.roughNormal, 2.0f * longestMm, row, exact[i].beam, grids[i], table);
-      };
-      if (!table.counts(row) || std::none_of(seeing.begin(), seeing.end(), mayHear))
-      {
-        continue;
-      }
-      const SurfacePiece* there = pieces_.piece(brick, f);
-      if (!there)
-      {
-        continue;
-      }
-      const SurfacePiece& piece = *there;
-      const PieceBounds bounds = pieceBounds(piece, longestMm);
-      const bool isCoarse = nets_.isCoarsest(nets_.coherentCuts(piece));
-      listeners.clear();
-      bool isCoherent = false;
-      for (const std::size_t i : seeing)
-      {
-        const SurfaceHearing heard = hearSurface(piece.positionMm, bounds.normal, bounds.radiusMm, isCoarse, row,
-                                                 exact[i].beam, grids[i], table, intensities[i]);
-        if (heard.lit > 0.0f)
-        {
-          listeners.push_back({ i, heard });
-          isCoherent |= heard.coherent;
-        }
-      }
-      if (listeners.empty())
-      {
-        continue;
-      }
-      const int diffuse = expand(piece, isCoherent, points);
-      for (const Listener& l : listeners)
-      {
-        const Beam& beam = exact[l.line].beam;
-        float* iq = sums[l.line].iq.data();
-        addDiffusePoints(points.data(), l.hearing.diffuse ? diffuse : 0, beam, grids[l.line], table, l.hearing, iq);
-        addCoherentPoints(points.data() + diffuse, l.hearing.coherent ? int(points.size()) - diffuse : 0, beam,
-                          grids[l.line], table, l.hearing, iq);
-      }
+      room.hear(seeing, group);
+      expand(seeing, room);
+      room.addTo(seeing, group);
     }
   });
 }

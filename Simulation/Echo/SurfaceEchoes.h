@@ -45,8 +45,13 @@ public:
   SurfaceTable targetTable() const { return rows_->view(0.0); }
 
 private:
-  /// Points of a piece that are heard: as many diffuse ones as are returned, then the coherent ones, if wanted.
-  int expand(const SurfacePiece& piece, bool coherent, std::vector<SurfacePoint>& points) const;
+  struct Group;
+  struct Room;
+
+  /// Faces of a brick that one of the lines may hear become pieces.
+  void findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group, Room& room) const;
+  /// Pieces that one of the lines hears become points.
+  void expand(const std::vector<std::size_t>& seeing, Room& room) const;
 
   const SurfacePieces& pieces_;
   std::uint64_t seed_;

@@ -89,7 +89,7 @@ TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>&
       point.tangentV = f * (std::sqrt(0.75f) * scale);
       point.areaMm2 = float(0.5 * glm::length(glm::cross(q - p, r - p)));
       point.row = rows.row(tissues + triangle.target, tissue);
-      setPhases(seed, Vec3i(int(t), int(own >> 2), triangle.target), 3, own & 3u, point);
+      setPhase(seed, Vec3i(int(t), int(own >> 2), triangle.target), 3, own & 3u, point);
       bricks_[Vec3i(glm::floor(middle / brickEdgeMm))].push_back(point);
     });
   }

@@ -97,13 +97,9 @@ struct SurfaceIntensity
 };
 
 /// The intensity at a depth, by bins that lie whole before another, in front of it, and a medium from there on;
-/// continuous.
-SONO_HD inline float intensityInFront(const SurfaceIntensity& intensity, float frontMm, float depthMm, float decayPerMm)
+/// continuous. There must be bins.
+SONO_HD inline float intensityOfBins(const SurfaceIntensity& intensity, float frontMm, float depthMm, float decayPerMm)
 {
-  if (!intensity.bins)
-  {
-    return 1.0f;
-  }
   const float last = larger(0.0f, smaller(frontMm * intensity.perMm, float(intensity.count)) - 1.0f);
   const int bin = int(last);
   const float before = intensity.bins[bin > 0 ? bin - 1 : 0];
@@ -136,6 +132,14 @@ SONO_HD inline bool withinTangent(float reach, float cosSquared, float sinSquare
   return reach >= 0.0f && sinSquared < wider * wider * cosSquared;
 }
 
+/// Whether a Gaussian beam may see something at least so far from its axis; it may be a little wider at a piece's other
+/// end.
+SONO_HD inline bool maySee(const ProfileAt& at, float lateralMm, float elevationalMm)
+{
+  return lateralMm * lateralMm * at.perLateral2 + elevationalMm * elevationalMm * at.perElevational2 <=
+         1.1f * beamCutSigma * beamCutSigma;
+}
+
 /// A bound on the share of its strongest value that a beam has within `radiusMm` of a place; 0 where it sees nothing.
 SONO_HD inline float mostWeight(const Vec3f& position, float radiusMm, const Beam& b, const LineGrid& g)
 {
@@ -157,14 +161,26 @@ SONO_HD inline float mostWeight(const Vec3f& position, float radiusMm, const Bea
   {
     return 1.0f;
   }
-  const ProfileAt at = gaussianAt(b, larger(depthMm, 0.0f));
-  // The beam may be a little wider at the piece's other end.
-  return l * l * at.perLateral2 + e * e * at.perElevational2 <= 1.1f * beamCutSigma * beamCutSigma ? 1.0f : 0.0f;
+  return maySee(gaussianAt(b, larger(depthMm, 0.0f)), l, e) ? 1.0f : 0.0f;
 }
 
-/// For a piece all of whose points lie within `radiusMm` of a position, cut as coarsely as pieces are or not. The
-/// intensity is that in front of where the line's own axis meets the piece's plane, since behind that it has fallen
-/// already, less what the medium in front takes from there on.
+/// The depth from which the intensity of a piece is taken, whose normal has these components in the beam's directions:
+/// in front of where the line's own axis meets its plane, since behind that it has fallen already.
+SONO_HD inline float litFromMm(const BeamPlace& place, float depthMm, float normalL, float normalE, float along,
+                               const SurfaceTable& table)
+{
+  const float ahead = (normalL * place.lateral + normalE * place.elevational) / along;
+  return depthMm + larger(-surfaceCrossingMm, smaller(0.0f, ahead)) - table.slackMm;
+}
+
+/// Shaped by the tissue behind (section 1.3).
+SONO_HD inline float shapedLit(float lit, float along, const SurfaceRow& row)
+{
+  const float shaped = row.tau != 1.0f ? powf(lit, row.tau) : lit;
+  return row.gamma != 0.0f ? shaped * powf(fabsf(along), row.gamma) : shaped;
+}
+
+/// For a piece all of whose points lie within `radiusMm` of a position, cut as coarsely as pieces are or not.
 SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& normal, float radiusMm, bool isCoarse,
                                           int rowFromA, const Beam& b, const LineGrid& g, const SurfaceTable& table,
                                           const SurfaceIntensity& intensity)
@@ -191,18 +207,10 @@ SONO_HD inline SurfaceHearing hearSurface(const Vec3f& position, const Vec3f& no
   {
     depthMm = quickSqrt(depthMm * depthMm + place.lateral * place.lateral + place.elevational * place.elevational);
   }
-  const float ahead =
-    (glm::dot(normal, b.lateral) * place.lateral + glm::dot(normal, b.elevation) * place.elevational) / along;
-  const float front = depthMm + larger(-surfaceCrossingMm, smaller(0.0f, ahead)) - table.slackMm;
-  float lit = intensityInFront(intensity, front, depthMm, row.decayPerMm);
-  if (row.tau != 1.0f)
-  {
-    lit = powf(lit, row.tau);
-  }
-  if (row.gamma != 0.0f)
-  {
-    lit *= powf(fabsf(along), row.gamma);
-  }
+  const float fromMm =
+    litFromMm(place, depthMm, glm::dot(normal, b.lateral), glm::dot(normal, b.elevation), along, table);
+  const float arrives = intensity.bins ? intensityOfBins(intensity, fromMm, depthMm, row.decayPerMm) : 1.0f;
+  const float lit = shapedLit(arrives, along, row);
   return lit > surfaceFaintestLit ? SurfaceHearing{ lit, most, diffuse, coherent } : nothing;
 }
 
@@ -241,6 +249,12 @@ SONO_HD inline bool faceSurface(const SurfacePoint& p, const Beam& b, const Line
   m.sinSquared = larger(0.0f, 1.0f - m.cosSquared);
   m.row = &table.rows[m.signedCosine < 0.0f ? p.row ^ 1 : p.row];
   return m.place.position >= 0.0f && m.place.position < g.lastSample;
+}
+
+/// Whether a point counts at so large a tangent, given by the squares of cosine and sine.
+SONO_HD inline bool isWithin(float reach, float cosSquared, float sinSquared)
+{
+  return reach >= 0.0f && sinSquared < reach * reach * cosSquared;
 }
 
 /// The beam's weight there; false where the beam does not see the point.
@@ -286,6 +300,22 @@ SONO_HD inline void addBetween(const ComplexWeight& w, const ComplexWeight& a, f
   sum.add(sample + 1, split.added[2] * re - split.added[3] * im, split.added[3] * re + split.added[2] * im);
 }
 
+/// Where a point's slope falls in the table of a profile.
+SONO_HD inline float diffuseNode(const SurfaceTable& table, float cosine, float sinSquared)
+{
+  const float node = quickSqrt(sinSquared) / larger(cosine, 1e-6f) * table.perTangent;
+  return smaller(node, float(table.nodes - 2));
+}
+
+/// The amplitude of a point's diffuse echo, from its profile's for tilts along both of the beam's axes.
+SONO_HD inline float diffuseStrength(float logDiffuse, float logL, float logE, float normalL, float normalE,
+                                     float areaMm2)
+{
+  const float across = normalL * normalL + normalE * normalE;
+  const float lateralShare = across > 1e-12f ? normalL * normalL / across : 0.5f;
+  return expNegative(smaller(0.0f, logDiffuse + logE + lateralShare * (logL - logE))) * quickSqrt(areaMm2);
+}
+
 /// Adds the diffuse echo of a point, a scatterer of random phase, to the line's sum. sum.add(sample, re, im).
 template<class Sum>
 SONO_HD inline void addDiffuse(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
@@ -297,22 +327,18 @@ SONO_HD inline void addDiffuse(const SurfacePoint& p, const Beam& b, const LineG
     return;
   }
   const SurfaceRow& row = *m.row;
-  if (!(row.reach >= 0.0f && m.sinSquared < row.reach * row.reach * m.cosSquared))
+  if (!isWithin(row.reach, m.cosSquared, m.sinSquared))
   {
     return;
   }
-  const float normalL = glm::dot(p.normal, b.lateral);
-  const float normalE = glm::dot(p.normal, b.elevation);
-  const float node = quickSqrt(m.sinSquared) / fabsf(m.signedCosine) * table.perTangent;
+  const float node = diffuseNode(table, fabsf(m.signedCosine), m.sinSquared);
   const int before = int(node);
   const float share = node - float(before);
   const int n = row.profile * table.nodes + before;
   const float logL = table.diffuseL[n] + share * (table.diffuseL[n + 1] - table.diffuseL[n]);
   const float logE = table.diffuseE[n] + share * (table.diffuseE[n + 1] - table.diffuseE[n]);
-  const float across = normalL * normalL + normalE * normalE;
-  const float lateralShare = across > 1e-12f ? normalL * normalL / across : 0.5f;
-  const float diffuse =
-    expNegative(smaller(0.0f, row.logDiffuse + logE + lateralShare * (logL - logE))) * quickSqrt(p.areaMm2);
+  const float diffuse = diffuseStrength(row.logDiffuse, logL, logE, glm::dot(p.normal, b.lateral),
+                                        glm::dot(p.normal, b.elevation), p.areaMm2);
   const float faintest = faintestAt(heard.lit);
   if (diffuse * heard.most > faintest && meetSurface(b, g, m) && isHeard(diffuse, m.weight, faintest))
   {
@@ -357,7 +383,64 @@ SONO_HD inline void addDensity(float total, const ComplexWeight& w, float positi
   }
 }
 
-/// Adds the coherent echo of a point: a Gaussian of its blob's deviation in depth.
+/// A blob as a line sees it: its variance in depth, in samples, and what the pulse's band leaves of it (eq. 10.6).
+struct BlobOnLine
+{
+  float spread;
+  float left;
+};
+
+/// `alongU` and `alongV` are its tangents' components along the beam's axis, mm.
+SONO_HD inline BlobOnLine blobOnLine(float alongU, float alongV, const LineGrid& g, float pulseSigmaMm)
+{
+  const float du = alongU * g.samplesPerMm;
+  const float dv = alongV * g.samplesPerMm;
+  const float spread = du * du + dv * dv;
+  const float phaseSquared = spread * g.radPerSample * g.radPerSample;
+  const float pulse = pulseSigmaMm * g.samplesPerMm;
+  return { spread, expNegative(-0.5f * phaseSquared * pulse * pulse / (pulse * pulse + spread)) };
+}
+
+/// The amplitude of a point's coherent echo, with its sign.
+SONO_HD inline float coherentStrength(const SurfaceTable& table, const SurfaceRow& row, float cosine, float areaMm2)
+{
+  return surfaceReflection(row, cosine) * cosine * expNegative(-row.roughness * cosine * cosine) * areaMm2 *
+         table.perBeamArea;
+}
+
+/// A Gaussian beam's weight that, smoothed by a blob, is the beam's own; from the components of the blob's tangents
+/// across the beam. A table's beam is wide against a blob.
+SONO_HD inline float smoothedWeight(const ProfileAt& at, const BeamPlace& place, float lateralU, float lateralV,
+                                    float elevationalU, float elevationalV)
+{
+  const float leftL = larger(surfaceWidthShare, 1.0f - (lateralU * lateralU + lateralV * lateralV) * at.perLateral2);
+  const float leftE =
+    larger(surfaceWidthShare, 1.0f - (elevationalU * elevationalU + elevationalV * elevationalV) * at.perElevational2);
+  const float squared = place.lateral * place.lateral * at.perLateral2 / leftL +
+                        place.elevational * place.elevational * at.perElevational2 / leftE;
+  return at.amplitude * expNegative(-0.5f * squared) / quickSqrt(leftL * leftE);
+}
+
+/// Adds a blob of this amplitude and variance in depth, in samples. Splitting a point between two samples widens by a
+/// sixth of a sample's square, which the pulse takes off again: so does the density.
+template<class Sum>
+SONO_HD inline void addBlob(float amplitude, const ComplexWeight& w, float lit, float position, float spread,
+                            const LineGrid& g, Sum& sum)
+{
+  const float deviation = quickSqrt(spread + 1.0f / 6.0f);
+  if (deviation < surfaceShortestBlob)
+  {
+    const float turned = expNegative(-0.5f * spread * g.radPerSample * g.radPerSample);
+    addBetween(w, { amplitude * turned, 0.0f }, lit, position, g, sum);
+  }
+  else
+  {
+    addDensity(amplitude * lit, w, position, deviation, g, sum);
+  }
+}
+
+/// Adds the coherent echo of a point: a Gaussian of its blob's deviation in depth. What the pulse's band leaves of it
+/// is nothing for most points, so that this comes before the beam.
 template<class Sum>
 SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const LineGrid& g, const SurfaceTable& table,
                                 const SurfaceHearing& heard, Sum& sum)
@@ -368,53 +451,26 @@ SONO_HD inline void addCoherent(const SurfacePoint& p, const Beam& b, const Line
     return;
   }
   const SurfaceRow& row = *m.row;
-  if (!(row.finestReach >= 0.0f && m.sinSquared < row.finestReach * row.finestReach * m.cosSquared))
+  if (!isWithin(row.finestReach, m.cosSquared, m.sinSquared))
   {
     return;
   }
-  // Splitting a point between two samples widens by a sixth of a sample's square, which the pulse takes off again: so
-  // does the density.
-  const float du = glm::dot(b.axis, p.tangentU) * g.samplesPerMm;
-  const float dv = glm::dot(b.axis, p.tangentV) * g.samplesPerMm;
-  const float spread = du * du + dv * dv;
-  const float phaseSquared = spread * g.radPerSample * g.radPerSample;
-  // What the pulse's band leaves of it (eq. 10.6): of most points nothing, so that this comes before the beam.
-  const float pulse = table.pulseSigmaMm * g.samplesPerMm;
-  const float left = expNegative(-0.5f * phaseSquared * pulse * pulse / (pulse * pulse + spread));
+  const BlobOnLine blob = blobOnLine(glm::dot(b.axis, p.tangentU), glm::dot(b.axis, p.tangentV), g, table.pulseSigmaMm);
   const float faintest = faintestAt(heard.lit);
-  const float cosine = fabsf(m.signedCosine);
-  const float coherent = surfaceReflection(row, cosine) * cosine * expNegative(-row.roughness * m.cosSquared) *
-                         p.areaMm2 * table.perBeamArea;
-  if (!(fabsf(coherent) * left * heard.most > faintest) || !meetSurface(b, g, m))
+  const float coherent = coherentStrength(table, row, fabsf(m.signedCosine), p.areaMm2);
+  if (!(fabsf(coherent) * blob.left * heard.most > faintest) || !meetSurface(b, g, m))
   {
     return;
   }
   ComplexWeight w = m.weight;
   if (isGaussian(b))
   {
-    // Smoothed by the blob, the beam's weight is to be the beam's own. A table's beam is wide against a blob.
-    const float lu = glm::dot(b.lateral, p.tangentU);
-    const float lv = glm::dot(b.lateral, p.tangentV);
-    const float eu = glm::dot(b.elevation, p.tangentU);
-    const float ev = glm::dot(b.elevation, p.tangentV);
-    const float leftL = larger(surfaceWidthShare, 1.0f - (lu * lu + lv * lv) * m.at.perLateral2);
-    const float leftE = larger(surfaceWidthShare, 1.0f - (eu * eu + ev * ev) * m.at.perElevational2);
-    const float squared = m.place.lateral * m.place.lateral * m.at.perLateral2 / leftL +
-                          m.place.elevational * m.place.elevational * m.at.perElevational2 / leftE;
-    w.re = m.at.amplitude * expNegative(-0.5f * squared) / quickSqrt(leftL * leftE);
+    w.re = smoothedWeight(m.at, m.place, glm::dot(b.lateral, p.tangentU), glm::dot(b.lateral, p.tangentV),
+                          glm::dot(b.elevation, p.tangentU), glm::dot(b.elevation, p.tangentV));
   }
-  if (!isHeard(coherent * left, w, faintest))
+  if (isHeard(coherent * blob.left, w, faintest))
   {
-    return;
-  }
-  const float deviation = quickSqrt(spread + 1.0f / 6.0f);
-  if (deviation < surfaceShortestBlob)
-  {
-    addBetween(w, { coherent * expNegative(-0.5f * phaseSquared), 0.0f }, heard.lit, m.place.position, g, sum);
-  }
-  else
-  {
-    addDensity(coherent * heard.lit, w, m.place.position, deviation, g, sum);
+    addBlob(coherent, w, heard.lit, m.place.position, blob.spread, g, sum);
   }
 }
 

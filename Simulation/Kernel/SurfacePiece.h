@@ -105,14 +105,24 @@ struct PieceNets
 /// 3e-4.
 constexpr double blobPerStep = 0.76;
 
-/// Which of 256 directions of the unit circle is the random phase of a point's diffuse echo: a function of the seed and
-/// of the place in the world, as scatterers' amplitudes are. `kind` is the axis of a label's columns, or 3 for targets.
+/// The random phases of sixteen points' diffuse echoes, from number 16 `block` on: a function of the seed and of the
+/// place in the world, as scatterers' amplitudes are. `kind` is the axis of a label's columns, or 3 for targets.
+SONO_HD inline RandomWords surfacePhases(std::uint64_t seed, const Vec3i& cell, std::uint32_t kind, std::uint32_t block)
+{
+  return philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z),
+                0x5f0ce000u | (kind << 10) | block);
+}
+
+/// Which of 256 directions of the unit circle is the phase of a point, from those of its block.
+SONO_HD inline std::uint32_t phaseAmong(const RandomWords& phases, std::uint32_t number)
+{
+  return (phases.v[(number >> 2) & 3u] >> (8u * (number & 3u))) & 255u;
+}
+
 SONO_HD inline std::uint32_t surfacePhase(std::uint64_t seed, const Vec3i& cell, std::uint32_t kind,
                                           std::uint32_t number)
 {
-  const RandomWords w = philox(seed, std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z),
-                               0x5f0ce000u | (kind << 10) | (number >> 4));
-  return (w.v[(number >> 2) & 3u] >> (8u * (number & 3u))) & 255u;
+  return phaseAmong(surfacePhases(seed, cell, kind, number >> 4), number);
 }
 
 /// Unit normal of a piece in its middle, and how far its points may lie from there.

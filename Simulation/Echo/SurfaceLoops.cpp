@@ -1,0 +1,676 @@
+#include "Echo/SurfaceLoops.h"
+
+#include "Core/Simd.h"
+#include "Echo/WithProfile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+
+namespace {
+
+constexpr int chunk = vectorWidth;
+
+/// How a beam meets the points of a chunk.
+struct Meetings
+{
+  float position[chunk], lateral[chunk], elevational[chunk];
+  float along[chunk]; ///< the normal's component along the axis
+  float lit[chunk], most[chunk];
+  float reach[chunk];    ///< of the point's boundary
+  float strength[chunk]; ///< 0 where nothing is heard
+  float heard[chunk];    ///< what has to be loud enough, times the weight
+  float faintest[chunk]; ///< for that
+  float re[chunk], im[chunk];
+};
+
+bool hearsAny(const float* lit, const std::int32_t* piece)
+{
+  float most = 0.0f;
+  for (int p = piece[0]; p <= piece[chunk - 1]; ++p)
+  {
+    most = std::max(most, lit[p]);
+  }
+  return most > 0.0f;
+}
+
+bool anyIsHeard(const Meetings& m)
+{
+  float most = 0.0f;
+  for (int i = 0; i < chunk; ++i)
+  {
+    most = larger(most, std::fabs(m.strength[i]));
+  }
+  return most > 0.0f;
+}
+
+struct PointArrays
+{
+  const float *x, *y, *z, *normalX, *normalY, *normalZ, *uX, *uY, *uZ, *vX, *vY, *vZ, *areaMm2, *phaseRe, *phaseIm;
+  const std::int32_t *row, *piece;
+};
+
+PointArrays arraysOf(const PointList& p)
+{
+  return { p.x.data(),       p.y.data(),       p.z.data(),       p.normalX.data(), p.normalY.data(), p.normalZ.data(),
+           p.uX.data(),      p.uY.data(),      p.uZ.data(),      p.vX.data(),      p.vY.data(),      p.vZ.data(),
+           p.areaMm2.data(), p.phaseRe.data(), p.phaseIm.data(), p.row.data(),     p.piece.data() };
+}
+
+inline float across(const float* x, const float* y, const float* z, int n, const Vec3f& d)
+{
+  return x[n] * d.x + y[n] * d.y + z[n] * d.z;
+}
+
+/// Where points lie on a line and how they face it.
+inline void facePoints(const PointArrays& p, int from, const Beam& b, const LineGrid& g, Meetings& m)
+{
+  const float *x = p.x + from, *y = p.y + from, *z = p.z + from;
+  const float *nx = p.normalX + from, *ny = p.normalY + from, *nz = p.normalZ + from;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const BeamPlace place = placeInBeam(x[i], y[i], z[i], b, g);
+    m.position[i] = place.position;
+    m.lateral[i] = place.lateral;
+    m.elevational[i] = place.elevational;
+    m.along[i] = across(nx, ny, nz, i, b.axis);
+  }
+}
+
+/// How strong each echo is that is within its boundary's reach, and loud enough for a beam's axis.
+inline void keepLoud(const LineGrid& g, Meetings& m)
+{
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const float cosSquared = m.along[i] * m.along[i];
+    const float sinSquared = larger(0.0f, 1.0f - cosSquared);
+    const float faintest = faintestAt(m.lit[i]);
+    const bool isOnLine = (m.position[i] >= 0.0f) & (m.position[i] < g.lastSample);
+    const bool isWithinReach = (m.reach[i] >= 0.0f) & (sinSquared < m.reach[i] * m.reach[i] * cosSquared);
+    const bool isLoud = std::fabs(m.heard[i]) * m.most[i] > faintest;
+    m.faintest[i] = faintest;
+    m.strength[i] = isOnLine & isWithinReach & isLoud ? m.strength[i] : 0.0f;
+  }
+}
+
+/// meetSurface where a point is heard: of beams that are no Gaussians, one by one.
+void weighOneByOne(const Beam& b, const LineGrid& g, Meetings& m)
+{
+  for (int i = 0; i < chunk; ++i)
+  {
+    m.re[i] = m.im[i] = 0.0f;
+    if (m.strength[i] != 0.0f)
+    {
+      const BeamEcho echo = beamEchoAt(b, m.lateral[i], m.elevational[i], m.position[i] / g.samplesPerMm);
+      m.position[i] = echo.depthMm * g.samplesPerMm;
+      const bool isOnLine = m.position[i] < g.lastSample;
+      m.re[i] = isOnLine ? echo.weight.re : 0.0f;
+      m.im[i] = isOnLine ? echo.weight.im : 0.0f;
+      m.strength[i] = isHeard(m.heard[i], { m.re[i], m.im[i] }, m.faintest[i]) ? m.strength[i] : 0.0f;
+    }
+  }
+}
+
+inline bool isSeen(const ProfileAt& at, float lateral, float elevational)
+{
+  return lateral * lateral * at.perLateral2 + elevational * elevational * at.perElevational2 <
+         beamCutSigma * beamCutSigma;
+}
+
+/// The same of Gaussians.
+template<class Profile>
+inline void weigh(const Profile& profile, const LineGrid& g, Meetings& m)
+{
+  for (int i = 0; i < chunk; ++i)
+  {
+    const ProfileAt at = profile(larger(0.0f, m.position[i] / g.samplesPerMm));
+    const float squared =
+      m.lateral[i] * m.lateral[i] * at.perLateral2 + m.elevational[i] * m.elevational[i] * at.perElevational2;
+    const float weight = at.amplitude * expNegative(-0.5f * squared);
+    const bool isLoud = isSeen(at, m.lateral[i], m.elevational[i]) & (std::fabs(m.heard[i]) * weight > m.faintest[i]);
+    m.strength[i] = isLoud ? m.strength[i] : 0.0f;
+    m.re[i] = weight;
+    m.im[i] = 0.0f;
+  }
+}
+
+/// The same of blobs, by which the weight is smoothed.
+template<class Profile>
+inline void weighBlobs(const Profile& profile, const PointArrays& p, int from, const Beam& b, const LineGrid& g,
+                       Meetings& m)
+{
+  for (int i = 0; i < chunk; ++i)
+  {
+    const int n = from + i;
+    const ProfileAt at = profile(larger(0.0f, m.position[i] / g.samplesPerMm));
+    const float weight =
+      smoothedWeight(at, { m.position[i], m.lateral[i], m.elevational[i] }, across(p.uX, p.uY, p.uZ, n, b.lateral),
+                     across(p.vX, p.vY, p.vZ, n, b.lateral), across(p.uX, p.uY, p.uZ, n, b.elevation),
+                     across(p.vX, p.vY, p.vZ, n, b.elevation));
+    const bool isLoud = isSeen(at, m.lateral[i], m.elevational[i]) & (std::fabs(m.heard[i]) * weight > m.faintest[i]);
+    m.strength[i] = isLoud ? m.strength[i] : 0.0f;
+    m.re[i] = weight;
+    m.im[i] = 0.0f;
+  }
+}
+
+/// Adds to the samples before and behind each point.
+inline void splitAndAdd(const PointArrays& p, int from, const LineGrid& g, const Meetings& m, float* iq)
+{
+  std::int32_t sample[chunk];
+  float added[4][chunk];
+  for (int i = 0; i < chunk; ++i)
+  {
+    const float a = m.strength[i] * m.lit[i];
+    const float re = a * p.phaseRe[from + i];
+    const float im = a * p.phaseIm[from + i];
+    const bool isHeard = m.strength[i] != 0.0f;
+    const ScattererSplit s = splitScatterer(ComplexWeight{ m.re[i] * re - m.im[i] * im, m.re[i] * im + m.im[i] * re },
+                                            isHeard ? m.position[i] : 0.0f, g);
+    for (int c = 0; c < 4; ++c)
+    {
+      added[c][i] = s.added[c];
+    }
+    sample[i] = std::int32_t(s.sample);
+  }
+  for (int i = 0; i < chunk; ++i)
+  {
+    if (m.strength[i] != 0.0f)
+    {
+      float* to = iq + 2 * std::ptrdiff_t(sample[i]);
+      for (int c = 0; c < 4; ++c)
+      {
+        to[c] += added[c][i];
+      }
+    }
+  }
+}
+
+inline void meetDiffuse(const PointArrays& p, int from, const float* lit, const float* most, const Beam& b,
+                        const LineGrid& g, const SurfaceTable& t, Meetings& m)
+{
+  float profile[chunk], logDiffuse[chunk], node[chunk], logL[chunk], logE[chunk];
+  facePoints(p, from, b, g, m);
+  for (int i = 0; i < chunk; ++i)
+  {
+    const SurfaceRow& row = t.rows[p.row[from + i] ^ (m.along[i] < 0.0f ? 1 : 0)];
+    m.lit[i] = lit[p.piece[from + i]];
+    m.most[i] = most[p.piece[from + i]];
+    m.reach[i] = row.reach;
+    logDiffuse[i] = row.logDiffuse;
+    profile[i] = float(row.profile);
+  }
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    node[i] = diffuseNode(t, std::fabs(m.along[i]), larger(0.0f, 1.0f - m.along[i] * m.along[i]));
+  }
+  const float* ofL = t.diffuseL;
+  const float* ofE = t.diffuseE;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const std::int32_t before = std::int32_t(node[i]);
+    const float share = node[i] - float(before);
+    const std::int32_t n = std::int32_t(profile[i]) * t.nodes + before;
+    logL[i] = ofL[n] + share * (ofL[n + 1] - ofL[n]);
+    logE[i] = ofE[n] + share * (ofE[n + 1] - ofE[n]);
+  }
+  const float *nx = p.normalX + from, *ny = p.normalY + from, *nz = p.normalZ + from;
+  const float* area = p.areaMm2 + from;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const float strength = diffuseStrength(logDiffuse[i], logL[i], logE[i], across(nx, ny, nz, i, b.lateral),
+                                           across(nx, ny, nz, i, b.elevation), area[i]);
+    m.strength[i] = strength;
+    m.heard[i] = strength;
+  }
+  keepLoud(g, m);
+}
+
+inline void meetCoherent(const PointArrays& p, int from, const float* lit, const float* most, const Beam& b,
+                         const LineGrid& g, const SurfaceTable& t, Meetings& m, float* spread)
+{
+  float impedanceBefore[chunk], impedanceBehind[chunk], speedRatio[chunk], roughness[chunk];
+  facePoints(p, from, b, g, m);
+  for (int i = 0; i < chunk; ++i)
+  {
+    const SurfaceRow& row = t.rows[p.row[from + i] ^ (m.along[i] < 0.0f ? 1 : 0)];
+    m.lit[i] = lit[p.piece[from + i]];
+    m.most[i] = most[p.piece[from + i]];
+    m.reach[i] = row.finestReach;
+    impedanceBefore[i] = row.impedanceBefore;
+    impedanceBehind[i] = row.impedanceBehind;
+    speedRatio[i] = row.speedRatio;
+    roughness[i] = row.roughness;
+  }
+  const float *ux = p.uX + from, *uy = p.uY + from, *uz = p.uZ + from;
+  const float *vx = p.vX + from, *vy = p.vY + from, *vz = p.vZ + from;
+  const float* area = p.areaMm2 + from;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    SurfaceRow row{};
+    row.impedanceBefore = impedanceBefore[i];
+    row.impedanceBehind = impedanceBehind[i];
+    row.speedRatio = speedRatio[i];
+    row.roughness = roughness[i];
+    const BlobOnLine blob = blobOnLine(across(ux, uy, uz, i, b.axis), across(vx, vy, vz, i, b.axis), g, t.pulseSigmaMm);
+    const float strength = coherentStrength(t, row, std::fabs(m.along[i]), area[i]);
+    m.strength[i] = strength;
+    m.heard[i] = strength * blob.left;
+    spread[i] = blob.spread;
+  }
+  keepLoud(g, m);
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void addDiffuseTo(const PointArrays p, int count, const float* lit,
+                                                            const float* most, const Beam b, const LineGrid g,
+                                                            const SurfaceTable t, float* iq)
+{
+  const auto addAll = [&](const auto& weighAll) {
+    Meetings m;
+    for (int from = 0; from < count; from += chunk)
+    {
+      if (hearsAny(lit, p.piece + from))
+      {
+        meetDiffuse(p, from, lit, most, b, g, t, m);
+        if (anyIsHeard(m))
+        {
+          weighAll(m);
+          splitAndAdd(p, from, g, m, iq);
+        }
+      }
+    }
+  };
+  if (!isGaussian(b))
+  {
+    addAll([&](Meetings& m) { weighOneByOne(b, g, m); });
+    return;
+  }
+  withProfile(b, [&](const auto& profile) { addAll([&](Meetings& m) { weigh(profile, g, m); }); });
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void addCoherentTo(const PointArrays p, int count, const float* lit,
+                                                             const float* most, const Beam b, const LineGrid g,
+                                                             const SurfaceTable t, float* iq)
+{
+  float spread[chunk];
+  const auto addAll = [&](const auto& weighAll) {
+    Meetings m;
+    SurfaceSum sum{ iq };
+    for (int from = 0; from < count; from += chunk)
+    {
+      if (!hearsAny(lit, p.piece + from))
+      {
+        continue;
+      }
+      meetCoherent(p, from, lit, most, b, g, t, m, spread);
+      if (!anyIsHeard(m))
+      {
+        continue;
+      }
+      weighAll(from, m);
+      for (int i = 0; i < chunk; ++i)
+      {
+        if (m.strength[i] != 0.0f)
+        {
+          addBlob(m.strength[i], { m.re[i], m.im[i] }, m.lit[i], m.position[i], spread[i], g, sum);
+        }
+      }
+    }
+  };
+  if (!isGaussian(b))
+  {
+    addAll([&](int, Meetings& m) { weighOneByOne(b, g, m); });
+    return;
+  }
+  withProfile(
+    b, [&](const auto& profile) { addAll([&](int from, Meetings& m) { weighBlobs(profile, p, from, b, g, m); }); });
+}
+
+/// By how they face the beam, and whether they lie on the line.
+SONO_SIMD_CLONES __attribute__((flatten)) void markFacing(FaceList& faces, float radiusMm, const Beam b,
+                                                          const LineGrid g)
+{
+  const float *x = faces.x.data(), *y = faces.y.data(), *z = faces.z.data();
+  const float *nx = faces.normalX.data(), *ny = faces.normalY.data(), *nz = faces.normalZ.data();
+  const float *below = faces.cosineBelow.data(), *above = faces.cosineAbove.data();
+  float* seen = faces.seen.data();
+  const int count = inWholeVectors(faces.count);
+  const auto mark = [&](const auto& sees) {
+#pragma GCC ivdep
+    for (int n = 0; n < count; ++n)
+    {
+      const float along = nx[n] * b.axis.x + ny[n] * b.axis.y + nz[n] * b.axis.z;
+      const BeamPlace place = placeInBeam(x[n], y[n], z[n], b, g);
+      const bool faced = std::fabs(along) >= (along < 0.0f ? above[n] : below[n]);
+      const bool unknown = !(nx[n] * nx[n] + ny[n] * ny[n] + nz[n] * nz[n] > 0.0f);
+      const float depthMm = place.position / g.samplesPerMm;
+      const bool isOnLine = (depthMm + radiusMm >= 0.0f) & (place.position - radiusMm * g.samplesPerMm <= g.lastSample);
+      const float l = larger(0.0f, std::fabs(place.lateral) - radiusMm);
+      const float e = larger(0.0f, std::fabs(place.elevational) - radiusMm);
+      seen[n] = (faced | unknown) & isOnLine & sees(larger(depthMm, 0.0f), l, e) ? 1.0f : 0.0f;
+    }
+  };
+  if (!isGaussian(b))
+  {
+    mark([](float, float, float) { return true; });
+    return;
+  }
+  withProfile(b, [&](const auto& profile) {
+    mark([&](float depthMm, float l, float e) { return maySee(profile(depthMm), l, e); });
+  });
+}
+
+/// Of each piece how it is met, chunk by chunk.
+struct PieceMeetings
+{
+  float position[chunk], lateral[chunk], elevational[chunk], along[chunk];
+  float reach[chunk], coherentReach[chunk], decayPerMm[chunk], fromMm[chunk], depthMm[chunk];
+};
+
+inline void meetPieces(const PieceList& pieces, int from, const Beam& b, const LineGrid& g, const SurfaceTable& t,
+                       PieceMeetings& m)
+{
+  const float *x = pieces.x.data() + from, *y = pieces.y.data() + from, *z = pieces.z.data() + from;
+  const float *nx = pieces.normalX.data() + from, *ny = pieces.normalY.data() + from;
+  const float* nz = pieces.normalZ.data() + from;
+  const bool isByRange = b.kind == BeamKind::Array;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const BeamPlace place = placeInBeam(x[i], y[i], z[i], b, g);
+    const float along = across(nx, ny, nz, i, b.axis);
+    const float straightMm = place.position / g.samplesPerMm;
+    const float rangeMm =
+      quickSqrt(straightMm * straightMm + place.lateral * place.lateral + place.elevational * place.elevational);
+    const float depthMm = isByRange ? rangeMm : straightMm;
+    const float faced = std::fabs(along) > 1e-6f ? along : 1e-6f; // nobody hears what faces away further
+    m.position[i] = place.position;
+    m.lateral[i] = place.lateral;
+    m.elevational[i] = place.elevational;
+    m.along[i] = along;
+    m.depthMm[i] = depthMm;
+    m.fromMm[i] =
+      litFromMm(place, depthMm, across(nx, ny, nz, i, b.lateral), across(nx, ny, nz, i, b.elevation), faced, t);
+  }
+  for (int i = 0; i < chunk; ++i)
+  {
+    const SurfaceRow& row = t.rows[pieces.row[std::size_t(from + i)] ^ (m.along[i] < 0.0f ? 1 : 0)];
+    m.reach[i] = row.reach;
+    m.coherentReach[i] = pieces.isCoarse[std::size_t(from + i)] != 0.0f ? row.coherentReach : row.finestReach;
+    m.decayPerMm[i] = row.decayPerMm;
+  }
+}
+
+/// The intensity at the pieces, unshaped, where the beam sees and faces them.
+template<class Sees>
+inline void hearMet(const PieceMeetings& m, const float* radiusMm, const LineGrid& g, const SurfaceIntensity& intensity,
+                    const Sees& sees, float* diffuse, float* coherent)
+{
+  float lit[chunk];
+  const SurfaceIntensity known = intensity;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    lit[i] = intensityOfBins(known, m.fromMm[i], m.depthMm[i], m.decayPerMm[i]);
+  }
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const float cosSquared = m.along[i] * m.along[i];
+    const float sinSquared = larger(0.0f, 1.0f - cosSquared);
+    const float straightMm = m.position[i] / g.samplesPerMm;
+    const bool isOnLine =
+      (straightMm + radiusMm[i] >= 0.0f) & (m.position[i] - radiusMm[i] * g.samplesPerMm <= g.lastSample);
+    const float l = larger(0.0f, std::fabs(m.lateral[i]) - radiusMm[i]);
+    const float e = larger(0.0f, std::fabs(m.elevational[i]) - radiusMm[i]);
+    const bool isThere = isOnLine & sees(larger(straightMm, 0.0f), l, e);
+    const float reach = m.reach[i] + surfaceTangentSlack; // withinTangent
+    const float coherentReach = m.coherentReach[i] + surfaceTangentSlack;
+    const bool isDiffuse = (m.reach[i] >= 0.0f) & (sinSquared < reach * reach * cosSquared);
+    const bool isCoherent = (m.coherentReach[i] >= 0.0f) & (sinSquared < coherentReach * coherentReach * cosSquared);
+    diffuse[i] = isThere & isDiffuse ? lit[i] : 0.0f;
+    coherent[i] = isThere & isCoherent ? lit[i] : 0.0f;
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void hearFacing(const PieceList& pieces, const Beam b, const LineGrid g,
+                                                          const SurfaceTable t, const SurfaceIntensity intensity,
+                                                          HeardList& heard)
+{
+  const auto hearAll = [&](const auto& sees) {
+    PieceMeetings m;
+    for (int from = 0; from < pieces.count; from += chunk)
+    {
+      meetPieces(pieces, from, b, g, t, m);
+      hearMet(m, pieces.radiusMm.data() + from, g, intensity, sees, heard.diffuse.data() + from,
+              heard.coherent.data() + from);
+    }
+  };
+  if (!isGaussian(b))
+  {
+    hearAll([](float, float, float) { return true; });
+    return;
+  }
+  withProfile(b, [&](const auto& profile) {
+    hearAll([&](float depthMm, float l, float e) { return maySee(profile(depthMm), l, e); });
+  });
+}
+
+template<int axis>
+inline void layOutAlong(const SurfacePiece& given, const PieceNet& givenNet, int row, int ofPiece, PointList& points)
+{
+  const PieceNet net = givenNet;
+  SurfacePiece piece = given;
+  piece.axis = axis;
+  const std::ptrdiff_t at = points.count;
+  float *x = points.x.data() + at, *y = points.y.data() + at, *z = points.z.data() + at;
+  float *nx = points.normalX.data() + at, *ny = points.normalY.data() + at, *nz = points.normalZ.data() + at;
+  float *ux = points.uX.data() + at, *uy = points.uY.data() + at, *uz = points.uZ.data() + at;
+  float *vx = points.vX.data() + at, *vy = points.vY.data() + at, *vz = points.vZ.data() + at;
+  float* area = points.areaMm2.data() + at;
+  std::int32_t *rows = points.row.data() + at, *of = points.piece.data() + at;
+  const int count = inWholeVectors(net.points());
+#pragma GCC ivdep
+  for (int n = 0; n < count; ++n)
+  {
+    const SurfacePoint p = piecePoint(piece, net, n);
+    x[n] = p.position.x;
+    y[n] = p.position.y;
+    z[n] = p.position.z;
+    nx[n] = p.normal.x;
+    ny[n] = p.normal.y;
+    nz[n] = p.normal.z;
+    ux[n] = p.tangentU.x;
+    uy[n] = p.tangentU.y;
+    uz[n] = p.tangentU.z;
+    vx[n] = p.tangentV.x;
+    vy[n] = p.tangentV.y;
+    vz[n] = p.tangentV.z;
+    area[n] = p.areaMm2;
+    rows[n] = row;
+    of[n] = ofPiece;
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void layOutNet(const SurfacePiece& piece, const PieceNet& net, int row,
+                                                         int ofPiece, PointList& points)
+{
+  switch (piece.axis)
+  {
+    case 0:
+      return layOutAlong<0>(piece, net, row, ofPiece, points);
+    case 1:
+      return layOutAlong<1>(piece, net, row, ofPiece, points);
+    default:
+      return layOutAlong<2>(piece, net, row, ofPiece, points);
+  }
+}
+
+template<class List>
+void resizeAll(std::initializer_list<List*> lists, std::size_t count)
+{
+  for (List* values : lists)
+  {
+    values->resize(std::max(values->size(), count));
+  }
+}
+
+} // namespace
+
+void FaceList::push(const Vec3f& middle, const Vec3f& roughNormal, const SurfaceRow& below, const SurfaceRow& above)
+{
+  const std::size_t n = std::size_t(count++);
+  if (x.size() < n + vectorWidth)
+  {
+    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &cosineBelow, &cosineAbove, &seen }, 2 * (n + vectorWidth));
+  }
+  x[n] = middle.x;
+  y[n] = middle.y;
+  z[n] = middle.z;
+  normalX[n] = roughNormal.x;
+  normalY[n] = roughNormal.y;
+  normalZ[n] = roughNormal.z;
+  cosineBelow[n] = below.roughCosine;
+  cosineAbove[n] = above.roughCosine;
+}
+
+void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA)
+{
+  const std::size_t n = std::size_t(count++);
+  if (x.size() < n + vectorWidth)
+  {
+    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &radiusMm, &isCoarse }, 2 * (n + vectorWidth));
+    resizeAll({ &row }, 2 * (n + vectorWidth));
+  }
+  x[n] = position.x;
+  y[n] = position.y;
+  z[n] = position.z;
+  normalX[n] = normal.x;
+  normalY[n] = normal.y;
+  normalZ[n] = normal.z;
+  radiusMm[n] = radius;
+  isCoarse[n] = coarse ? 1.0f : 0.0f;
+  row[n] = rowFromA;
+}
+
+void PointList::reserve(int more)
+{
+  const std::size_t room = std::size_t(count + inWholeVectors(more) + vectorWidth);
+  if (x.size() < room)
+  {
+    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &uX, &uY, &uZ, &vX, &vY, &vZ, &areaMm2, &phaseRe, &phaseIm },
+              2 * room);
+    resizeAll({ &row, &piece }, 2 * room);
+  }
+}
+
+void PointList::push(const SurfacePoint& point, int ofPiece)
+{
+  reserve(1);
+  const std::size_t n = std::size_t(count++);
+  x[n] = point.position.x;
+  y[n] = point.position.y;
+  z[n] = point.position.z;
+  normalX[n] = point.normal.x;
+  normalY[n] = point.normal.y;
+  normalZ[n] = point.normal.z;
+  uX[n] = point.tangentU.x;
+  uY[n] = point.tangentU.y;
+  uZ[n] = point.tangentU.z;
+  vX[n] = point.tangentV.x;
+  vY[n] = point.tangentV.y;
+  vZ[n] = point.tangentV.z;
+  areaMm2[n] = point.areaMm2;
+  phaseRe[n] = point.phaseRe;
+  phaseIm[n] = point.phaseIm;
+  row[n] = point.row;
+  piece[n] = ofPiece;
+}
+
+void PointList::pad()
+{
+  reserve(0);
+  for (int n = count; n < inWholeVectors(count); ++n)
+  {
+    const std::size_t at = std::size_t(n);
+    const std::size_t last = std::size_t(count - 1);
+    for (std::vector<float>* values : { &x, &y, &z, &normalX, &normalY, &normalZ, &uX, &uY, &uZ, &vX, &vY, &vZ })
+    {
+      (*values)[at] = (*values)[last];
+    }
+    areaMm2[at] = 0.0f;
+    row[at] = row[last];
+    piece[at] = piece[last];
+  }
+}
+
+void addNet(const SurfacePiece& piece, const PieceNet& net, int row, int ofPiece, PointList& points)
+{
+  points.reserve(net.points());
+  layOutNet(piece, net, row, ofPiece, points);
+  points.count += net.points();
+}
+
+void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard)
+{
+  markFacing(faces, radiusMm, beam, grid);
+  for (std::size_t n = 0; n < std::size_t(faces.count); ++n)
+  {
+    const bool sees =
+      !heard[n] && faces.seen[n] != 0.0f &&
+      (isGaussian(beam) || mostWeight({ faces.x[n], faces.y[n], faces.z[n] }, radiusMm, beam, grid) > 0.0f);
+    heard[n] |= sees ? 1 : 0;
+  }
+}
+
+void hearPieces(const PieceList& pieces, const Beam& beam, const LineGrid& grid, const SurfaceTable& table,
+                const SurfaceIntensity& intensity, HeardList& heard)
+{
+  static constexpr float everywhere = 1.0f;
+  const SurfaceIntensity known = intensity.bins ? intensity : SurfaceIntensity{ &everywhere, 1, 0.0f };
+  resizeAll({ &heard.diffuse, &heard.coherent }, std::size_t(inWholeVectors(pieces.count)));
+  heard.most.assign(std::size_t(pieces.count), 1.0f);
+  hearFacing(pieces, beam, grid, table, known, heard);
+  heard.anyDiffuse = heard.anyCoherent = false;
+  for (int n = 0; n < pieces.count; ++n)
+  {
+    const std::size_t at = std::size_t(n);
+    const float lit = std::max(heard.diffuse[at], heard.coherent[at]);
+    if (!(lit > 0.0f))
+    {
+      continue;
+    }
+    const float along = glm::dot(Vec3f(pieces.normalX[at], pieces.normalY[at], pieces.normalZ[at]), beam.axis);
+    const float shaped = shapedLit(lit, along, table.rows[along < 0.0f ? pieces.row[at] ^ 1 : pieces.row[at]]);
+    if (!isGaussian(beam))
+    {
+      heard.most[at] = mostWeight({ pieces.x[at], pieces.y[at], pieces.z[at] }, pieces.radiusMm[at], beam, grid);
+    }
+    const float arrives = shaped > surfaceFaintestLit && heard.most[at] > 0.0f ? shaped : 0.0f;
+    heard.diffuse[at] = heard.diffuse[at] > 0.0f ? arrives : 0.0f;
+    heard.coherent[at] = heard.coherent[at] > 0.0f ? arrives : 0.0f;
+    heard.anyDiffuse |= heard.diffuse[at] > 0.0f;
+    heard.anyCoherent |= heard.coherent[at] > 0.0f;
+  }
+}
+
+void addDiffusePoints(const PointList& points, const HeardList& heard, const Beam& beam, const LineGrid& grid,
+                      const SurfaceTable& table, float* iq)
+{
+  addDiffuseTo(arraysOf(points), points.count, heard.diffuse.data(), heard.most.data(), beam, grid, table, iq);
+}
+
+void addCoherentPoints(const PointList& points, const HeardList& heard, const Beam& beam, const LineGrid& grid,
+                       const SurfaceTable& table, float* iq)
+{
+  addCoherentTo(arraysOf(points), points.count, heard.coherent.data(), heard.most.data(), beam, grid, table, iq);
+}
+
+} // namespace sono
