@@ -1,7 +1,6 @@
 #include "Echo/FormRf.h"
 
 #include "Core/ParallelFor.h"
-#include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
 #include "Echo/NestedShares.h"
@@ -38,7 +37,6 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
   NestedScatterers::Row scatterers;
   std::vector<NestedShares> shares(beams.size());
   std::vector<int> wanted;
-  std::vector<float> heard;
   for (int level = density.finest; level <= density.coarsest; ++level)
   {
     const ScattererDensity::Range range = setup.density->range(level);
@@ -67,18 +65,11 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
         return;
       }
       nested.generate(level, { row.brick(0), row.axis(), row.count() }, wanted.data(), scatterers);
-      heard.resize(scatterers.amplitude.size() + vectorWidth);
       for (std::size_t i = 0; i < beams.size(); ++i)
       {
-        const NestedShares& share = shares[i];
-        if (share.first() <= share.last())
+        if (shares[i].first() <= shares[i].last())
         {
-          const int from = scatterers.before[std::size_t(share.first())];
-          const int to = scatterers.before[std::size_t(share.last()) + 1];
-          share.hear(scatterers, beams[i].beam.axis, from, to, heard.data());
-          splat({ scatterers.x.data() + from, scatterers.y.data() + from, scatterers.z.data() + from, heard.data(),
-                  to - from, 1.0f, true },
-                beams[i].beam, grid, sums[i]);
+          splat(shares[i].hear(scatterers, beams[i].beam.axis), beams[i].beam, grid, sums[i]);
         }
       }
     });

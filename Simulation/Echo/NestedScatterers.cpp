@@ -117,8 +117,6 @@ SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int co
   float* y = row.y.data();
   float* z = row.z.data();
   float* amplitude = row.amplitude.data();
-  std::int32_t* brick = row.brick.data();
-  std::int32_t* number = row.number.data();
 #pragma GCC ivdep
   for (int to = 0; to < count; ++to) // none overtakes its candidate
   {
@@ -127,8 +125,6 @@ SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int co
     y[to] = y[n];
     z[to] = z[n];
     amplitude[to] = amplitude[n] * factor[to];
-    brick[to] = brick[n];
-    number[to] = number[n];
   }
 }
 
@@ -150,9 +146,12 @@ int layOut(const NestedScatterers::BrickLine& bricks, const int* wanted, Row& ro
   }
   row.hash.resize(count + vectorWidth);
   row.brickHash.resize(std::size_t(inWholeVectors(bricks.count)));
+  row.firstCandidate.resize(std::size_t(bricks.count));
+  row.reached.resize(count + 1);
   std::size_t n = 0;
   for (int b = 0; b < bricks.count; ++b)
   {
+    row.firstCandidate[std::size_t(b)] = int(n);
     for (int number = 0; number < wanted[b]; ++number, ++n)
     {
       row.brick[n] = b;
@@ -218,6 +217,7 @@ void NestedScatterers::generate(int level, const BrickLine& bricks, const int* w
   row.before.assign(std::size_t(bricks.count) + 1, 0);
   // Pointers of their own let the compiler see that none changes.
   std::int32_t* const kept = row.kept.data();
+  int* const reached = row.reached.data();
   float* const factor = row.factor.data();
   const float* const presence = row.presence.data();
   const std::int32_t* const i = row.i.data();
@@ -237,6 +237,7 @@ void NestedScatterers::generate(int level, const BrickLine& bricks, const int* w
       const std::size_t voxel = voxelOf(n);
       const std::uint8_t tissue = tissues[voxel];
       kept[to] = n;
+      reached[n] = to;
       factor[to] = scene_.detailAt(voxel) * amplitudes_[tissue];
       const bool isThere = presence[n] < probabilities_[tissue];
       anyAligned |= isThere & (fibreScale_[tissue] > 0.0f);
@@ -245,6 +246,7 @@ void NestedScatterers::generate(int level, const BrickLine& bricks, const int* w
     row.before[std::size_t(b) + 1] = to;
   }
   anyAligned &= fibres_ != nullptr;
+  reached[n] = to;
   row.hasFibres = anyAligned;
   if (anyAligned)
   {

@@ -35,14 +35,22 @@ public:
   struct Row
   {
     std::vector<float> x, y, z, amplitude;
-    std::vector<std::int32_t> brick;           ///< in the row
-    std::vector<std::int32_t> number;          ///< of the candidate
     std::vector<float> fibreX, fibreY, fibreZ; ///< times the root of the anisotropy; only where `hasFibres`
     std::vector<int> before;                   ///< scatterers before each brick, and all
     bool hasFibres = false;
 
+    /// Scatterers of a brick among its first candidates, as many as were wanted at most.
+    int among(int brick, int count) const
+    {
+      const std::size_t first = std::size_t(firstCandidate[std::size_t(brick)]);
+      return reached[first + std::size_t(count)] - before[std::size_t(brick)];
+    }
+
     // The candidates, on the way there.
-    std::vector<std::int32_t> i, j, k; ///< cell, then voxel
+    std::vector<std::int32_t> brick, number; ///< in the row, in the brick
+    std::vector<int> firstCandidate;         ///< of each brick
+    std::vector<int> reached;                ///< scatterers before each candidate, and all
+    std::vector<std::int32_t> i, j, k;       ///< cell, then voxel
     std::vector<std::uint32_t> hash, brickHash;
     std::vector<float> presence, factor;
     std::vector<std::int32_t> kept;

@@ -1,10 +1,12 @@
 #include "Echo/NestedShares.h"
 
 #include "Core/Simd.h"
+#include "Echo/WithProfile.h"
 #include "Kernel/FastMath.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace sono {
 
@@ -83,33 +85,10 @@ inline void weighBricks(const ProfileOf& profileOf, const MetBricks& met, const 
   }
 }
 
-template<bool lateralLens, bool elevationalLens>
-inline void weighByProfile(const ApertureProfile& given, const MetBricks& met, const Vec2f& halfMm, int from, int to)
-{
-  ApertureProfile profile = given;
-  profile.lateral.lens = lateralLens;
-  profile.elevational.lens = elevationalLens;
-  weighBricks([&](float depthMm) { return profileAt(profile, depthMm); }, met, halfMm, from, to);
-}
-
 SONO_SIMD_CLONES __attribute__((flatten)) void weighByGaussian(const Beam& b, const MetBricks& met, const Vec2f& halfMm,
                                                                int from, int to)
 {
-  if (b.kind == BeamKind::Gaussian)
-  {
-    const ProfileAt at = gaussianAt(b, 0.0f);
-    weighBricks([&](float) { return at; }, met, halfMm, from, to);
-  }
-  else if (b.profile.lateral.lens)
-  {
-    b.profile.elevational.lens ? weighByProfile<true, true>(b.profile, met, halfMm, from, to)
-                               : weighByProfile<true, false>(b.profile, met, halfMm, from, to);
-  }
-  else
-  {
-    b.profile.elevational.lens ? weighByProfile<false, true>(b.profile, met, halfMm, from, to)
-                               : weighByProfile<false, false>(b.profile, met, halfMm, from, to);
-  }
+  withProfile(b, [&](const auto& profile) { weighBricks(profile, met, halfMm, from, to); });
 }
 
 /// By the weights of bricks and of their nearest places. What is decided stays in memory from loop to loop: otherwise
@@ -148,19 +127,60 @@ SONO_SIMD_CLONES __attribute__((flatten)) void hearAlong(const Vec3f& axis, cons
   }
 }
 
-SONO_SIMD_CLONES void hearShares(const std::int32_t* brick, const std::int32_t* number, const float* across, int size,
-                                 const std::int32_t* count, const std::int32_t* whole, const float* scale,
-                                 const float* faded, float* amplitude)
+/// What a beam takes of each brick of a row.
+struct TakenParts
 {
-#pragma GCC ivdep
-  for (int n = 0; n < size; ++n)
+  const std::int32_t* count;
+  const std::int32_t* whole;
+  const float* scale;
+  const float* faded;
+};
+
+/// Places and amplitudes of scatterers.
+struct HeardScatterers
+{
+  float *x, *y, *z, *amplitude;
+};
+
+/// A beam takes four of a brick on average: wider vectors would write mostly what is written over.
+constexpr int fewScatterers = vectorWidth / 2;
+
+/// Brick by brick, written in whole vectors, each over the rest of the one before; how many there are.
+SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatterers::Row& row, int first, int last,
+                                                             const TakenParts& parts, const HeardScatterers& to)
+{
+  const TakenParts part = parts;
+  const HeardScatterers out = to;
+  const int* before = row.before.data();
+  const int* firstCandidate = row.firstCandidate.data();
+  const int* reached = row.reached.data();
+  int heard = 0;
+  for (int b = first; b <= last; ++b)
   {
-    const std::int32_t b = brick[n];
-    const float full = scale[b];
-    const float part = faded[b];
-    const float heard = number[n] < whole[b] ? full : part;
-    amplitude[n] = across[n] * (number[n] < count[b] ? heard : 0.0f);
+    const int* ofBrick = reached + firstCandidate[b];
+    const int from = before[b];
+    const int taken = ofBrick[part.count[b]] - from;
+    const int whole = ofBrick[std::min(part.whole[b], part.count[b])] - from;
+    const float scale = part.scale[b];
+    const float faded = part.faded[b];
+    const float *x = row.x.data() + from, *y = row.y.data() + from, *z = row.z.data() + from;
+    const float* amplitude = row.amplitude.data() + from;
+    float *toX = out.x + heard, *toY = out.y + heard, *toZ = out.z + heard, *toAmplitude = out.amplitude + heard;
+    for (int n = 0; n < taken; n += fewScatterers)
+    {
+      std::memcpy(toX + n, x + n, fewScatterers * sizeof(float));
+      std::memcpy(toY + n, y + n, fewScatterers * sizeof(float));
+      std::memcpy(toZ + n, z + n, fewScatterers * sizeof(float));
+    }
+    const int end = inWholeVectors(taken);
+#pragma GCC ivdep
+    for (int n = 0; n < end; ++n)
+    {
+      toAmplitude[n] = amplitude[n] * (n < whole ? scale : faded);
+    }
+    heard += taken;
   }
+  return heard;
 }
 
 } // namespace
@@ -232,15 +252,30 @@ void NestedShares::look(const Beam& beam, std::size_t index, const BrickRow& row
   }
 }
 
-void NestedShares::hear(const NestedScatterers::Row& row, const Vec3f& axis, int from, int to, float* amplitude) const
+ScattererView NestedShares::hear(const NestedScatterers::Row& row, const Vec3f& axis)
 {
-  hearShares(row.brick.data() + from, row.number.data() + from, row.amplitude.data() + from, inWholeVectors(to - from),
-             count_.data(), whole_.data(), scale_.data(), faded_.data(), amplitude);
+  const int most = row.before[std::size_t(last_) + 1] - row.before[std::size_t(first_)];
+  for (std::vector<float>* values : { &x_, &y_, &z_, &amplitude_, &fibreX_, &fibreY_, &fibreZ_ })
+  {
+    values->resize(std::max(values->size(), std::size_t(most + vectorWidth)));
+  }
+  const TakenParts parts{ count_.data(), whole_.data(), scale_.data(), faded_.data() };
+  const int heard = takeScatterers(row, first_, last_, parts, { x_.data(), y_.data(), z_.data(), amplitude_.data() });
   if (row.hasFibres)
   {
-    hearAlong(axis, row.fibreX.data() + from, row.fibreY.data() + from, row.fibreZ.data() + from,
-              inWholeVectors(to - from), amplitude);
+    int to = 0;
+    for (int b = first_; b <= last_; ++b)
+    {
+      const int from = row.before[std::size_t(b)];
+      const int taken = row.among(b, count(b));
+      std::copy_n(row.fibreX.data() + from, taken, fibreX_.data() + to);
+      std::copy_n(row.fibreY.data() + from, taken, fibreY_.data() + to);
+      std::copy_n(row.fibreZ.data() + from, taken, fibreZ_.data() + to);
+      to += taken;
+    }
+    hearAlong(axis, fibreX_.data(), fibreY_.data(), fibreZ_.data(), inWholeVectors(heard), amplitude_.data());
   }
+  return { x_.data(), y_.data(), z_.data(), amplitude_.data(), heard, 1.0f, true };
 }
 
 } // namespace sono

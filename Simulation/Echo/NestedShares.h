@@ -2,6 +2,7 @@
 
 #include "Echo/BrickWalk.h"
 #include "Echo/NestedScatterers.h"
+#include "Echo/ScattererView.h"
 
 #include <cstdint>
 #include <vector>
@@ -20,9 +21,8 @@ public:
 
   /// Of the bricks of a level, by `density`, that beam number `index` of the walk's group may see.
   void look(const Beam& beam, std::size_t index, const BrickRow& row, const DensityView& density, int level);
-  /// The amplitudes of the row's scatterers `from` to `to` as the beam hears them, along its axis: 0 where it takes
-  /// them not. There is to be room up to whole vectors.
-  void hear(const NestedScatterers::Row& row, const Vec3f& axis, int from, int to, float* amplitude) const;
+  /// The scatterers of the row that the beam takes, with the amplitudes that it hears along its axis.
+  ScattererView hear(const NestedScatterers::Row& row, const Vec3f& axis);
 
 private:
   void resize(std::size_t bricks);
@@ -34,6 +34,8 @@ private:
   // On the way there: a brick's place, and what is needed there, 0 where another level gives it.
   std::vector<float> depthMm_, lateralMm_, elevationalMm_, perMm3_;
   std::vector<std::int32_t> at_, parentAt_;
+  // What is heard, with room up to whole vectors.
+  std::vector<float> x_, y_, z_, amplitude_, fibreX_, fibreY_, fibreZ_;
 };
 
 } // namespace sono
