@@ -1,5 +1,6 @@
 #include "Simulator.h"
 
+#include "BackgroundTrace.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
 #include "Cuda/RunOnDevice.h"
@@ -8,7 +9,7 @@
 #include "Image/ErrorMap.h"
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
-#include "SameSettings.h"
+#include "LastResults.h"
 #include "Trace/TraceSetup.h"
 #include "TraceByMode.h"
 
@@ -24,130 +25,10 @@ namespace {
 constexpr double bouncesBegun = 2e7;
 constexpr std::chrono::milliseconds longestBegun(20);
 
-/// What a stage made last, and from what. Another result replaces it when it is there.
-template<class From, class Result>
-struct LastResult
-{
-  std::optional<From> from;
-  Result result;
-
-  template<class Make>
-  const Result& get(From wanted, const Make& make)
-  {
-    if (!from || !from->same(wanted))
-    {
-      result = make();
-      from = std::move(wanted);
-    }
-    return result;
-  }
-};
-
-struct FieldFrom
-{
-  ArrayAperture aperture;
-  double depthMm;
-
-  bool same(const FieldFrom& o) const { return aperture == o.aperture && depthMm == o.depthMm; }
-};
-
-struct TraceFrom
-{
-  std::vector<ScanLine> lines;
-  TraceSettings settings;
-  std::vector<TargetSurface> targets;
-
-  bool same(const TraceFrom& o) const
-  {
-    return sono::same(settings, o.settings) && sono::same(lines, o.lines) && sono::same(targets, o.targets);
-  }
-};
-
-/// Of the device's numbers for image formation, which do not depend on traced lines that lie on the device.
-struct EchoJobFrom
-{
-  std::vector<ScanLine> lines;
-  EchoSettings settings;
-  std::shared_ptr<const PointScatterers> points;
-  InterfaceModel model;
-  std::shared_ptr<const std::vector<TargetSurface>> targets;
-
-  bool same(const EchoJobFrom& o) const
-  {
-    const bool sameTargets = targets == o.targets || (targets && o.targets && sono::same(*targets, *o.targets));
-    return sameTargets && points == o.points && model == o.model && sono::same(settings, o.settings) &&
-           sono::same(lines, o.lines);
-  }
-};
-
-struct RfFrom
-{
-  EchoJobFrom echo;
-  TracedResult traced;
-
-  bool same(const RfFrom& o) const { return traced == o.traced && echo.same(o.echo); }
-};
-
-struct BModeJobFrom
-{
-  BModeSettings settings;
-  int lineCount;
-  int sampleCount;
-  double sampleMm;
-
-  bool same(const BModeJobFrom& o) const
-  {
-    return lineCount == o.lineCount && sampleCount == o.sampleCount && sampleMm == o.sampleMm &&
-           sono::same(settings, o.settings);
-  }
-};
-
-struct BModeFrom
-{
-  RfResult rf;
-  BModeSettings settings;
-
-  bool same(const BModeFrom& o) const { return rf == o.rf && sono::same(settings, o.settings); }
-};
-
-struct ImageFrom
-{
-  ScanGeometry geometry;
-  BModeResult bmode;
-  double pixelMm;
-
-  bool same(const ImageFrom& o) const
-  {
-    return bmode == o.bmode && pixelMm == o.pixelMm && sono::same(geometry, o.geometry);
-  }
-};
-
 DepthOffsets offsetsOf(const TracedLines& traced)
 {
   return { &traced.depthOffsetMm, traced.binCount, traced.binMm };
 }
-
-struct ErrorFrom
-{
-  ScanGeometry geometry;
-  TracedResult traced;
-  bool interactive;
-  double pixelMm;
-
-  bool same(const ErrorFrom& o) const
-  {
-    return traced == o.traced && interactive == o.interactive && pixelMm == o.pixelMm &&
-           sono::same(geometry, o.geometry);
-  }
-};
-
-struct PathsFrom
-{
-  TraceFrom trace;
-  int count;
-
-  bool same(const PathsFrom& o) const { return count == o.count && trace.same(o.trace); }
-};
 
 void fetchRf(const DeviceRf& device, RfLines& lines)
 {
@@ -208,6 +89,7 @@ struct Simulator::Last
 
   LastResult<FieldFrom, std::shared_ptr<const ArrayField>> arrayField;
   LastResult<TraceFrom, TracedResult> traced;
+  std::unique_ptr<BackgroundTrace> rounds; ///< of what was traced last; null: all of them are made
   LastResult<EchoJobFrom, std::shared_ptr<const EchoJob>> echoJob;
   LastResult<RfFrom, RfResult> rf;
   LastResult<BModeJobFrom, std::shared_ptr<const BModeJob>> bmodeJob;
@@ -254,8 +136,49 @@ const Scene& Simulator::needScene() const
 TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
                               const std::vector<TargetSurface>& targets, const Progress& progress)
 {
-  return last_->traced.get({ lines, settings, targets },
-                           [&] { return traceByMode(needScene(), lines, settings, targets, progress); });
+  const TracedResult now = last_->traced.get({ lines, settings, targets }, [&] {
+    const Scene& scene = needScene();
+    last_->rounds = nullptr;
+    if (!settings.refines())
+    {
+      return traceByMode(scene, lines, settings, targets, progress);
+    }
+    if (progressive_ && !runsOnDevice(settings))
+    {
+      last_->rounds = std::make_unique<BackgroundTrace>(scene_, lines, settings, targets, progress);
+      return last_->rounds->best();
+    }
+    RefinedTrace rounds(scene, lines, settings, targets, progress);
+    while (rounds.refine(progress))
+    {
+    }
+    return rounds.result();
+  });
+  if (progressive_ || !last_->rounds)
+  {
+    return now;
+  }
+  last_->traced.from.reset(); // stays so when it is stopped
+  const TracedResult best = std::exchange(last_->rounds, nullptr)->finish(progress);
+  return last_->traced.get({ lines, settings, targets }, [&] { return best; });
+}
+
+bool Simulator::isRefining() const
+{
+  return last_->rounds && last_->rounds->isRunning();
+}
+
+bool Simulator::hasBetter() const
+{
+  return last_->rounds && !(last_->rounds->best() == last_->traced.result);
+}
+
+void Simulator::improve()
+{
+  if (hasBetter())
+  {
+    last_->traced.result = last_->rounds->best();
+  }
 }
 
 std::shared_ptr<const std::vector<RecordedPath>> Simulator::paths(const std::vector<ScanLine>& lines,
@@ -442,7 +365,7 @@ void Simulator::begin(const ImageInput& input, bool wholeImage)
   const auto& before = last_->traced.from;
   const int lineCount = input.settings.geometry.totalLineCount();
   if (!scene_ || !before || !runsOnDevice(tracing) || tracing.imagingMode == ImagingMode::Harmonic ||
-      double(tracing.pathsPerLine) * tracing.maxCollisions * lineCount > bouncesBegun)
+      tracing.refines() || double(tracing.pathsPerLine) * tracing.maxCollisions * lineCount > bouncesBegun)
   {
     return;
   }

@@ -53,6 +53,18 @@ public:
   const std::shared_ptr<const Scene>& scene() const { return scene_; }
 
   ///@{
+  /// Where lines get paths until a target error or a time budget is reached, whether trace() gives the first round's
+  /// and the others are traced in the background, until something else is. Otherwise, and on a GPU, it gives the last
+  /// one's. Off at first.
+  void setProgressive(bool progressive) { progressive_ = progressive; }
+  /// Whether more rounds follow.
+  bool isRefining() const;
+  /// Whether there is a better result by now than trace() gives; improve() takes it over.
+  bool hasBetter() const;
+  void improve();
+  ///@}
+
+  ///@{
   /// The stages one by one.
   TracedResult trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
                      const std::vector<TargetSurface>& targets = {}, const Progress& progress = {});
@@ -88,8 +100,8 @@ public:
   BModeResult bmode(const ImageInput& input, const Progress& progress = {});
   ImageResult image(const ImageInput& input, const Progress& progress = {});
   /// Has a GPU begin what traced(), or with `wholeImage` image(), will be asked for, so that it is under way by then.
-  /// Does nothing on the CPU, nor for a harmonic, whose traces meet on the host, nor where more is to be done than can
-  /// be left to run without a stop.
+  /// Does nothing on the CPU, nor for a harmonic, whose traces meet on the host, nor in rounds, nor where more is to be
+  /// done than can be left to run without a stop.
   void begin(const ImageInput& input, bool wholeImage);
   ///@}
 
@@ -97,7 +109,8 @@ public:
   /// goes through the stages together, bytes alone cross the bus, and the sink takes one group while the next is
   /// computed. A pose's picture differs from the one that is made alone by rounding at most, since all poses share one
   /// region of the scene. Throws Error also for a matrix, whose lines fill a volume, and naming the pose that does not
-  /// meet the label map. No result is kept. Poses of a harmonic, whose traces meet on the host, run one by one.
+  /// meet the label map. No result is kept. Poses of a harmonic, whose traces meet on the host, run one by one, and so
+  /// do those with a target error or a time budget.
   void sweep(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels, const SweepSink& sink,
              const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
 
@@ -115,6 +128,7 @@ private:
 
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Last> last_;
+  bool progressive_ = false;
 };
 
 } // namespace sono

@@ -147,7 +147,7 @@ void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& 
   }
   const bool onDevice = runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda;
   ImageSettings wanted = settings;
-  if (onDevice && settings.tracing.imagingMode == ImagingMode::Fundamental)
+  if (onDevice && settings.tracing.imagingMode == ImagingMode::Fundamental && !settings.tracing.refines())
   {
     wanted.echo = withBeam(settings.echo, partOf(progress, 0.0, 0.1));
     sweepOnDevice(needScene(), poses, wanted, withLabels, sink, partOf(progress, 0.1, 1.0), targets);

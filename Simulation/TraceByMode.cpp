@@ -54,7 +54,67 @@ TracedResult traceHarmonic(const Scene& scene, const std::vector<ScanLine>& line
     secondHarmonic(sent.host(), doubled.host(), harmonicSources(scene, lines, settings), sentGains(settings)));
 }
 
+/// With what is known of its error.
+TracedResult withError(const TracedResult& traced, double errorDb)
+{
+  TracedLines layout = traced.layout();
+  layout.errorDb = errorDb;
+  return traced.onDevice() ? TracedResult(std::move(layout), traced.onDevice(), fetchTraced)
+                           : TracedResult(std::move(layout));
+}
+
+/// Each round anew.
+PathRounds deviceRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                        const std::vector<TargetSurface>& targets)
+{
+  return [&scene, lines, settings, targets](int paths, bool, const ErrorOf& errorOf, const Progress& progress) {
+    TraceSettings some = settings;
+    some.pathsPerLine = paths;
+    const TracedResult traced = traceByMode(scene, lines, some, targets, progress);
+    return withError(traced, errorOf(traced.host()));
+  };
+}
+
+PathRounds toneRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                      const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  const auto rounds = std::make_shared<TraceRounds>(scene, lines, settings, targets, progress);
+  return [rounds](int paths, bool more, const ErrorOf& errorOf, const Progress& inRound) {
+    rounds->traceTo(paths, more, inRound);
+    TracedLines traced = rounds->traced();
+    traced.errorDb = errorOf(traced);
+    return TracedResult(std::move(traced));
+  };
+}
+
+PathRounds harmonicRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                          const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  const auto sent = std::make_shared<TraceRounds>(scene, lines, settings, targets, partOf(progress, 0.0, 0.5));
+  const auto doubled =
+    std::make_shared<TraceRounds>(scene, lines, doubledTone(settings), targets, partOf(progress, 0.5, 1.0));
+  return [=, sources = harmonicSources(scene, lines, settings),
+          gains = sentGains(settings)](int paths, bool more, const ErrorOf& errorOf, const Progress& inRound) {
+    sent->traceTo(paths, more, partOf(inRound, 0.0, 0.5));
+    doubled->traceTo(paths, more, partOf(inRound, 0.5, 1.0));
+    TracedLines traced = secondHarmonic(sent->traced(), doubled->traced(), sources, gains);
+    traced.errorDb = errorOf(traced);
+    return TracedResult(std::move(traced));
+  };
+}
+
 } // namespace
+
+PathRounds roundsByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                        const std::vector<TargetSurface>& targets, const Progress& progress)
+{
+  if (runsOnDevice(settings))
+  {
+    return deviceRounds(scene, lines, settings, targets);
+  }
+  const auto make = settings.imagingMode == ImagingMode::Harmonic ? harmonicRounds : toneRounds;
+  return make(scene, lines, settings, targets, progress);
+}
 
 TracedResult traceByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                          const std::vector<TargetSurface>& targets, const Progress& progress)

@@ -5,6 +5,7 @@
 #include "Scene/Scene.h"
 #include "Trace/Targets.h"
 
+#include <functional>
 #include <vector>
 
 namespace sono {
@@ -13,5 +14,16 @@ namespace sono {
 /// meet on the host. Throws as trace().
 TracedResult traceByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                          const std::vector<TargetSurface>& targets, const Progress& progress);
+
+/// How exact a picture of these lines is, dB.
+using ErrorOf = std::function<double(const TracedLines&)>;
+
+/// Traces on until each line has had `paths`, more than the time before; `more` may follow. The result says what
+/// `errorOf` says of it. Throws Aborted when asked to stop; then it may not be called again.
+using PathRounds = std::function<TracedResult(int paths, bool more, const ErrorOf& errorOf, const Progress& progress)>;
+
+/// The same in rounds. On a GPU each of them traces from the first path on. The scene must live as long.
+PathRounds roundsByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                        const std::vector<TargetSurface>& targets, const Progress& progress);
 
 } // namespace sono

@@ -39,6 +39,15 @@ __attribute__((always_inline)) inline void depositWholeBins(const BeamSegment& g
   }
 }
 
+void addTo(std::vector<AbsorbedSums>& sums, const std::vector<AbsorbedSums>& more)
+{
+  for (std::size_t b = 0; b < sums.size(); ++b)
+  {
+    sums[b].weight += more[b].weight;
+    sums[b].weightedNp += more[b].weightedNp;
+  }
+}
+
 } // namespace
 
 LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double echoSampleMm, double wavesPerMm)
@@ -46,8 +55,8 @@ LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double
   , sums_(sums)
   , tissueBins_(binCount, float(binMm))
   , reverberation_(std::size_t(tissueBins_.count))
-  , absorbedByTissue_(std::size_t(tissueBins_.count))
-  , absorbedToBoundaries_(std::size_t(binCount))
+  , absorbed_{ std::vector<AbsorbedSums>(std::size_t(tissueBins_.count)),
+               std::vector<AbsorbedSums>(std::size_t(binCount)) }
   , cellMm_(std::size_t(tissueBins_.count))
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
@@ -123,16 +132,25 @@ std::vector<ReverberationSums> LineTally::takeReverberation(int paths)
   return means;
 }
 
-std::vector<float> LineTally::takeReverberatedNp()
+std::vector<float> LineTally::takeReverberatedNp(AbsorbedByBin* earlier)
 {
+  if (earlier && !earlier->tissue.empty())
+  {
+    addTo(absorbed_.tissue, earlier->tissue);
+    addTo(absorbed_.boundaries, earlier->boundaries);
+  }
   std::vector<float> means;
   for (int b = 0; b < binCount_; ++b)
   {
-    means.push_back(absorbedNp(absorbedByTissue_[std::size_t(tissueBins_.absorptionBin(b / tissueBins_.each))],
-                               absorbedToBoundaries_[std::size_t(b)]));
+    means.push_back(absorbedNp(absorbed_.tissue[std::size_t(tissueBins_.absorptionBin(b / tissueBins_.each))],
+                               absorbed_.boundaries[std::size_t(b)]));
   }
-  std::fill(absorbedByTissue_.begin(), absorbedByTissue_.end(), AbsorbedSums());
-  std::fill(absorbedToBoundaries_.begin(), absorbedToBoundaries_.end(), AbsorbedSums());
+  if (earlier)
+  {
+    *earlier = absorbed_;
+  }
+  std::fill(absorbed_.tissue.begin(), absorbed_.tissue.end(), AbsorbedSums());
+  std::fill(absorbed_.boundaries.begin(), absorbed_.boundaries.end(), AbsorbedSums());
   return means;
 }
 
@@ -226,8 +244,8 @@ void LineTally::addReverberation(const PathSegment& s)
     }
     if (b == tissueBins_.absorptionBin(b))
     {
-      absorbedByTissue_[std::size_t(b)].weight += level;
-      absorbedByTissue_[std::size_t(b)].weightedNp += level * double(inBin.absorbedNp);
+      absorbed_.tissue[std::size_t(b)].weight += level;
+      absorbed_.tissue[std::size_t(b)].weightedNp += level * double(inBin.absorbedNp);
     }
   }
 }
@@ -252,11 +270,11 @@ void LineTally::arrives(const PathState& path, const PathBoundary& boundary)
     for (const float beside : { -0.5f, 0.5f })
     {
       const auto bin = std::size_t(larger(0.0f, arrival.rangeMm / binMm_ + beside));
-      if (bin < absorbedToBoundaries_.size())
+      if (bin < absorbed_.boundaries.size())
       {
         const double weight = double(std::fabs(arrival.amplitude) / boundaryPerSpeckle);
-        absorbedToBoundaries_[bin].weight += weight;
-        absorbedToBoundaries_[bin].weightedNp += weight * double(arrival.absorbedNp);
+        absorbed_.boundaries[bin].weight += weight;
+        absorbed_.boundaries[bin].weightedNp += weight * double(arrival.absorbedNp);
       }
     }
   }

@@ -13,6 +13,13 @@
 
 namespace sono {
 
+/// What the media have taken of what reverberates on a line.
+struct AbsorbedByBin
+{
+  std::vector<AbsorbedSums> tissue; ///< before its echoes, by TissueBins
+  std::vector<AbsorbedSums> boundaries;
+};
+
 /// What the paths of one line leave on its main beam, on the CPU. A path deposits where it crosses the plane at r,
 /// whatever its slope: I(r) is the sum of I w_R over those crossings, averaged over each radial bin. Beside it stand
 /// the other sums of TracedBin.h. In Acoustic a path that has been reflected deposits by range instead, see
@@ -45,8 +52,9 @@ public:
   bool hasReverberated() const { return reverberated_ || lastEcho_ >= 0; }
   /// What reverberated in each of the TissueBins, mean of `paths` paths, and forgets it; empty: nothing has.
   std::vector<ReverberationSums> takeReverberation(int paths);
-  /// What the media have taken of what reverberated, Np, by radial bin, and forgets it.
-  std::vector<float> takeReverberatedNp();
+  /// What the media have taken of what reverberated, Np, by radial bin, and forgets it. To `earlier`, unless it is
+  /// null, it is added before.
+  std::vector<float> takeReverberatedNp(AbsorbedByBin* earlier);
   /// Adds the boundary echoes to a line's samples and forgets them.
   void takeEchoes(std::complex<float>* samples);
 
@@ -63,8 +71,7 @@ private:
   TissueBins tissueBins_;
   std::vector<ReverberationSums> reverberation_; ///< of the paths since it was taken
   bool reverberated_ = false;                    ///< since the line began
-  std::vector<AbsorbedSums> absorbedByTissue_;   ///< before its echoes
-  std::vector<AbsorbedSums> absorbedToBoundaries_;
+  AbsorbedByBin absorbed_;
   std::vector<float> cellMm_; ///< see resolutionCell, in the middle of each bin; of a line that has reverberated
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero

@@ -17,6 +17,8 @@ struct PathRange
 {
   int first;
   int last;
+
+  SONO_HD int count() const { return last - first; }
 };
 SONO_HD inline PathRange batchRange(int paths, int batches, int batch)
 {

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace sono {
 
@@ -181,39 +183,90 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   return way;
 }
 
-/// Traces one line into its rows of the result. Sums run in the order of the batches and paths.
+} // namespace
+
+/// What the paths of a line have left, while more may follow: means of its batches.
+struct LineMeans
+{
+  std::vector<std::vector<BinSums<double>>> bins;
+  std::vector<std::vector<ReverberationSums>> reverberation; ///< of a batch without any: empty
+  AbsorbedByBin absorbed;
+  bool isHeard = false; ///< whether anything has reverberated
+};
+
+namespace {
+
+/// The paths of a line from `before` to `paths`.
+struct Round
+{
+  int before;
+  int paths;
+};
+
+/// The mean of both, where `share` of all is what was added. Empty: zeros.
+template<class Sums>
+void addMeans(std::vector<Sums>& means, std::vector<Sums> added, double share)
+{
+  const bool isFirst = means.empty();
+  if (isFirst)
+  {
+    means = std::move(added);
+  }
+  for (std::size_t i = 0; i < means.size() && !(isFirst && share == 1.0); ++i)
+  {
+    for (std::size_t sum = 0; sum < std::size(means[i].of); ++sum)
+    {
+      const double before = isFirst ? 0.0 : means[i].of[sum];
+      const double now = isFirst ? means[i].of[sum] : added.empty() ? 0.0 : added[i].of[sum];
+      means[i].of[sum] = before + (now - before) * share;
+    }
+  }
+}
+
+/// Traces one line into its rows of the result. Sums run in the order of the batches and paths. `earlier` is what the
+/// paths of earlier rounds have left, to which this one's are added; null: there is this round alone.
 template<class Space>
-inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const YieldPoint& yieldPoint,
-                        LineTally& tally, TracedReverberation& kept, TracedLines& out)
+inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, const Round& round,
+                        const YieldPoint& yieldPoint, LineTally& tally, LineMeans* earlier, TracedReverberation& kept,
+                        TracedLines& out)
 {
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
   const AxisWay way = followAxis(space, setup, index, out);
   tally.begin(view, line, std::uint32_t(index), way.view());
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
-  tally.setEchoWeight(1.0f);
+  const float shareBefore = float(round.before) / float(round.paths);
+  if (round.before > 0)
+  {
+    std::transform(echoes, echoes + out.echoCount, echoes,
+                   [&](const std::complex<float>& echo) { return echo * shareBefore; });
+  }
+  tally.setEchoWeight(1.0f - shareBefore);
   LineStart start;
   std::vector<BinSums<double>> shared(std::size_t(out.binCount), BinSums<double>{});
-  std::vector<std::vector<BinSums<double>>> means;           // of batches
-  std::vector<std::vector<ReverberationSums>> reverberation; // the same
+  LineMeans own;
+  LineMeans& means = earlier ? *earlier : own;
   if (!view.startsApart)
   {
     start = startLine(view, space, line, tally);
     shared = tally.takeBins(1);
     if (!start.meets)
     {
-      writeBins(shared, means, setup.frequencyMHz, index, out);
+      writeBins(shared, means.bins, setup.frequencyMHz, index, out);
       tally.takeEchoes(echoes);
       return;
     }
   }
 
-  tally.setEchoWeight(1.0f / float(setup.paths));
-  const int batches = std::min(batchCount, setup.paths);
+  tally.setEchoWeight(1.0f / float(round.paths));
+  const int batches = round.before > 0 ? int(means.bins.size()) : std::min(batchCount, round.paths);
+  means.bins.resize(std::size_t(batches));
+  means.reverberation.resize(std::size_t(batches));
   std::vector<BounceScramble> scrambles(std::size_t(scrambleCount(view)));
   for (int batch = 0; batch < batches; ++batch)
   {
-    const auto [first, last] = batchRange(setup.paths, batches, batch);
+    const int first = batchRange(round.before, batches, batch).count();
+    const int last = batchRange(round.paths, batches, batch).count();
     for (std::size_t b = 0; b < scrambles.size(); ++b)
     {
       scrambles[b] = makeScramble(view, std::uint32_t(index), std::uint32_t(batch), int(b));
@@ -223,7 +276,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       const int pause = std::min(last, path + pathsPerFold); // a few milliseconds' worth
       for (; path < pause; ++path)
       {
-        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - first), scrambles.data() };
+        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path), scrambles.data() };
         if (view.startsApart)
         {
           const TraceLine own = pathLine(view, line, key);
@@ -241,31 +294,39 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
         yieldPoint();
       }
     }
-    means.push_back(tally.takeBins(last - first));
+    if (last == first)
+    {
+      continue;
+    }
+    const double share = double(last - first) / double(last);
+    addMeans(means.bins[std::size_t(batch)], tally.takeBins(last - first), share);
     if (!out.reverberation.empty())
     {
-      reverberation.push_back(tally.takeReverberation(last - first));
+      addMeans(means.reverberation[std::size_t(batch)], tally.takeReverberation(last - first), share);
     }
   }
-  if (!out.reverberation.empty() && tally.hasReverberated())
+  means.isHeard = means.isHeard || tally.hasReverberated();
+  if (!out.reverberation.empty() && means.isHeard)
   {
-    keepReverberation(reverberation, tally.takeReverberatedNp(), setup.frequencyMHz, index, kept, out);
+    keepReverberation(means.reverberation, tally.takeReverberatedNp(earlier ? &earlier->absorbed : nullptr),
+                      setup.frequencyMHz, index, kept, out);
   }
   tally.takeEchoes(echoes);
-  writeBins(shared, means, setup.frequencyMHz, index, out);
+  writeBins(shared, means.bins, setup.frequencyMHz, index, out);
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index,
+SONO_SIMD_CLONES __attribute__((flatten)) void traceLine(const TraceSetup& setup, int index, const Round& round,
                                                          const YieldPoint& yieldPoint, LineTally& tally,
-                                                         TracedReverberation& kept, TracedLines& out)
+                                                         LineMeans* earlier, TracedReverberation& kept,
+                                                         TracedLines& out)
 {
-  traceLineIn(setup.space(), setup, index, yieldPoint, tally, kept, out);
+  traceLineIn(setup.space(), setup, index, round, yieldPoint, tally, earlier, kept, out);
 }
 
-void traceLineByNanoVDB(const TraceSetup& setup, int index, const YieldPoint& yieldPoint, LineTally& tally,
-                        TracedReverberation& kept, TracedLines& out)
+void traceLineByNanoVDB(const TraceSetup& setup, int index, const Round& round, const YieldPoint& yieldPoint,
+                        LineTally& tally, LineMeans* earlier, TracedReverberation& kept, TracedLines& out)
 {
-  traceLineIn(setup.nanoSpace(), setup, index, yieldPoint, tally, kept, out);
+  traceLineIn(setup.nanoSpace(), setup, index, round, yieldPoint, tally, earlier, kept, out);
 }
 
 } // namespace
@@ -280,6 +341,7 @@ TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std
   out.binCount = settings.binCount();
   out.echoSampleMm = settings.echoSampleMm;
   out.echoCount = settings.echoCount();
+  out.paths = settings.pathsAtMost();
   if (double(out.lineCount) * out.echoCount > 5e8)
   {
     throw Error("the number of scan lines is " + std::to_string(out.lineCount) +
@@ -288,46 +350,52 @@ TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std
   return out;
 }
 
-TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                  const Progress& progress, const std::vector<TargetSurface>& targets)
+TraceRounds::TraceRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                         const std::vector<TargetSurface>& targets, const Progress& progress)
+  : setup_(std::make_unique<TraceSetup>(scene, lines, settings, targets, progress, Records::OnDemand))
+  , march_(settings.march)
+  , out_(tracedLayout(int(lines.size()), settings, targets))
 {
-  const Progress preparing = partOf(progress, 0.0, 0.3);
-  const TraceSetup setup(scene, lines, settings, targets, preparing, Records::OnDemand);
-  const Progress tracing = partOf(progress, 0.3, 1.0);
-  TracedLines out = tracedLayout(int(lines.size()), settings, targets);
-  TracedLines::visitArrays(out, [&out](auto& values, const char*, TracedAxis axis) {
-    values.assign(std::size_t(out.lineCount) * (axis == TracedAxis::EchoSamples ? out.echoCount : out.binCount), {});
+  out_.paths = 0;
+  TracedLines::visitArrays(out_, [this](auto& values, const char*, TracedAxis axis) {
+    values.assign(std::size_t(out_.lineCount) * (axis == TracedAxis::EchoSamples ? out_.echoCount : out_.binCount), {});
   });
   if (!settings.rangeIsTime())
   {
-    out.depthOffsetMm.clear();
+    out_.depthOffsetMm.clear();
   }
   if (!settings.reverberates())
   {
-    out.reverberation.clear();
-    out.reverberationError.clear();
-    out.reverberationNpPerMHz.clear();
+    out_.reverberation.clear();
+    out_.reverberationError.clear();
+    out_.reverberationNpPerMHz.clear();
   }
+}
 
-  TracedReverberation kept(out);
+TraceRounds::~TraceRounds() = default;
+
+void TraceRounds::traceTo(int paths, bool more, const Progress& progress)
+{
+  TracedReverberation kept(out_);
   tbb::enumerable_thread_specific<LineTally> tallies([&] {
-    return LineTally(out.binCount, out.binMm, binSumsOf(settings.model), out.echoCount, out.echoSampleMm,
-                     settings.frequencyMHz / assumedSoundSpeedMmPerUs);
+    return LineTally(out_.binCount, out_.binMm, binSumsOf(out_.model), out_.echoCount, out_.echoSampleMm,
+                     setup_->frequencyMHz / assumedSoundSpeedMmPerUs);
   });
-  parallelFor(out.lineCount, tracing, [&](int i, const YieldPoint& yieldPoint) {
-    if (settings.march == March::NanoVDB)
-    {
-      traceLineByNanoVDB(setup, i, yieldPoint, tallies.local(), kept, out);
-    }
-    else
-    {
-      traceLine(setup, i, yieldPoint, tallies.local(), kept, out);
-    }
+  const Round round{ out_.paths, paths };
+  if (more)
+  {
+    earlier_.resize(std::size_t(out_.lineCount));
+  }
+  parallelFor(out_.lineCount, progress, [&](int i, const YieldPoint& yieldPoint) {
+    LineMeans* earlier = earlier_.empty() ? nullptr : &earlier_[std::size_t(i)];
+    const auto traceOne = march_ == March::NanoVDB ? traceLineByNanoVDB : traceLine;
+    traceOne(*setup_, i, round, yieldPoint, tallies.local(), earlier, kept, out_);
   });
-  if (!out.reverberation.empty())
+  out_.paths = paths;
+  if (!out_.reverberation.empty())
   {
     const auto forHeard = [&](const auto& work) {
-      parallelFor(out.lineCount, {}, [&](int i) {
+      parallelFor(out_.lineCount, {}, [&](int i) {
         if (isHeardAround(kept, i))
         {
           work(i);
@@ -342,13 +410,20 @@ TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const 
       }
     });
     forHeard([&](int i) { sumLinesAround(i, kept); });
-    forHeard([&](int i) { writeReverberation(setup, kept, i, out); });
+    forHeard([&](int i) { writeReverberation(*setup_, kept, i, out_); });
   }
   for (const LineTally& tally : tallies)
   {
-    out.segments += tally.segments();
+    out_.segments += tally.segments();
   }
-  return out;
+}
+
+TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                  const Progress& progress, const std::vector<TargetSurface>& targets)
+{
+  TraceRounds round(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
+  round.traceTo(settings.pathsAtMost(), false, partOf(progress, 0.3, 1.0));
+  return round.take();
 }
 
 } // namespace sono

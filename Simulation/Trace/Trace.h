@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace sono {
@@ -46,10 +47,12 @@ struct TracedLines
   std::vector<float> reverberationError;
   /// The same as attenuationNpPerMHz of what reverberates, boundary echoes included.
   std::vector<float> reverberationNpPerMHz;
-  int echoCount = 0;                                         ///< 0: none, as of Acoustic without reverberation
-  double echoSampleMm = 0.0;                                 ///< sample s lies at s * echoSampleMm
-  std::vector<std::complex<float>> boundaryEcho;             ///< lineCount x echoCount
-  std::uint64_t segments = 0;                                ///< path segments traced
+  int echoCount = 0;                             ///< 0: none, as of Acoustic without reverberation
+  double echoSampleMm = 0.0;                     ///< sample s lies at s * echoSampleMm
+  std::vector<std::complex<float>> boundaryEcho; ///< lineCount x echoCount
+  std::uint64_t segments = 0;                    ///< path segments traced
+  int paths = 0;                                 ///< of each line
+  double errorDb = 0.0; ///< of the picture, where it was asked for (see RefinedTrace.h); 0: not known
   std::shared_ptr<const std::vector<TargetSurface>> targets; ///< that it was traced with; null: none
 
   /// The arrays of bins that paths leave, with the names that they have in a pipeline, in the order of BinArray
@@ -77,9 +80,37 @@ struct TracedLines
 /// What trace() will give, without its arrays. Throws Error when it would not fit.
 TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std::vector<TargetSurface>& targets = {});
 
-/// Traces every line on the CPU, whatever device the settings name. The result depends on the arguments alone, to the
-/// bit, not on the threads. Throws Error when no line meets the volume or a target is not closed, Aborted when asked to
-/// stop.
+struct LineMeans;
+struct TraceSetup;
+
+/// Traces every line on the CPU in rounds, whatever device the settings name. So many paths in rounds leave what as
+/// many at once do, but for rounding. The result depends on the arguments alone, to the bit, not on the threads.
+class TraceRounds
+{
+public:
+  /// Nothing is traced yet. Throws Error when no line meets the volume or a target is not closed, Aborted when asked to
+  /// stop. The scene must live as long.
+  TraceRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+              const std::vector<TargetSurface>& targets, const Progress& progress);
+  ~TraceRounds();
+  TraceRounds(const TraceRounds&) = delete;
+  TraceRounds& operator=(const TraceRounds&) = delete;
+
+  /// Until each line has had `paths`, more than before. Where `more` are to follow, the first round has at least
+  /// batchCount, and what a line has left is kept, 100 to 200 KB each. Throws Aborted when asked to stop; then nothing
+  /// but the destructor may be called.
+  void traceTo(int paths, bool more, const Progress& progress);
+  const TracedLines& traced() const { return out_; }
+  TracedLines take() { return std::move(out_); }
+
+private:
+  std::unique_ptr<const TraceSetup> setup_;
+  March march_;
+  TracedLines out_;
+  std::vector<LineMeans> earlier_; ///< of each line; empty: there is one round
+};
+
+/// One round of all the settings' paths, whatever error they ask for. Throws as TraceRounds.
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                   const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
 

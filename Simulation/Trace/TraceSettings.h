@@ -31,6 +31,10 @@ struct TraceSettings
   InterfaceModel model = InterfaceModel::Acoustic;
   Sampling sampling = Sampling::LowDiscrepancy;
   int pathsPerLine = 256; ///< levels within 0.7 dB (rms) in a chest, physics.md 9
+  /// 0: all lines get pathsPerLine. Otherwise a Simulator traces in rounds until the picture is as exact, at most
+  /// pathsPerLine (see RefinedTrace.h); trace() itself knows a number alone.
+  double targetErrorDb = 0.0;
+  double timeBudgetS = 0.0; ///< the same: rounds that would end later are not begun. 0: no limit
   int maxCollisions = 7;
   double coherenceMm =
     100.0; ///< C0 in w_R = C0 / (C0 + distance); the paper's 0.1, read in metres as its other lengths
@@ -60,7 +64,17 @@ struct TraceSettings
   {
     visitor(self.pathsPerLine,
             Parameter{ "pathsPerLine", "Paths per Line", between(1, 1e7),
-                       "Paths per scan line, 1 to 10,000,000, no unit; the noise falls with their square root." });
+                       "Paths per scan line, 1 to 10,000,000, no unit; the noise falls with their square root. With a "
+                       "target error or a time budget, the most that a line may get." });
+    visitor(self.targetErrorDb,
+            Parameter{ "targetErrorDb", "Target Error (dB)", between(0, 10),
+                       "How exact the picture is to be, in dB, 0 to 10: lines get paths until its noise, the rms of "
+                       "the B-mode level's error over what is shown above -60 dB of its peak, before any gain, is as "
+                       "low, or until they have had all of Paths per Line. 0: they get all." });
+    visitor(self.timeBudgetS,
+            Parameter{ "timeBudgetS", "Time Budget (s)", between(0, 3600),
+                       "How long lines get paths, in s, 0 to 3600, as exactly as that can be foreseen: the same "
+                       "settings then give another picture on another day. 0: as long as it takes." });
     visitor(self.maxCollisions, Parameter{ "maxCollisions", "Max Collisions", between(0, 1000),
                                            "Boundaries that a path may meet, 0 to 1000, no unit." });
     visitor(self.coherenceMm,
@@ -128,6 +142,10 @@ struct TraceSettings
   /// Whether paths that have been reflected are heard where their time says; in Amadou2024 they are where they cross
   /// the line.
   bool reverberates() const { return rangeIsTime() && reverberation; }
+  /// Whether a Simulator traces in rounds. A single path has no error.
+  bool refines() const { return !deterministic && (targetErrorDb > 0.0 || timeBudgetS > 0.0); }
+  /// Paths that a line gets at most.
+  int pathsAtMost() const { return deterministic ? 1 : pathsPerLine; }
   /// How deep paths are followed, mm: what is shown within the depth may lie deeper.
   double pathDepthMm() const { return rangeIsTime() ? depthMm * deepestPerRange : depthMm; }
   /// Samples of the intensity, to the paths' depth, and of the boundary echoes, to the image's, along a line.

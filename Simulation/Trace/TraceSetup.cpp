@@ -221,7 +221,7 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   {
     throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
   }
-  paths = settings.deterministic ? 1 : settings.pathsPerLine;
+  paths = settings.pathsAtMost();
   frequencyMHz = settings.frequencyMHz;
 }
 
