@@ -44,7 +44,8 @@ std::string UltrasoundStages::keptKey()
                        owner_->GetNumberOfInputConnections(Filter::SCATTERERS) == 0 &&
                        owner_->GetNumberOfInputConnections(Filter::PULSE_ECHO_FIELD) == 0;
   const DisplaySettings display = converter->DisplaySettings();
-  if (!isAlone || field_.preview || owner_->GetErrorMap() || display.persistence > 0.0)
+  if (!isAlone || field_.preview || owner_->GetErrorMap() || display.persistence > 0.0 ||
+      settings_.tracing.timeBudgetS > 0.0)
   {
     return {};
   }
@@ -144,10 +145,11 @@ void UltrasoundStages::say(const std::string& sentence)
   }
 }
 
-/// The picture that was just made.
-void UltrasoundStages::keep(vtkFieldData* anatomy)
+/// The picture that was just made, with the fields that it has besides the acquisition.
+void UltrasoundStages::keep(vtkFieldData* fields)
 {
-  if (key_.empty() || key_ != keptKey()) // a file may have changed meanwhile
+  // A file may have changed meanwhile, and a better picture may follow.
+  if (key_.empty() || key_ != keptKey() || isRefining() || hasBetter())
   {
     return;
   }
@@ -155,7 +157,7 @@ void UltrasoundStages::keep(vtkFieldData* anatomy)
   std::copy_if(traceWarnings_.begin(), traceWarnings_.end(), std::back_inserter(warnings),
                [](const std::string& sentence) { return !sentence.empty(); });
   sono::keep(keptFolder(scene->GetCacheFolder()), keptPicture, key_,
-             { packedArrays(pictureArrays_), packedArrays(anatomy), packedSentences(warnings) });
+             { packedArrays(pictureArrays_), packedArrays(fields), packedSentences(warnings) });
 }
 
 } // namespace sono

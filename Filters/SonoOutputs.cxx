@@ -110,12 +110,22 @@ void fillProbe(const ProbeField& probe, vtkPolyData* polyData)
   writeProbe(probe, polyData->GetFieldData());
 }
 
+void writeReached(const TracedLines& layout, vtkFieldData* fields)
+{
+  writeNumber("TracedPaths", layout.paths, fields);
+  if (layout.errorDb > 0.0)
+  {
+    writeNumber("ErrorDb", layout.errorDb, fields);
+  }
+}
+
 void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, vtkImageData* lines)
 {
   const TracedLines& layout = traced.layout();
   setLineImageLayout({ layout.binCount, layout.lineCount, layout.binMm / 2.0, layout.binMm }, lines);
   writeProbe(probe, lines->GetFieldData());
   writeNumber("SamplingMHz", samplingMHz, lines->GetFieldData());
+  writeReached(layout, lines->GetFieldData());
   addTraced(traced, lines);
   vtkSonoResultHandle::Attach(traced, tracedArrays(lines), lines->GetFieldData());
 }

@@ -223,6 +223,10 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   if (!(traced == traced_)) // on a GPU it is under way
   {
     traced_ = traced;
+    if (isImproved_)
+    {
+      return traced; // of the same lines, of which all is said
+    }
     pulseTime_ = 0;
     traceWarnings_ = { contactWarning() };
     const std::tuple asksFor(simulator_.scene().get(), tracing.maxCollisions, tracing.faceReflection, tracing.depthMm);
@@ -277,18 +281,20 @@ void UltrasoundStages::makeLines(const Result& result, Result (*resultOf)(vtkIma
   kept->ShallowCopy(lines);
 }
 
-void UltrasoundStages::makePaths(int port, const ImageInput& image, vtkPolyData* output)
+/// Some of the `paths` of each line.
+void UltrasoundStages::makePaths(int port, ImageInput image, int paths, vtkPolyData* output)
 {
-  const auto paths =
+  image.settings.tracing.pathsPerLine = paths;
+  const auto recorded =
     simulator_.paths(makeScanLines(image.settings.geometry, image.pose), image.settings.tracing,
                      tracer->GetNumberOfShownPaths(), image.targets, progress(tracer, tracingEnd, 1.0));
   if (port == Filter::RAY_PATHS)
   {
-    fillPaths(*paths, output);
+    fillPaths(*recorded, output);
   }
   else
   {
-    fillHits(*paths, mediaNames(*simulator_.scene(), image.targets), output);
+    fillHits(*recorded, mediaNames(*simulator_.scene(), image.targets), output);
   }
 }
 
@@ -354,14 +360,19 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     return;
   }
   simulator_.setScene(vtkSonoSceneHandle::Get(blocks));
+  simulator_.setProgressive(owner_->GetProgressive());
+  isImproved_ = simulator_.improve();
   ImageInput image{ field_.pose, settings_, targets(inputs[Filter::TARGETS], blocks), nullptr };
   const TracedResult traced = trace(image);
   fields->PassData(blocks->GetFieldData());
   if (port == Filter::RAY_PATHS || port == Filter::BOUNDARY_HITS)
   {
-    return tracer->GetNumberOfShownPaths() != 0 ? makePaths(port, image, vtkPolyData::SafeDownCast(made)) : void();
+    return tracer->GetNumberOfShownPaths() != 0
+             ? makePaths(port, image, traced.layout().paths, vtkPolyData::SafeDownCast(made))
+             : void();
   }
   fields->PassData(acquisition_);
+  writeReached(traced.layout(), fields);
   auto* lines = vtkImageData::SafeDownCast(made);
   if (port == Filter::TRACED_LINES)
   {
@@ -403,7 +414,10 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   makeImage(image, timeOf(inputs[Filter::LABELS_OR_SCENE]),
             owner_->GetErrorMap() ? errorArrays_->GetScalars() : nullptr, world,
             vtkImageData::GetData(output, Filter::FLAT_IMAGE));
-  keep(blocks->GetFieldData());
+  vtkNew<vtkFieldData> kept;
+  kept->ShallowCopy(blocks->GetFieldData());
+  writeReached(traced.layout(), kept);
+  keep(kept);
 }
 
 } // namespace sono

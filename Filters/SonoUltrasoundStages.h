@@ -75,6 +75,9 @@ public:
   bool findKept(int port);
   /// Whether somebody uses by now what was left empty.
   bool isLeftWanted() const;
+  /// Whether more rounds of paths are traced in the background, and whether make() gives a better result by now.
+  bool isRefining() const { return simulator_.isRefining(); }
+  bool hasBetter() const { return simulator_.hasBetter(); }
   /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
   /// stop.
   void make(int port, vtkInformationVector** input, vtkInformationVector* output);
@@ -99,13 +102,13 @@ private:
   template<class Result, class Fill>
   void makeLines(const Result& result, Result (*resultOf)(vtkImageData*), const Fill& fill,
                  vtkSmartPointer<vtkImageData>& kept, vtkImageData* lines);
-  void makePaths(int port, const ImageInput& image, vtkPolyData* output);
+  void makePaths(int port, ImageInput image, int paths, vtkPolyData* output);
   void makeImage(const ImageInput& image, std::optional<double> time, vtkDataArray* errors, vtkImageData* world,
                  vtkImageData* flat);
   std::string keptKey();
   void say(const std::string& sentence);
   bool takeKept(vtkInformationVector* output);
-  void keep(vtkFieldData* anatomy);
+  void keep(vtkFieldData* fields);
   void makeErrorMap(const ImageInput& image, const TracedResult& traced);
 
   vtkSonoUltrasound* owner_;
@@ -125,6 +128,7 @@ private:
   vtkMTimeType pulseTime_ = 0; ///< of the stage when it was read; 0: it is to be read
   // The last results, and the arrays that stay as long as they do.
   TracedResult traced_;
+  bool isImproved_ = false;   ///< by more rounds, of the same paths
   bool isAsked_ = false;      ///< for what is traced, since the last announcement
   bool isImageAsked_ = false; ///< for an image, the same
   Display display_;

@@ -85,6 +85,8 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
 {
   auto settings = sono::settingsIn<sono::TraceSettings>(*this->Parameters);
   settings.pathsPerLine = probe.preview ? sono::interactivePaths(settings.pathsPerLine) : settings.pathsPerLine;
+  settings.targetErrorDb = probe.preview ? 0.0 : settings.targetErrorDb;
+  settings.timeBudgetS = probe.preview ? 0.0 : settings.timeBudgetS;
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
   settings.imagingMode = probe.imagingMode;
@@ -151,8 +153,10 @@ int vtkSonoRayTracer::RequestData(vtkInformation*, vtkInformationVector** input,
     }
     if (this->NumberOfShownPaths != 0)
     {
-      const auto paths = this->Simulator->paths(scanLines, settings, this->NumberOfShownPaths, targets,
-                                                sono::partOf(progress, share, 1.0));
+      sono::TraceSettings shown = settings;
+      shown.pathsPerLine = traced.layout().paths;
+      const auto paths =
+        this->Simulator->paths(scanLines, shown, this->NumberOfShownPaths, targets, sono::partOf(progress, share, 1.0));
       sono::fillPaths(*paths, vtkPolyData::GetData(output, 2));
       sono::fillHits(*paths, sono::mediaNames(*scene, targets), vtkPolyData::GetData(output, 3));
     }

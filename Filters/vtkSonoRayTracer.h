@@ -25,7 +25,8 @@ struct TraceSettings;
  * Output 0: lines x radial bins, x the depth in mm and y the number of the scan line, with the point arrays
  * "Intensity" (mean one-way intensity, 1 at the transducer), "StandardError" (of that mean) and
  * "AttenuationNpPerMHz" (two-way exponent of the amplitude per MHz). In the model Acoustic they reach 4 % deeper than
- * the image, since range is time there. Its field data carry the scene, the probe, the boundary echoes and
+ * the image, since range is time there. Its field data carry "TracedPaths" (of a line), with a target error or a time
+ * budget "ErrorDb" (of the picture, as far as it was reached), the scene, the probe, the boundary echoes and
  * "DepthOffsetMm" (by line and range: how much deeper than the range of each bin's start lies what is shown there; of
  * Acoustic), so that it alone suffices for vtkSonoImageFormation.
  * Output 1: lines x RF samples with the complex point array "BoundaryEcho", of Amadou 2024; empty for Acoustic.
@@ -68,6 +69,8 @@ public:
   sonoParameter(InterfaceModel, int);
   sonoParameter(Sampling, int);
   sonoParameter(PathsPerLine, int);
+  sonoParameter(TargetErrorDb, double);
+  sonoParameter(TimeBudgetS, double);
   sonoParameter(MaxCollisions, int);
   sonoSwitch(Reverberation);
   sonoParameter(FaceReflection, double);

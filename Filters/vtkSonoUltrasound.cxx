@@ -61,6 +61,7 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
     stage->PrintSelf(os, indent.GetNextIndent());
   }
   os << indent << "ErrorMap: " << this->ErrorMap << endl;
+  os << indent << "Progressive: " << this->Progressive << endl;
 }
 
 template<class Stage>
@@ -94,11 +95,31 @@ sonoStage(vtkSonoBMode, BMode, bmode);
 sonoStage(vtkSonoScanConverter, ScanConverter, converter);
 #undef sonoStage
 
+void vtkSonoUltrasound::SetProgressive(bool progressive)
+{
+  const bool isUnfinished = this->IsRefining() || this->HasBetter();
+  this->Progressive = progressive;
+  if (isUnfinished && !progressive)
+  {
+    this->Modified();
+  }
+}
+
+bool vtkSonoUltrasound::IsRefining()
+{
+  return this->Inside->isRefining();
+}
+
+bool vtkSonoUltrasound::HasBetter()
+{
+  return this->Inside->hasBetter();
+}
+
 vtkMTimeType vtkSonoUltrasound::GetMTime()
 {
-  if (this->Inside->isLeftWanted())
+  if (this->Inside->isLeftWanted() || (this->Progressive && this->Inside->hasBetter()))
   {
-    this->MTime.Modified(); // without telling: nothing has changed but who looks
+    this->MTime.Modified(); // without telling: nothing has changed but who looks, or what is known
   }
   vtkMTimeType time = this->Superclass::GetMTime();
   for (vtkAlgorithm* stage : this->Inside->withSettings())

@@ -32,7 +32,9 @@ class vtkSonoSceneBuilder;
  * paths, 7 the image in the probe's own frame, mm, 8 the error map (of vtkSonoErrorMap),
  * 9 the boundaries that the ray paths met. (ParaView has room for no more than ten.)
  *
- * The error map is empty unless ErrorMap is on. The two images have its array "ErrorPercent" then, too.
+ * The images, the traced lines and the error map carry the field arrays "TracedPaths" and, with a target error or a
+ * time budget, "ErrorDb": what was reached. The error map is empty unless ErrorMap is on. The two images have its array
+ * "ErrorPercent" then, too.
  *
  * The settings are those of the stages: ask for a stage, and set it up. They have the stages' defaults but for those
  * of SonoChestDefaults.h. The ray tracer's Device is that of all stages, the scan converter's PixelMm that of the error
@@ -100,6 +102,20 @@ public:
   vtkBooleanMacro(ErrorMap, bool);
   ///@}
 
+  ///@{
+  /**
+   * With a target error or a time budget of the tracer, whether a picture of the first round of paths is made at once
+   * and the others are traced in the background, until another picture is wanted: HasBetter says when an Update makes a
+   * better one, IsRefining whether one may follow. Off, an Update gives the last one; it waits for what is under way.
+   * Default off: for whoever looks on.
+   */
+  void SetProgressive(bool progressive);
+  vtkGetMacro(Progressive, bool);
+  vtkBooleanMacro(Progressive, bool);
+  bool IsRefining();
+  bool HasBetter();
+  ///@}
+
   /**
    * An output is made when it is asked for: the images by Update(), another by Update(port).
    */
@@ -125,6 +141,7 @@ private:
 
   std::unique_ptr<sono::UltrasoundStages> Inside;
   bool ErrorMap = false;
+  bool Progressive = false;
 };
 
 #endif

@@ -173,12 +173,14 @@ bool Simulator::hasBetter() const
   return last_->rounds && !(last_->rounds->best() == last_->traced.result);
 }
 
-void Simulator::improve()
+bool Simulator::improve()
 {
-  if (hasBetter())
+  const bool isBetter = hasBetter();
+  if (isBetter)
   {
     last_->traced.result = last_->rounds->best();
   }
+  return isBetter;
 }
 
 std::shared_ptr<const std::vector<RecordedPath>> Simulator::paths(const std::vector<ScanLine>& lines,

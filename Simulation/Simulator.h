@@ -59,9 +59,10 @@ public:
   void setProgressive(bool progressive) { progressive_ = progressive; }
   /// Whether more rounds follow.
   bool isRefining() const;
-  /// Whether there is a better result by now than trace() gives; improve() takes it over.
+  /// Whether there is a better result by now than trace() gives.
   bool hasBetter() const;
-  void improve();
+  /// Takes it over; false: there is none.
+  bool improve();
   ///@}
 
   ///@{

@@ -79,6 +79,7 @@ bool hasChangesBeside(vtkSMProxy* moving)
 
 pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
   : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, withLayout(smproxy, group), parentObject)
+  , Refining(smproxy)
 {
   // Somebody may drag this probe. It is no change of an image and waits for no Apply.
   vtkSMPropertyHelper(smproxy, "PrepareInteraction", true).Set(1);
@@ -228,6 +229,7 @@ bool pqSonoProbeWidget::isLive() const
 
 void pqSonoProbeWidget::start()
 {
+  this->Refining.pause();
   this->findSkin();
   if (!this->Moving)
   {
@@ -414,6 +416,7 @@ void pqSonoProbeWidget::rest()
     shown->drawInFull();
   }
   const auto after = this->pose();
+  this->Refining.begin();
   {
     // So that undo finds the pose before the movement, not one on the way.
     SCOPED_UNDO_EXCLUDE();

@@ -1,6 +1,7 @@
 #ifndef pqSonoProbeWidget_h
 #define pqSonoProbeWidget_h
 
+#include "SonoRefining.h"
 #include "SonoShownSurfaces.h"
 
 #include "pqInteractivePropertyWidget.h"
@@ -26,7 +27,7 @@ class vtkSonoProbeRepresentation;
  *
  * "Live" needs no Apply: while the probe moves, its pose and Preview = 1 go to the proxy and the views show what comes
  * of it; when it has rested for a moment, the pose is set once more with Preview = 0, as one step of undo and of the
- * trace.
+ * trace. With a target error the picture then gets better while it is looked at (SonoRefining).
  */
 class pqSonoProbeWidget : public pqInteractivePropertyWidget
 {
@@ -86,6 +87,7 @@ private:
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests
   SonoShownSurfaces Surfaces;
+  SonoRefining Refining;
 };
 
 #endif
