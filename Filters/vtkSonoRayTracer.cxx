@@ -89,6 +89,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   settings.timeBudgetS = probe.preview ? 0.0 : settings.timeBudgetS;
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
+  settings.fractionalBandwidth = probe.receivedBandwidth();
   settings.imagingMode = probe.imagingMode;
   settings.facePressureKPa = probe.facePressureKPa;
   settings.aperture = probe.aperture();

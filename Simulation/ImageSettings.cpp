@@ -32,6 +32,7 @@ void ImageSettings::matchStages()
   echo.depthMm = geometry.rangeMm();
   tracing.frequencyMHz = echo.sentFrequencyMHz();
   tracing.imagingMode = echo.imagingMode;
+  tracing.fractionalBandwidth = echo.fractionalBandwidth;
   tracing.aperture = echo.aperture;
   tracing.echoSampleMm = echo.sampleMm();
   bmode.frequencyMHz = echo.centreFrequencyMHz;

@@ -1,6 +1,5 @@
 #include "RefinedTrace.h"
 
-#include "Core/Policy.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "Trace/PathBatches.h"
@@ -26,12 +25,10 @@ EchoSettings usualEcho(const TraceSettings& tracing)
   echo.device = Device::Cpu;
   echo.imagingMode = tracing.imagingMode;
   echo.centreFrequencyMHz = receivedMHz(tracing.imagingMode, tracing.frequencyMHz);
+  echo.fractionalBandwidth = tracing.fractionalBandwidth;
   echo.aperture = tracing.aperture;
   echo.depthMm = tracing.depthMm;
-  // As coarse as while a probe moves: its speckle is as noisy.
-  echo.samplingMHz =
-    interactiveSamplingMHz(0.5 * assumedSoundSpeedMmPerUs / tracing.echoSampleMm, echo.centreFrequencyMHz);
-  echo.scattererCellMm = interactiveCellMm(echo.scattererCellMm);
+  echo.samplingMHz = 0.5 * assumedSoundSpeedMmPerUs / tracing.echoSampleMm; // few samples a period hide dark gaps
   return echo;
 }
 

@@ -132,7 +132,8 @@ void describe(const ProbePose& pose, KeyText& key)
 
 bool same(const TraceSettings& a, const TraceSettings& b)
 {
-  return rest(a) == rest(b) && parametersOf(a) == parametersOf(b);
+  const bool samePulse = !a.refines() || a.fractionalBandwidth == b.fractionalBandwidth;
+  return samePulse && rest(a) == rest(b) && parametersOf(a) == parametersOf(b);
 }
 
 bool same(const EchoSettings& a, const EchoSettings& b)

@@ -38,12 +38,14 @@ struct TraceSettings
   int maxCollisions = 7;
   double coherenceMm =
     100.0; ///< C0 in w_R = C0 / (C0 + distance); the paper's 0.1, read in metres as its other lengths
-  bool deterministic = false; ///< no Monte-Carlo: the stronger branch along its coherent direction, no spreading
-  double lobeMeanDeg = 0.0;   ///< mu of Amadou2024's truncated normal
-  double lobeSigmaDeg = 45.0; ///< sigma
-  double lobeMinDeg = 0.0;    ///< a
-  double lobeMaxDeg = 90.0;   ///< b, above a
-  double frequencyMHz = 2.5;  ///< > 0; sets attenuation, how rough surfaces are, and the phase of boundary echoes
+  bool deterministic = false;       ///< no Monte-Carlo: the stronger branch along its coherent direction, no spreading
+  double lobeMeanDeg = 0.0;         ///< mu of Amadou2024's truncated normal
+  double lobeSigmaDeg = 45.0;       ///< sigma
+  double lobeMinDeg = 0.0;          ///< a
+  double lobeMaxDeg = 90.0;         ///< b, above a
+  double frequencyMHz = 2.5;        ///< > 0; sets attenuation, how rough surfaces are, and the phase of boundary echoes
+  double fractionalBandwidth = 0.6; ///< of what is received, at -6 dB, (0, 2): of the pulse in which the target error
+                                    ///< shows; without one it counts for nothing
   /// Of the harmonic a Simulator traces that frequency and its double (see SecondHarmonic.h); trace() itself knows one.
   ImagingMode imagingMode = ImagingMode::Fundamental;
   double facePressureKPa = 1000.0; ///< of the harmonic, > 0
@@ -58,7 +60,8 @@ struct TraceSettings
   bool interactive = false; ///< for a probe that moves: what is prepared of the scene serves the next poses as well.
                             ///< The image is the same but for rounding, and does not depend on the way there
 
-  /// The parameters of the stage; depth, frequency, mode, aperture and echo samples come from the probe and the RF.
+  /// The parameters of the stage; depth, frequency, bandwidth, mode, aperture and echo samples
+  /// come from the probe and the RF.
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
@@ -66,14 +69,16 @@ struct TraceSettings
             Parameter{ "pathsPerLine", "Paths per Line", between(1, 1e7),
                        "Paths per scan line, 1 to 10,000,000, no unit; the noise falls with their square root. With a "
                        "target error or a time budget, the most that a line may get." });
-    visitor(self.targetErrorDb,
-            Parameter{ "targetErrorDb", "Target Error (dB)", between(0, 10),
-                       "How exact the picture is to be, in dB, 0 to 10: lines get paths until its noise, the rms of "
-                       "the B-mode level's error over what is shown above -60 dB of its peak, before any gain, is as "
-                       "low, or until they have had all of Paths per Line. 0: they get all." });
+    visitor(
+      self.targetErrorDb,
+      Parameter{ "targetErrorDb", "Target Error (dB)", between(0, 10),
+                 "How exact the picture is to be, in dB, 0 to 10: lines get paths until its noise, the rms of "
+                 "the B-mode level's error over what is shown above -60 dB of its peak, before any gain, is as "
+                 "low, or until they have had all of Paths per Line. On a GPU each round begins anew. 0: they get "
+                 "all." });
     visitor(self.timeBudgetS,
             Parameter{ "timeBudgetS", "Time Budget (s)", between(0, 3600),
-                       "How long lines get paths, in s, 0 to 3600, as exactly as that can be foreseen: the same "
+                       "How long lines get paths, in seconds, 0 to 3600, as exactly as that can be foreseen: the same "
                        "settings then give another picture on another day. 0: as long as it takes." });
     visitor(self.maxCollisions, Parameter{ "maxCollisions", "Max Collisions", between(0, 1000),
                                            "Boundaries that a path may meet, 0 to 1000, no unit." });

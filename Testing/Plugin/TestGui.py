@@ -303,6 +303,20 @@ class TestGui(GuiCase):
         self.assertEqual(moving, rested)
         self.assertNotEqual(rested["PositionMm"], [87.8, -86.5, -45])
 
+    def test_a_resting_probe_s_picture_gets_better(self):
+        """With a target error: of few paths on the way and when the button goes up, of more each time after that."""
+        with tempfile.TemporaryDirectory() as folder:
+            errors = self.play("drag_ultrasound.xml", folder, f"--script={PLAYBACKS / 'refine.py'}")
+            rounds = [line.split() for line in pathlib.Path(folder, "rounds.txt").read_text().splitlines()]
+        self.assertEqual(errors, [])
+        paths = [int(number) for number, _ in rounds if number != "0"]
+        rested = len(paths) - paths[::-1].index(60)  # after the last on the way
+        pictures = list(dict.fromkeys(paths[rested:]))  # each for several outputs
+        self.assertEqual(pictures[0], 64)
+        self.assertGreater(len(pictures), 2)
+        self.assertEqual(pictures, sorted(pictures))
+        self.assertTrue(pictures[-1] == 8192 or 0 < float(rounds[-1][1]) <= 0.2, rounds[-1])
+
     @contextlib.contextmanager
     def look_after(self, path, seen):
         """Photographs the screen three seconds after a file has appeared."""
