@@ -240,7 +240,7 @@ __device__ bool beginPath(const Launch& launch, int line, const PathKey& key, Tr
   const LineStart& start = launch.starts[line];
   path = start.path;
   path.straightBack = showsStraightBack(key);
-  return passBoundary(launch.view, start.boundary, key, path, sink);
+  return passBoundary(launch.view, launch.space, start.boundary, key, path, sink);
 }
 
 template<class Real>

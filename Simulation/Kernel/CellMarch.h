@@ -29,12 +29,6 @@ struct CellHit
   int axis;     ///< of the face between them
 };
 
-/// A march that ends in `cell` without a hit.
-SONO_HD inline CellHit noHit(float t, const Vec3i& cell, int axis)
-{
-  return { t, cell, cell, -1, axis };
-}
-
 SONO_HD inline float safeInverse(float d)
 {
   return fabsf(d) < 1e-9f ? 0.0f : 1.0f / d;
@@ -75,11 +69,13 @@ struct AxisMarch
 /// Cubes of a smaller half-width are walked through.
 constexpr int worthJumping = 5;
 
-/// Marches to the first cell behind the ray's own whose tissue is not `current`, past what `stairs` (StairsLeft) knows.
-/// Walks cell by cell, so that the next address does not wait for the last word (a processor runs ahead), and jumps
-/// where a uniform cube is large enough to pay for the wait.
-template<class Cells, class Stairs>
-SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, Stairs& stairs, float tMax)
+/// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
+/// t < ignoreUntil (hysteresis after a boundary; -1: none), and are passed one by one: what is left of them then is met
+/// at the next face. Walks cell by cell, so that the next address does not wait
+/// for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
+template<class Cells>
+SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, int ignored,
+                                       float ignoreUntil, float tMax)
 {
   const AxisMarch ax(ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x);
   const AxisMarch ay(ray.position.y * cells.perMm.y, ray.direction.y * cells.perMm.y);
@@ -90,7 +86,6 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
   float faceY = ay.faceOf(ray.cell.y);
   float faceZ = az.faceOf(ray.cell.z);
   float t = 0.0f;
-  int previous = current; // tissue
   // Each step leaves at least one plane of cells behind, so this bounds any ray.
   const int most = cells.size.x + cells.size.y + cells.size.z + 3;
   for (int count = 0; count < most; ++count)
@@ -113,22 +108,14 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
     cursor.move(alongX, alongY, alongZ);
     const std::uint32_t word = cursor.word();
     const int tissue = int(word & 255u);
-    if (tissue != current && !stairs.passes(tissue, t))
+    if (tissue != current && (tissue != ignored || t >= ignoreUntil))
     {
       const Vec3i after(ax.cellOf(faceX), ay.cellOf(faceY), az.cellOf(faceZ));
       const Vec3i before(after.x - (alongX ? ax.sign() : 0), after.y - (alongY ? ay.sign() : 0),
                          after.z - (alongZ ? az.sign() : 0));
-      const CellHit hit{ t, before, after, tissue, alongX ? 0 : (alongY ? 1 : 2) };
-      if (tissue == int(TissueCells::outsideWord))
-      {
-        return noHit(t, before, hit.axis);
-      }
-      if (tissue != stairs.tissue() || !stairs.pass(cells, ray, hit, previous != current, word))
-      {
-        return stairs.met(hit, previous != current);
-      }
+      const bool outside = tissue == int(TissueCells::outsideWord);
+      return { t, before, outside ? before : after, outside ? -1 : tissue, alongX ? 0 : (alongY ? 1 : 2) };
     }
-    previous = tissue;
     // 128 and above are ranks of records.
     const int skip = int(word >> 8);
     if (skip >= worthJumping && skip < 128 && tissue == current)
@@ -154,7 +141,7 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
       faceZ = az.faceOf(next.z);
     }
   }
-  return noHit(smaller(larger(t, 0.0f), tMax), ray.cell, 0);
+  return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
 }
 
 } // namespace sono

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/StairsLeft.h"
+#include "Kernel/SurfaceHit.h"
 
 namespace sono {
 
@@ -35,17 +35,11 @@ struct CellSpace
   SONO_HD Vec3i cellAt(const Vec3f& position) const { return cells.cellAt(position); }
   SONO_HD bool contains(const Vec3i& cell) const { return cells.contains(cell); }
   SONO_HD int tissueAt(const Vec3i& cell) const { return cells.tissueAt(cell); }
-  SONO_HD CellHit toBoundary(const CellRay& ray, int current, const LeftSurface& left, float tMax) const
+  SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
   {
-    StairsLeft stairs(cells, ray, left);
-    CellHit hit;
-    do
-    {
-      hit = marchToBoundary(cells, ray, current, stairs, tMax);
-    }
-    while (stairs.again());
-    return hit;
+    return marchToBoundary(cells, ray, current, ignored, ignoreUntil, tMax);
   }
+  SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit) const { return refineBoundary(cells, ray, hit); }
 };
 
 } // namespace sono

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/StairsLeft.h"
+#include "Kernel/SurfaceHit.h"
 
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/Ray.h>
@@ -27,6 +27,7 @@ struct NanoSpace
   SONO_HD float meanSpacing() const { return cells.meanSpacing; }
   SONO_HD Vec3i cellAt(const Vec3f& position) const { return cells.cellAt(position); }
   SONO_HD bool contains(const Vec3i& cell) const { return cells.contains(cell); }
+  SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit) const { return refineBoundary(cells, ray, hit); }
   SONO_HD int tissueAt(const Vec3i& cell) const { return tissueAt(labels->getAccessor(), cell); }
   SONO_HD int tissueAt(const Accessor& accessor, const Vec3i& cell) const
   {
@@ -40,28 +41,14 @@ struct NanoSpace
     return accessor.probeLeaf(at) ? 1 : int(accessor.getDim(at, nanovdb::Ray<float>()));
   }
 
-  SONO_HD CellHit toBoundary(const CellRay& ray, int current, const LeftSurface& left, float tMax) const
-  {
-    StairsLeft stairs(cells, ray, left);
-    CellHit hit;
-    do
-    {
-      hit = march(ray, current, stairs, tMax);
-    }
-    while (stairs.again());
-    return hit;
-  }
-
-private:
   /// As marchToBoundary.
-  SONO_HD CellHit march(const CellRay& ray, int current, StairsLeft& stairs, float tMax) const
+  SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
   {
     const Accessor accessor = labels->getAccessor();
     const AxisMarch axes[3] = { { ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x },
                                 { ray.position.y * cells.perMm.y, ray.direction.y * cells.perMm.y },
                                 { ray.position.z * cells.perMm.z, ray.direction.z * cells.perMm.z } };
     Vec3i c = ray.cell;
-    int previous = current; // tissue
     float t = 0.0f;
     const int maxSteps = cells.size.x + cells.size.y + cells.size.z + 3;
     for (int count = 0; count < maxSteps; ++count)
@@ -96,19 +83,15 @@ private:
       c[axis] += axes[axis].sign();
       if (!cells.contains(c))
       {
-        return noHit(t, before, axis);
+        return { t, before, before, -1, axis };
       }
       const int tissue = tissueAt(accessor, c);
-      const CellHit hit{ t, before, c, tissue, axis };
-      if (tissue != current && !stairs.passes(tissue, t) &&
-          (tissue != stairs.tissue() ||
-           !stairs.pass(cells, ray, hit, previous != current, cells.wordAt(c.x, c.y, c.z))))
+      if (tissue != current && (tissue != ignored || t >= ignoreUntil))
       {
-        return stairs.met(hit, previous != current);
+        return { t, before, c, tissue, axis };
       }
-      previous = tissue;
     }
-    return noHit(smaller(larger(t, 0.0f), tMax), ray.cell, 0);
+    return { smaller(larger(t, 0.0f), tMax), ray.cell, ray.cell, -1, 0 };
   }
 };
 

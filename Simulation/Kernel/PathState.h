@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Kernel/Interface.h"
-#include "Kernel/LeftSurface.h"
 #include "Kernel/SurfaceHit.h"
 
 // What a path is, what it meets and what it tells on its way. See TracePath.h.
@@ -23,7 +22,8 @@ struct PathState
   bool straightBack = false; ///< which of the two echoes of tissue it shows, see tissueEcho
   int tissue = 0;            ///< medium that the path is in
   int target = -1;           ///< target that the path is in; the cells do not count there
-  LeftSurface left;
+  int ignored = -1;          ///< see marchToBoundary
+  float ignoreUntil = 0.0f;
   int collisions = 0;
   int pieces = 0; ///< since the last boundary
 };

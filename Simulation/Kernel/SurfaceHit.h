@@ -71,85 +71,51 @@ SONO_HD inline std::uint32_t recordAt(const Cells& cells, const Vec3i& c)
   return cells.recordOf(c.x, c.y, c.z, cells.wordAt(c.x, c.y, c.z));
 }
 
-/// The step from one voxel of a hit to the other: a unit vector along an axis.
-SONO_HD inline Vec3f stepOf(const CellRay& ray, const CellHit& hit)
-{
-  return { hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f, hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
-           hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f };
-}
-
-/// What the records tell of the surface between the two voxels of a hit.
-struct MetPlane
-{
-  Vec3f normal; ///< unit, into the tissue that was met
-  float ahead;  ///< distance of the ray's position from the plane along the normal, mm
-  SideWeights weights;
-  float confidence; ///< of the side that leads; 0: no record is to be trusted here, and there is no plane
-};
-
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
 /// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.59 of it (a
 /// thin wall has lost its own surface, its thick neighbour has not; gradients come in sevenths, and at 0.6 rounding
-/// would decide on 3/7 beside 5/7); else the normals are averaged.
-/// A voxel of a thin layer has two surfaces and one record. Where that looks against the step it is of the other
-/// surface, and does not count. The two run side by side: where nothing else is told, a record's normal is taken in the
-/// sense in which the ray enters, also where its gradient is slight. Where nothing is told at all, the voxel's face is.
-/// `inStair`: both voxels are of the tissue that was met, since the ray goes through a stair (see StairsLeft.h).
-template<class Cells>
-SONO_HD inline MetPlane planeAt(const Cells& cells, const CellRay& ray, const CellHit& hit, bool inStair)
-{
-  constexpr float against = -0.2f; // steps along a surface are 0, and normals err
-  constexpr float least = 0.15f;
-  constexpr float slightest = 0.1f;
-  const Vec3f face = stepOf(ray, hit);
-  const std::uint32_t bitsA = recordAt(cells, hit.before);
-  const std::uint32_t bitsB = recordAt(cells, hit.after);
-  const BoundaryRecord a = decodeRecord(bitsA);
-  const BoundaryRecord b = decodeRecord(bitsB);
-  const Vec3f intoA = inStair ? -a.normal : a.normal;
-  const Vec3f intoB = -b.normal;
-  // Along stairs the next one tells.
-  const float toldA = bitsA && !(inStair && bitsB) ? a.confidence : 0.0f;
-  const float toldB = bitsB ? b.confidence : 0.0f;
-  const float confA = inStair || glm::dot(intoA, face) > against ? toldA : 0.0f;
-  const float confB = inStair || glm::dot(intoB, face) > against ? toldB : 0.0f;
-  const float best = larger(confA, confB);
-  const float weightA = confA >= 0.59f * best ? 1.0f : 0.0f;
-  const float weightB = confB >= 0.59f * best ? 1.0f : 0.0f;
-  const Vec3f sum = intoA * weightA + intoB * weightB;
-  const float length = glm::length(sum);
-  if (best < least || length < 0.5f)
-  {
-    const Vec3f told = toldA > toldB ? a.normal : b.normal;
-    const Vec3f across = told * signNotZero(glm::dot(told, ray.direction));
-    // A ray must not be turned back through the face by which it came.
-    const bool isTold = best < least && larger(toldA, toldB) > slightest && glm::dot(across, face) > 0.0f &&
-                        glm::dot(across, ray.direction) > 0.01f;
-    return { isTold ? across : face, 0.0f, { 0.0f, 0.0f }, 0.0f };
-  }
-  const Vec3f n = sum / length;
-  const Vec3f pointA = (Vec3f(hit.before) + Vec3f(0.5f)) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
-  const Vec3f pointB = (Vec3f(hit.after) + Vec3f(0.5f)) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
-  const Vec3f point = (pointA * weightA + pointB * weightB) / (weightA + weightB);
-  return { n, glm::dot(point - ray.position, n), { weightA, weightB }, best };
-}
-
-/// The hit on its plane: the point moves along the ray to it, by one voxel at most; there the normal is interpolated.
-/// Where there is no plane, or it says that the ray leaves rather than enters, the voxel's face stands.
+/// would decide on 3/7 beside 5/7); else the normals are averaged. The point moves along the ray to the plane of the
+/// records, by one voxel at most; there the normal is interpolated. Where no record is trustworthy, or the smooth
+/// normal says that the ray leaves rather than enters, the voxel face stands.
 template<class Cells>
 SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit)
 {
-  const MetPlane plane = planeAt(cells, ray, hit, false);
-  const Vec3f& n = plane.normal;
-  const float cosine = glm::dot(ray.direction, n);
-  if (plane.confidence == 0.0f || cosine < 0.01f)
+  const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
+                   hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
+                   hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
+  const std::uint32_t bitsA = recordAt(cells, hit.before);
+  const std::uint32_t bitsB = recordAt(cells, hit.after);
+  if ((bitsA | bitsB) == 0u)
   {
-    return { plane.confidence == 0.0f ? n : stepOf(ray, hit), hit.t };
+    return { face, hit.t };
   }
+  const BoundaryRecord a = decodeRecord(bitsA);
+  const BoundaryRecord b = decodeRecord(bitsB);
+  const float confA = bitsA ? a.confidence : 0.0f;
+  const float confB = bitsB ? b.confidence : 0.0f;
+  const float best = larger(confA, confB);
+  const float weightA = confA >= 0.59f * best ? 1.0f : 0.0f;
+  const float weightB = confB >= 0.59f * best ? 1.0f : 0.0f;
+  const Vec3f sum = a.normal * weightA - b.normal * weightB;
+  const float length = glm::length(sum);
+  if (best < 0.15f || length < 0.5f)
+  {
+    return { face, hit.t };
+  }
+  const Vec3f n = sum / length;
+  const float cosine = glm::dot(ray.direction, n);
+  if (cosine < 0.01f)
+  {
+    return { face, hit.t };
+  }
+  const Vec3f pointA = (Vec3f(hit.before) + Vec3f(0.5f)) * cells.spacing + a.normal * (a.offset * cells.meanSpacing);
+  const Vec3f pointB = (Vec3f(hit.after) + Vec3f(0.5f)) * cells.spacing + b.normal * (b.offset * cells.meanSpacing);
+  const Vec3f point = (pointA * weightA + pointB * weightB) / (weightA + weightB);
   const float reach = cells.meanSpacing;
-  const float t = larger(0.0f, smaller(larger(plane.ahead / cosine, hit.t - reach), hit.t + reach));
+  const float plane = glm::dot(point - ray.position, n) / cosine;
+  const float t = larger(0.0f, smaller(larger(plane, hit.t - reach), hit.t + reach));
   const Vec3f smooth = interpolateNormal(cells, ray.position + ray.direction * t, cells.tissueAt(hit.before),
-                                         hit.tissue, plane.weights, n);
+                                         hit.tissue, { weightA, weightB }, n);
   return { glm::dot(ray.direction, smooth) < 0.01f ? n : smooth, t, true };
 }
 

@@ -1,6 +1,6 @@
 #include "SurfaceAccuracy.h"
 
-#include "Kernel/StairsLeft.h"
+#include "Kernel/SurfaceHit.h"
 #include "Scene/TraceRegion.h"
 
 #include <algorithm>
@@ -38,8 +38,7 @@ struct Hits
 void meetOnce(const TissueCells& cells, const Ellipsoid& truth, const CellRay& ray, Hits& hits)
 {
   const int from = cells.tissueAt(ray.cell);
-  StairsLeft noStairs(cells, ray, LeftSurface());
-  const CellHit hit = marchToBoundary(cells, ray, from, noStairs, 1e6f);
+  const CellHit hit = marchToBoundary(cells, ray, from, -1, 0.0f, 1e6f);
   if (hit.tissue < 0)
   {
     return;
@@ -90,8 +89,7 @@ SurfaceAccuracy measureEllipsoid(const EllipsoidCase& shape)
     CellRay ray{ Vec3f(inside), Vec3f(d), cells.cellAt(Vec3f(inside)) };
     if (n % 2 == 1)
     {
-      StairsLeft noStairs(cells, ray, LeftSurface());
-      const CellHit exit = marchToBoundary(cells, ray, 1, noStairs, 1e6f);
+      const CellHit exit = marchToBoundary(cells, ray, 1, -1, 0.0f, 1e6f);
       ray.position = Vec3f(inside + d * (double(exit.t) + 3.0 * voxelMm));
       ray.direction = -ray.direction;
       ray.cell = cells.cellAt(ray.position);
