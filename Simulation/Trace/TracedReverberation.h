@@ -133,7 +133,8 @@ SONO_HD inline ReverberationAround sumFurther(int line, int first, int end, int 
                                               const AroundOf& aroundOf)
 {
   constexpr int windows = 2;
-  const int step = int(spreadAroundMm / tissueBinMm + 0.5f);
+  const int inWindow = int(spreadAroundMm / tissueBinMm + 0.5f);
+  const int step = inWindow > 0 ? inWindow : 1; // bins wider than windows
   ReverberationAround sum;
   for (int l = line - windows * linesAround; l <= line + windows * linesAround; l += linesAround)
   {

@@ -4,9 +4,11 @@
 #include "Kernel/TracePath.h"
 #include "Trace/Trace.h"
 #include "Trace/TraceSetup.h"
+#include "Trace/TracedReverberation.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -161,6 +163,29 @@ double tracedPower(const Scene& scene, int paths)
 double decibels(double power)
 {
   return 10.0 * std::log10(power);
+}
+
+TEST(ReverberationWindows, BinsWiderThanAWindowAreEachTakenOnce)
+{
+  const double radialBinMm = 15.0;
+  std::map<std::array<int, 2>, int> taken;
+  const ReverberationAround sum = sumFurther(20, 0, 128, 2, 11, float(radialBinMm), [&](int line, int bin) {
+    ++taken[{ line, bin }];
+    return ReverberationAround{ 1.0f, 1.0f, 1.0f, 1.0f, 1.0f };
+  });
+  EXPECT_EQ(taken.size(), 25u);
+  EXPECT_FLOAT_EQ(sum.power, 25.0f);
+  TraceSettings settings;
+  settings.depthMm = 39.0;
+  settings.radialBinMm = radialBinMm;
+  const TracedLines lines = trace(*roughWall(0.3), linesDown(3), settings);
+  ASSERT_FALSE(lines.reverberation.empty());
+  float most = 0.0f;
+  for (const float level : lines.reverberation)
+  {
+    most = std::max(most, level);
+  }
+  EXPECT_GT(most, 0.0f);
 }
 
 } // namespace
