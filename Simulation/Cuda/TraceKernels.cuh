@@ -17,9 +17,9 @@ namespace sono {
 constexpr int blockWarps = 4;
 constexpr int blockPaths = blockWarps * warpLanes;
 // Blocks of 128 threads on a multiprocessor for which registers are shared out. With many warps it is worth some
-// spilled registers to have eight, for the bins of more do not fit; few warps are faster with all they can use.
-constexpr int blocksOfMany = 8;
-constexpr int blocksOfFew = 4;
+// spilled registers to have more; few warps are faster with all they can use.
+constexpr int blocksOfMany = 6;
+constexpr int blocksOfFew = 3;
 constexpr unsigned allLanes = 0xffffffffu;
 constexpr int restBits = 28; // of what rounding leaves of an echo
 
