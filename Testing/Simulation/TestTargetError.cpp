@@ -256,16 +256,13 @@ TEST(TargetError, ATimeBudgetEndsInTime)
   const Scan scan = busyScan();
   TraceSettings s = scan.tracing;
   s.pathsPerLine = 10000000;
-  refined(scan, scan.tracing); // what is made of the scene once
-  for (const double budgetS : { 0.2, 1.0 })
-  {
-    s.timeBudgetS = budgetS;
-    const auto before = std::chrono::steady_clock::now();
-    const TracedLines traced = refined(scan, s);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-    EXPECT_LT(seconds, 2.0 * budgetS + 0.3); // others may want the machine
-    EXPECT_GE(traced.paths, 64);
-  }
+  s.timeBudgetS = 1e-6; // the first round alone
+  EXPECT_EQ(refined(scan, s).paths, 64);
+  s.timeBudgetS = 0.5; // of hours, however busy the machine
+  const int paths = refined(scan, s).paths;
+  EXPECT_GE(paths, 64);
+  EXPECT_LT(paths, s.pathsPerLine / 10);
+  s.timeBudgetS = 3600.0;
   s.targetErrorDb = 5.0; // is reached before
   EXPECT_LT(refined(scan, s).paths, 1000);
 }
