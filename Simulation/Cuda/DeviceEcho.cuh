@@ -113,7 +113,8 @@ private:
   int linesPerImage_ = 0;
   ReverberationNoise noise_;
   std::vector<float> reverberationRms_;
-  DeviceArray<float2> reverberationSpeckle_; ///< of the two: linesPerImage x rangeCount
+  std::vector<float> pulseRe_, pulseIm_;
+  DeviceArray<float2> reverberationSpeckle_; ///< of these: linesPerImage x sampleCount
   std::optional<Downshift> downshift_;
   BeamFieldView field_{};
   SharedVector<float> fieldSource_;

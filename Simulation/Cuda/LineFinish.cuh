@@ -18,7 +18,7 @@ struct FinishLaunch
   float surfacePerUnit;
   TracedOnDevice traced;
   const float* level;    // of boundaries at each sample, or null
-  const float2* speckle; // that reverberates, at level 1: linesPerImage x rangeCount
+  const float2* speckle; // that reverberates, at level 1, behind the pulse: linesPerImage x sampleCount
   int linesPerImage;
   Downshift downshift;
   const float* turns; // lines x rangeCount, of the downshift's phase; null: the frequency stays
@@ -187,15 +187,14 @@ __device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeStep
   return v;
 }
 
-/// How much stronger what reverberates is at a sample, by the frequency that its own way leaves of the pulse's.
-__device__ inline float reverberationGain(const FinishLaunch& launch, int line, int s)
+/// How much stronger what reverberates is in a line's bin, by the frequency that its own way leaves of the pulse's.
+__device__ inline float reverberationGain(const FinishLaunch& launch, int line, int bin)
 {
   const TracedOnDevice& traced = launch.traced;
   if (!traced.reverberation || !traced.attenuation)
   {
     return 1.0f;
   }
-  const int bin = min(int(float(s) * float(launch.binsPerSample)), traced.binCount - 1);
   const float taken = traced.reverberationNp[std::size_t(line) * traced.binCount + bin];
   return downshiftGain(launch.downshift, shiftingExponent(launch.downshift, taken));
 }
@@ -222,34 +221,32 @@ __device__ inline float2 reflectedAt(const FinishLaunch& launch, int line, int s
   if (v.x != 0.0f || v.y != 0.0f)
   {
     const float2 c = launch.carrier[s];
-    const float gain = reverberationGain(launch, line, s);
+    const int bin = min(int(float(s) * float(launch.binsPerSample)), traced.binCount - 1);
+    const float gain = reverberationGain(launch, line, bin);
     v = { gain * (v.x * c.x - v.y * c.y), gain * (v.x * c.y + v.y * c.x) };
   }
   return v;
 }
 
-/// The speckle that reverberates at a sample of range. White noise is so however it is turned: it does not depend on
-/// what is known of the attenuation.
+/// The speckle that reverberates at a sample of range, behind the pulse. It knows nothing of what the line attenuates.
 __device__ inline float2 reverberatingAt(const FinishLaunch& launch, int line, int s)
 {
   const TracedOnDevice& traced = launch.traced;
-  if (!traced.reverberation)
-  {
-    return { 0.0f, 0.0f };
-  }
   const float* bins = traced.reverberation + std::size_t(line) * traced.binCount;
-  const float level = levelAtRange(bins, traced.binCount, float(launch.binsPerSample), s);
+  const auto levelOf = [&](int bin) {
+    return bins[bin] > 0.0f ? bins[bin] * reverberationGain(launch, line, bin) : 0.0f;
+  };
+  const float level = levelAtRange(levelOf, traced.binCount, float(launch.binsPerSample), s);
   if (level <= faintestReverberation)
   {
     return { 0.0f, 0.0f };
   }
-  const float strength = level * reverberationGain(launch, line, s);
-  const float2 noise = launch.speckle[std::size_t(line % launch.linesPerImage) * launch.rangeCount + s];
-  return { strength * noise.x, strength * noise.y };
+  const float2 noise = launch.speckle[std::size_t(line % launch.linesPerImage) * launch.sampleCount + s];
+  return { level * noise.x, level * noise.y };
 }
 
 /// What is shown at a sample of range, and the boundary echoes, demodulated; where the frequency sinks, as strong as it
-/// then is and turned by the phase; and what reverberates.
+/// then is and turned by the phase.
 __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
 {
   if (s < 0 || s >= launch.rangeCount)
@@ -292,8 +289,7 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
     const DownshiftAt turned = downshiftRotation(launch.turns[at]);
     v = { v.x * turned.re - v.y * turned.im, v.x * turned.im + v.y * turned.re };
   }
-  const float2 speckle = reverberatingAt(launch, line, s);
-  return { v.x + speckle.x, v.y + speckle.y };
+  return v;
 }
 
 /// Convolves a tile of a line with the pulse; each thread keeps the sums of neighbouring samples in registers.
@@ -360,17 +356,22 @@ __global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch laun
     if (s < launch.sampleCount)
     {
       const std::size_t at = std::size_t(line) * launch.sampleCount + s;
+      float2 iq{ sumRe[j], sumIm[j] };
+      if (launch.turns)
+      {
+        const DownshiftAt turned = downshiftRotation(launch.turns[std::size_t(line) * launch.rangeCount + s]);
+        iq = { iq.x * turned.re + iq.y * turned.im, iq.y * turned.re - iq.x * turned.im };
+      }
+      if (launch.traced.reverberation)
+      {
+        const float2 speckle = reverberatingAt(launch, line, s);
+        iq = { iq.x + speckle.x, iq.y + speckle.y };
+      }
       if (launch.iq)
       {
-        float2 iq{ sumRe[j], sumIm[j] };
-        if (launch.turns)
-        {
-          const DownshiftAt turned = downshiftRotation(launch.turns[std::size_t(line) * launch.rangeCount + s]);
-          iq = { iq.x * turned.re + iq.y * turned.im, iq.y * turned.re - iq.x * turned.im };
-        }
         launch.iq[at] = iq;
       }
-      launch.envelope[at] = sqrtf(sumRe[j] * sumRe[j] + sumIm[j] * sumIm[j]);
+      launch.envelope[at] = sqrtf(iq.x * iq.x + iq.y * iq.y);
     }
   }
 }

@@ -23,6 +23,29 @@ __global__ void drawSamples(ReverberationNoise noise, const float* rms, int samp
   }
 }
 
+/// Samples of a line, nothing above the first, convolved with the pulse: re, and im where it is complex, from its end to
+/// its start.
+__global__ void convolveSamples(const float2* speckle, int samples, const float* pulse, int half, bool complexPulse,
+                                int heardSamples, float2* heard)
+{
+  const int s = int(blockIdx.x * blockDim.x + threadIdx.x);
+  if (s >= heardSamples)
+  {
+    return;
+  }
+  const float2* of = speckle + std::size_t(blockIdx.y) * std::size_t(samples);
+  const int taps = 2 * half + 1;
+  float2 sum{ 0.0f, 0.0f };
+  for (int k = max(0, half - s); k < taps; ++k)
+  {
+    const float2 v = of[s + k - half];
+    const float re = pulse[k];
+    const float im = complexPulse ? pulse[taps + k] : 0.0f;
+    sum = { sum.x + re * v.x - im * v.y, sum.y + re * v.y + im * v.x };
+  }
+  heard[std::size_t(blockIdx.y) * std::size_t(heardSamples) + std::size_t(s)] = sum;
+}
+
 /// An ellipse around a rectangle is so much larger.
 constexpr float aroundRectangle = 1.4143f;
 
@@ -306,25 +329,35 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
 /// The speckle that reverberates belongs to the probe and is the same for every image.
 void DeviceEcho::drawSpeckle(const EchoJob& job, cudaStream_t stream, Traffic& traffic)
 {
-  if (linesPerImage_ == job.linesPerImage && noise_ == job.noise && reverberationRms_ == job.reverberationRms)
+  if (linesPerImage_ == job.linesPerImage && noise_ == job.noise && reverberationRms_ == job.reverberationRms &&
+      pulseRe_ == job.pulseRe && pulseIm_ == job.pulseIm)
   {
     return;
   }
-  reverberationRms_.clear(); // stays so when the upload fails
+  linesPerImage_ = 0; // stays so when the upload fails
   DeviceArray<float> rms;
   rms.upload(job.reverberationRms, stream, traffic);
   const std::size_t samples = job.reverberationRms.size();
-  reverberationSpeckle_.resize(std::size_t(job.linesPerImage) * samples);
+  DeviceArray<float2> drawn;
+  drawn.resize(std::size_t(job.linesPerImage) * samples);
+  reverberationSpeckle_.resize(samples > 0 ? std::size_t(job.linesPerImage) * std::size_t(job.sampleCount) : 0);
   if (samples > 0)
   {
-    drawSamples<<<dim3(unsigned((samples + 127) / 128), unsigned(job.linesPerImage)), 128, 0, stream>>>(
-      job.noise, rms.data(), int(samples), reverberationSpeckle_.data());
+    constexpr int threads = 128;
+    const auto grid = [&](std::size_t count) {
+      return dim3(unsigned((count + threads - 1) / threads), unsigned(job.linesPerImage));
+    };
+    drawSamples<<<grid(samples), threads, 0, stream>>>(job.noise, rms.data(), int(samples), drawn.data());
+    convolveSamples<<<grid(std::size_t(job.sampleCount)), threads, 0, stream>>>(
+      drawn.data(), int(samples), pulse_.data(), half_, complexPulse_, job.sampleCount, reverberationSpeckle_.data());
     check(cudaGetLastError(), "drawing speckle");
     check(cudaStreamSynchronize(stream), "drawing speckle");
   }
   linesPerImage_ = job.linesPerImage;
   noise_ = job.noise;
   reverberationRms_ = job.reverberationRms;
+  pulseRe_ = job.pulseRe;
+  pulseIm_ = job.pulseIm;
 }
 
 void DeviceEcho::uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic)

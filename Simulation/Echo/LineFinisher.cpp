@@ -113,7 +113,7 @@ ReverberationNodes LineFinisher::reverberationNodes() const
   {
     return {};
   }
-  return ReverberationNodes(speckle_.noise, traced_->lineCount, rangeCount());
+  return ReverberationNodes(speckle_, pulse_, traced_->lineCount, samples_);
 }
 
 /// Moves the boundary echoes from the tracer's grid to the RF samples, phases kept.
@@ -186,12 +186,20 @@ LineFinisher::Room LineFinisher::room() const
 
 /// What has been reflected is as weak as a pulse is that has been attenuated on its own way; the little that its
 /// frequency differs from that of what is heard directly does not show in the envelope.
+const float* LineFinisher::reflectedNp(int line) const
+{
+  return downshift_ && !traced_->reverberation.empty() && !traced_->reverberationNpPerMHz.empty()
+           ? traced_->reverberationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount)
+           : nullptr;
+}
+
+/// Adds the boundary echoes of paths to what is heard.
 void LineFinisher::addReflected(int line, Room& room, const SamplePair& heard) const
 {
   const SamplePair late{ room.lateRe.data(), room.lateIm.data() };
-  if (downshift_ && !traced_->reverberation.empty() && !traced_->reverberationNpPerMHz.empty())
+  addDemodulated(boundaryEchoes(line).iq.data(), carrier_, rangeCount_, late);
+  if (const float* bins = reflectedNp(line))
   {
-    const float* bins = traced_->reverberationNpPerMHz.data() + std::size_t(line) * std::size_t(traced_->binCount);
     binAtSamples(bins, traced_->binCount, binsPerSample_, rangeCount_, room.table.data());
     applySinkGain(*downshift_, room.table.data(), rangeCount_, late);
   }
@@ -199,6 +207,21 @@ void LineFinisher::addReflected(int line, Room& room, const SamplePair& heard) c
   std::transform(late.im, late.im + rangeCount_, heard.im, heard.im, std::plus<float>());
   std::fill_n(late.re, rangeCount_, 0.0f);
   std::fill_n(late.im, rangeCount_, 0.0f);
+}
+
+/// Adds the speckle of what reverberates behind the pulse.
+void LineFinisher::addReverberating(int line, const ReverberationNodes& nodes, Room& room,
+                                    std::complex<float>* iq) const
+{
+  const float* bins = traced_->reverberation.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  const float* np = reflectedNp(line);
+  room.levels.assign(bins, bins + traced_->binCount);
+  for (std::size_t b = 0; np && b < room.levels.size(); ++b)
+  {
+    room.levels[b] *= downshiftGain(*downshift_, shiftingExponent(*downshift_, np[b]));
+  }
+  linearAtSamples(room.levels.data(), traced_->binCount, binsPerSample_, samples_, room.table.data());
+  nodes.add(line, room.table.data(), samples_, iq);
 }
 
 void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
@@ -236,10 +259,8 @@ void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces,
                        rangeCount_, room.exponent.data());
     applySinkGain(*downshift_, room.exponent.data(), rangeCount_, heard);
   }
-  const SamplePair late{ room.lateRe.data(), room.lateIm.data() };
   if (traced_ && hasBoundaryEchoes(line))
   {
-    addDemodulated(boundaryEchoes(line).iq.data(), carrier_, rangeCount_, late);
     addReflected(line, room, heard);
   }
   const SamplePair turns{ room.turnRe.data(), room.turnIm.data() };
@@ -247,14 +268,6 @@ void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces,
   {
     downshiftRotations(*downshift_, room.exponent.data(), rangeCount_, turns);
     rotate(turns.re, turns.im, rangeCount_, heard);
-  }
-  // White noise is so however it is turned. Unturned, its speckle does not depend on what is known of the attenuation.
-  if (traced_ && reverberates(line))
-  {
-    linearAtSamples(traced_->reverberation.data() + firstBin, traced_->binCount, binsPerSample_, rangeCount_,
-                    room.table.data());
-    nodes.add(line, room.table.data(), speckle_.rms.data(), rangeCount_, late);
-    addReflected(line, room, heard);
   }
   pulse_.convolve(room.re.data(), room.im.data(), samples_, { room.outRe.data(), room.outIm.data() });
   if (isSinking)
@@ -264,6 +277,10 @@ void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces,
   else
   {
     interleave(room.outRe.data(), room.outIm.data(), samples_, iq);
+  }
+  if (traced_ && reverberates(line))
+  {
+    addReverberating(line, nodes, room, iq);
   }
 }
 

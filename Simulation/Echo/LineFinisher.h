@@ -48,6 +48,7 @@ public:
     std::vector<float> tableByDepth, depthRe, depthIm;
     std::vector<float> offset, exponent, table, re, im, lateRe, lateIm, turnRe, turnIm, far; ///< by range
     std::vector<float> outRe, outIm;
+    std::vector<float> levels; ///< by bin
   };
   Room room() const;
   /// Writes the settings' sampleCount() samples. `surfaces`, which may be null, carries its intensity already.
@@ -56,8 +57,10 @@ public:
 
 private:
   RangeMap rangeMap(int line) const;
-  /// Adds what is in the room's `late`, which is empty then.
   void addReflected(int line, Room& room, const SamplePair& heard) const;
+  void addReverberating(int line, const ReverberationNodes& nodes, Room& room, std::complex<float>* iq) const;
+  /// What the media take of what has been reflected, Np per MHz in each bin; null where the frequency stays.
+  const float* reflectedNp(int line) const;
   bool hasBoundaryEchoes(int line) const;
   bool reverberates(int line) const;
   bool sinks(int line) const;

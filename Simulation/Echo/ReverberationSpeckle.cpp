@@ -3,6 +3,7 @@
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
+#include "Echo/Pulse.h"
 #include "Kernel/Reverberation.h"
 
 #include <algorithm>
@@ -24,15 +25,17 @@ float nodesPerLine(const BeamModel& beams, const std::vector<ScanLine>& lines)
   return float(std::clamp(pitchMm / (std::sqrt(3.0) * beams.focusWidth().lateralSigmaMm), 1e-3, 1.0));
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void drawNodes(const ReverberationNoise& of, int node, int samples,
-                                                         float* out)
+SONO_SIMD_CLONES __attribute__((flatten)) void drawNodes(const ReverberationNoise& of, int node,
+                                                         const std::vector<float>& rms, SamplePair out)
 {
   const ReverberationNoise noise = of;
+  const int samples = int(rms.size());
+  const float* level = rms.data();
   for (int s = 0; s < samples; ++s)
   {
     const Vec2f drawn = noise.node(node, s);
-    out[2 * s] = drawn.x;
-    out[2 * s + 1] = drawn.y;
+    out.re[s] = level[s] * drawn.x;
+    out.im[s] = level[s] * drawn.y;
   }
 }
 
@@ -65,23 +68,31 @@ ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const Be
   return speckle;
 }
 
-ReverberationNodes::ReverberationNodes(const ReverberationNoise& noise, int lines, int samples)
-  : noise_(noise)
-  , rows_(std::size_t(noise.firstNode(lines - 1)) + 4)
+ReverberationNodes::ReverberationNodes(const ReverberationSpeckle& speckle, const PulseKernel& pulse, int lines,
+                                       int samples)
+  : noise_(speckle.noise)
+  , rows_(std::size_t(noise_.firstNode(lines - 1)) + 4)
 {
+  const std::size_t half = std::size_t(pulse.half()); // nothing lies above the first sample
   parallelFor(int(rows_.size()), {}, [&](int node) {
-    std::vector<Vec2f>& row = rows_[std::size_t(node)];
+    std::vector<float> re = sampleRoom(half + speckle.rms.size());
+    std::vector<float> im = re;
+    drawNodes(noise_, node, speckle.rms, { re.data() + half, im.data() + half });
+    std::vector<float> heardRe = sampleRoom(std::size_t(samples));
+    std::vector<float> heardIm = heardRe;
+    pulse.convolve(re.data(), im.data(), samples, { heardRe.data(), heardIm.data() });
+    std::vector<std::complex<float>>& row = rows_[std::size_t(node)];
     row.resize(std::size_t(samples));
-    drawNodes(noise, node, samples, &row.front().x);
+    interleave(heardRe.data(), heardIm.data(), samples, row.data());
   });
 }
 
-void ReverberationNodes::add(int line, const float* level, const float* rms, int count, SamplePair out) const
+void ReverberationNodes::add(int line, const float* level, int count, std::complex<float>* iq) const
 {
-  const std::vector<Vec2f>* rows = rows_.data() + noise_.firstNode(line);
+  const std::vector<std::complex<float>>* rows = rows_.data() + noise_.firstNode(line);
   const SplineWeights weights = noise_.weights(line);
-  const Vec2f* const nodes[4] = { rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data() };
-  addSpeckle(nodes, weights.w, level, rms, count, out);
+  const std::complex<float>* const nodes[4] = { rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data() };
+  addSpeckle(nodes, weights.w, level, count, iq);
 }
 
 } // namespace sono

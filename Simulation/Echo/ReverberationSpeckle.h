@@ -4,9 +4,12 @@
 #include "Echo/SampleLoops.h"
 #include "Kernel/ReverberationNoise.h"
 
+#include <complex>
 #include <vector>
 
 namespace sono {
+
+class PulseKernel;
 
 /// How the speckle of what reverberates (TracedLines::reverberation) is added to the samples of a line.
 struct ReverberationSpeckle
@@ -19,19 +22,23 @@ struct ReverberationSpeckle
 ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const BeamModel& beams,
                                           const std::vector<ScanLine>& lines, int samples);
 
-/// The nodes of its noise at each sample, which lines side by side share.
+/// The nodes of its noise behind the pulse at each sample, at level 1, which lines side by side share. A level changes
+/// little over a pulse, so that it may as well be applied behind it. What is convolved here knows nothing of what a
+/// line attenuates: turned with the direct sound (Kernel/Downshift.h) and back, speckle would add to the direct one in
+/// a phase that sums up B over all that lies above, with its noise.
 class ReverberationNodes
 {
 public:
   ReverberationNodes() = default;
-  ReverberationNodes(const ReverberationNoise& noise, int lines, int samples);
+  /// The speckle's rms has as many values as the pulse reaches beyond `samples`.
+  ReverberationNodes(const ReverberationSpeckle& speckle, const PulseKernel& pulse, int lines, int samples);
 
-  /// Adds ReverberationNoise::at, times level and rms, to `count` samples of a line where the level is worth it.
-  void add(int line, const float* level, const float* rms, int count, SamplePair out) const;
+  /// Adds the noise of a line, times the level, to `count` samples where the level is worth it.
+  void add(int line, const float* level, int count, std::complex<float>* iq) const;
 
 private:
   ReverberationNoise noise_;
-  std::vector<std::vector<Vec2f>> rows_;
+  std::vector<std::vector<std::complex<float>>> rows_;
 };
 
 } // namespace sono

@@ -221,21 +221,21 @@ SONO_SIMD_CLONES __attribute__((flatten)) void showDepths(const SamplePair& byDe
   }
 }
 
-SONO_SIMD_CLONES void addSpeckle(const Vec2f* const nodes[4], const float weights[4], const float* level,
-                                 const float* rms, int count, SamplePair out)
+SONO_SIMD_CLONES void addSpeckle(const std::complex<float>* const nodes[4], const float weights[4], const float* level,
+                                 int count, std::complex<float>* iq)
 {
-  const float* a = &nodes[0]->x;
-  const float* b = &nodes[1]->x;
-  const float* c = &nodes[2]->x;
-  const float* d = &nodes[3]->x;
-  float* re = out.re;
-  float* im = out.im;
+  const auto* a = reinterpret_cast<const float*>(nodes[0]);
+  const auto* b = reinterpret_cast<const float*>(nodes[1]);
+  const auto* c = reinterpret_cast<const float*>(nodes[2]);
+  const auto* d = reinterpret_cast<const float*>(nodes[3]);
+  auto* out = reinterpret_cast<float*>(iq);
   for (int s = 0; s < count; ++s)
   {
-    const float strength = level[s] > faintestReverberation ? level[s] * rms[s] : 0.0f;
+    const float strength = level[s] > faintestReverberation ? level[s] : 0.0f;
     const int n = 2 * s;
-    re[s] += strength * (weights[0] * a[n] + weights[1] * b[n] + weights[2] * c[n] + weights[3] * d[n]);
-    im[s] += strength * (weights[0] * a[n + 1] + weights[1] * b[n + 1] + weights[2] * c[n + 1] + weights[3] * d[n + 1]);
+    out[n] += strength * (weights[0] * a[n] + weights[1] * b[n] + weights[2] * c[n] + weights[3] * d[n]);
+    out[n + 1] +=
+      strength * (weights[0] * a[n + 1] + weights[1] * b[n + 1] + weights[2] * c[n + 1] + weights[3] * d[n + 1]);
   }
 }
 

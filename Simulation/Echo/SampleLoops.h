@@ -63,10 +63,10 @@ void addDemodulated(const float* iq, const Carrier& carrier, int count, SamplePa
 void showDepths(const SamplePair& byDepth, int depthCount, const float* offset, const Carrier& carrier, int count,
                 SamplePair out, std::vector<float>& room);
 
-/// The speckle of what reverberates: adds to each sample the blend of four nodes' (re, im), times level and rms, unless
-/// the level is not worth it.
-void addSpeckle(const Vec2f* const nodes[4], const float weights[4], const float* level, const float* rms, int count,
-                SamplePair out);
+/// The speckle of what reverberates: adds to each sample the blend of four nodes, times the level, unless it is not
+/// worth it.
+void addSpeckle(const std::complex<float>* const nodes[4], const float weights[4], const float* level, int count,
+                std::complex<float>* iq);
 
 /// B of the downshift at samples of range, from that by depth.
 void exponentsAtSamples(const Downshift& downshift, const float* npByDepth, int depthCount, const float* offset,

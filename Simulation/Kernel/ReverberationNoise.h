@@ -50,14 +50,16 @@ struct ReverberationNoise
 /// A level below this is not worth its noise.
 constexpr float faintestReverberation = 1e-5f;
 
-/// Values in the middles of bins, at a range.
-SONO_HD inline float levelAtRange(const float* bins, int count, float binsPerSample, int sample)
+/// Values in the middles of bins, `levelOf(bin)`, at a range.
+template<class LevelOf>
+SONO_HD inline float levelAtRange(const LevelOf& levelOf, int count, float binsPerSample, int sample)
 {
   const float wanted = float(sample) * binsPerSample - 0.5f;
   const float position = wanted < 0.0f ? 0.0f : (wanted < float(count - 1) ? wanted : float(count - 1));
   const int bin = int(position);
   const int next = bin + 1 < count ? bin + 1 : bin;
-  return bins[bin] + (bins[next] - bins[bin]) * (position - float(bin));
+  const float level = levelOf(bin);
+  return level + (levelOf(next) - level) * (position - float(bin));
 }
 
 } // namespace sono

@@ -109,29 +109,40 @@ std::vector<Complex> directly(const EchoSettings& settings, const TracedLines& t
   {
     turns[n] = turns[n - 1] + double(down.turnsPerMHz) * down.spectrumMHz2 * 0.5 * (exponent[n - 1] + exponent[n]);
   }
+  std::vector<double> lateGain;
+  std::vector<float> lateLevel;
+  for (std::size_t bin = 0; bin < traced.reverberation.size(); ++bin)
+  {
+    lateGain.push_back(gain(sinks(traced.reverberationNpPerMHz[bin])));
+    lateLevel.push_back(float(lateGain.back() * double(traced.reverberation[bin])));
+  }
+  std::vector<Complex> noise;
   for (s = 0; s < ranges; ++s)
   {
     const std::size_t n = std::size_t(s);
-    const double level = betweenMiddles(traced.reverberation, s * binsPerSample);
-    const Vec2f noise = speckle.noise.at(0, s);
+    const Vec2f drawn = speckle.noise.at(0, s);
+    noise.push_back(double(speckle.rms[n]) * Complex(drawn.x, drawn.y));
     const Complex echo =
       s < traced.echoCount ? Complex(traced.boundaryEcho[n]) * std::polar(1.0, -radPerSample * s) : 0.0;
-    const std::size_t bin = std::min(std::size_t(s * binsPerSample), traced.reverberationNpPerMHz.size() - 1);
-    const double late = gain(sinks(traced.reverberationNpPerMHz[bin]));
+    const double late = lateGain[std::min(std::size_t(s * binsPerSample), lateGain.size() - 1)];
     heard[n] = (gain(exponent[n]) * heard[n] + late * echo) * std::polar(1.0, 2.0 * M_PI * turns[n]);
-    heard[n] += level > faintestReverberation ? late * level * double(speckle.rms[n]) * Complex(noise.x, noise.y) : 0.0;
   }
   std::vector<Complex> iq(std::size_t(settings.sampleCount()));
   for (int out = 0; out < settings.sampleCount(); ++out)
   {
+    Complex reverberating = 0.0;
     for (int k = -pulse.half(); k <= pulse.half(); ++k)
     {
       if (out - k >= 0 && out - k < ranges)
       {
-        iq[std::size_t(out)] += double(pulse.re()[std::size_t(pulse.half() - k)]) * heard[std::size_t(out - k)];
+        const double amplitude = double(pulse.re()[std::size_t(pulse.half() - k)]);
+        iq[std::size_t(out)] += amplitude * heard[std::size_t(out - k)];
+        reverberating += amplitude * noise[std::size_t(out - k)];
       }
     }
+    const double level = betweenMiddles(lateLevel, out * binsPerSample);
     iq[std::size_t(out)] *= std::polar(1.0, -2.0 * M_PI * turns[std::size_t(out)]);
+    iq[std::size_t(out)] += level > double(faintestReverberation) ? level * reverberating : 0.0;
   }
   return iq;
 }
@@ -166,6 +177,31 @@ TEST(LineFinisher, AgreesWithTheDirectSum)
     EXPECT_GT(largest, 1.0);
     EXPECT_LT(worst, 1e-5 * largest) << samplingMHz;
   }
+}
+
+/// What is known of B is noisy, and its phase sums it up over the whole line: added to the direct sound in that phase,
+/// speckle that reverberates would make another picture of each number of paths.
+TEST(LineFinisher, WhatReverberatesDoesNotDependOnTheAttenuation)
+{
+  const EchoSettings settings = settingsOf(50.0);
+  TracedLines traced = busyLine(settings);
+  std::fill(traced.boundaryEcho.begin(), traced.boundaryEcho.end(), 0.0f);
+  const ReverberationSpeckle speckle{ { 9, 0.4f },
+                                      std::vector<float>(std::size_t(settings.sampleCount()) + 500, 0.3f) };
+  std::vector<std::complex<float>> iq[2];
+  for (const int i : { 0, 1 })
+  {
+    const LineFinisher finisher(settings, InterfaceModel::Acoustic, &traced, nullptr, speckle);
+    LineFinisher::Room room = finisher.room();
+    iq[i].resize(std::size_t(settings.sampleCount()));
+    finisher.finish(0, finisher.emptySum(), nullptr, finisher.reverberationNodes(), room, iq[i].data());
+    for (float& b : traced.attenuationNpPerMHz)
+    {
+      b *= 1.1f;
+    }
+  }
+  EXPECT_EQ(iq[0], iq[1]);
+  EXPECT_TRUE(std::any_of(iq[0].begin(), iq[0].end(), [](std::complex<float> v) { return std::abs(v) > 0.1f; }));
 }
 
 /// Depths and ranges that are the same but for rounding, and such that part: each depth is shown once.

@@ -1,6 +1,7 @@
 #include "LayeredScene.h"
 
 #include "Echo/FormRf.h"
+#include "Echo/Pulse.h"
 #include "Echo/ReverberationSpeckle.h"
 #include "Trace/Deposit.h"
 #include "Trace/Trace.h"
@@ -261,27 +262,36 @@ TEST(Reverberation, WhatComesStraightBackIsHeardAsFarAsItIsOnTheAxis)
   }
 }
 
-TEST(Reverberation, NodesThatLinesShareGiveTheNoiseOfEach)
+TEST(Reverberation, NodesThatLinesShareGiveTheNoiseOfEachBehindThePulse)
 {
   constexpr int lines = 33;
   constexpr int samples = 4000;
+  const PulseKernel pulse{ EchoSettings() };
+  const int half = pulse.half();
   for (const float nodesPerLine : { 1e-3f, 0.3f, 1.0f })
   {
-    const ReverberationNoise noise{ 7, nodesPerLine };
-    const ReverberationNodes nodes(noise, lines, samples);
+    const ReverberationSpeckle speckle{ { 7, nodesPerLine }, std::vector<float>(std::size_t(samples + half), 2.0f) };
+    const ReverberationNodes nodes(speckle, pulse, lines, samples);
     const std::vector<float> level(samples, 0.5f);
-    const std::vector<float> rms(samples, 2.0f);
     double power = 0.0;
     for (int l = 0; l < lines; ++l)
     {
-      std::vector<float> re(samples, 3.0f);
-      std::vector<float> im(samples, -1.0f);
-      nodes.add(l, level.data(), rms.data(), samples, { re.data(), im.data() });
-      for (std::size_t s = 0; s < samples; ++s)
+      std::vector<std::complex<float>> iq(samples, { 3.0f, -1.0f });
+      nodes.add(l, level.data(), samples, iq.data());
+      for (int s = 0; s < samples; s += s < 2 * half ? 1 : 37)
       {
-        const Vec2f own = noise.at(l, int(s));
-        ASSERT_NEAR(re[s], 3.0f + own.x, 2e-6f) << "line " << l << ", sample " << s;
-        ASSERT_NEAR(im[s], -1.0f + own.y, 2e-6f) << "line " << l << ", sample " << s;
+        std::complex<double> exact(3.0, -1.0);
+        for (int from = std::max(0, s - half); from <= s + half; ++from)
+        {
+          const Vec2f own = speckle.noise.at(l, from);
+          exact += double(pulse.re()[std::size_t(half - (s - from))]) * std::complex<double>(own.x, own.y);
+        }
+        ASSERT_NEAR(std::abs(std::complex<double>(iq[std::size_t(s)]) - exact), 0.0, 2e-5)
+          << "line " << l << ", sample " << s;
+      }
+      for (int s = 0; s < samples; ++s)
+      {
+        const Vec2f own = speckle.noise.at(l, s);
         power += double(glm::dot(own, own));
       }
     }

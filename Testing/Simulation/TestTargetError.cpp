@@ -144,17 +144,17 @@ void expectHonest(const Scan& scan, double targetDb)
 
 TEST(TargetError, IsTrueOfACurvedScene)
 {
-  expectHonest(busyScan(), 1.0);
+  expectHonest(busyScan(), 0.3);
 }
 
 TEST(TargetError, IsTrueOfFourChambers)
 {
-  expectHonest(fourChambers(), 1.5);
+  expectHonest(fourChambers(), 1.0);
 }
 
 TEST(TargetError, IsTrueOfTwoChambers)
 {
-  expectHonest(twoChambers(), 1.5);
+  expectHonest(twoChambers(), 1.0);
 }
 
 void expectSameLines(const TracedLines& a, const TracedLines& b, double tolerance)
