@@ -23,8 +23,8 @@ __global__ void drawSamples(ReverberationNoise noise, const float* rms, int samp
   }
 }
 
-/// Samples of a line, nothing above the first, convolved with the pulse: re, and im where it is complex, from its end to
-/// its start.
+/// Samples of a line, nothing above the first, convolved with the pulse: re, and im where it is complex, from its end
+/// to its start.
 __global__ void convolveSamples(const float2* speckle, int samples, const float* pulse, int half, bool complexPulse,
                                 int heardSamples, float2* heard)
 {
