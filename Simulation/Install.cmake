@@ -22,6 +22,7 @@ set(public_headers
   Phantoms/ThoraxPhantom.h
   Probe/AcousticWindow.h
   Probe/ArrayBeam.h
+  Probe/HeartLandmarks.h
   Probe/PulseEchoFieldFile.h
   Probe/PulseFile.h
   Scene/SceneFile.h
