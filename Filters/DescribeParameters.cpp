@@ -6,13 +6,13 @@
 // `only` and `except` choose among them, `simple` are those that a panel always shows, `where` is a switch (0 off,
 // 1 on, 2 automatic) without which it shows none of them. `method` takes the name and the value, in place of one method
 // a property.
+#include "ChestDefaults.h"
 #include "Echo/EchoSettings.h"
 #include "Image/BModeSettings.h"
 #include "Image/DisplaySettings.h"
 #include "Labels/BodyFill.h"
 #include "Probe/ScanGeometry.h"
 #include "Scene/ScanDetail.h"
-#include "SonoChestDefaults.h"
 #include "Trace/TraceSettings.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "SonoUltrasoundStages.h"
 
-#include "SonoChestDefaults.h"
+#include "ChestDefaults.h"
 #include "SonoContentKey.h"
 #include "SonoFieldImage.h"
 #include "SonoImagePlacement.h"

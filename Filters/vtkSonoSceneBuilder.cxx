@@ -2,11 +2,8 @@
 
 #include "Core/KeptResults.h"
 #include "Core/KeyText.h"
-#include "Labels/AssignTissues.h"
-#include "Labels/BodyEnd.h"
 #include "Labels/BodyFill.h"
-#include "Labels/HeartByShape.h"
-#include "Labels/LabelCode.h"
+#include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
 #include "Labels/TissueTable.h"
 #include "Scene/ScanDetail.h"
@@ -34,34 +31,6 @@
 #include <utility>
 
 vtkStandardNewMacro(vtkSonoSceneBuilder);
-
-namespace {
-
-/// What to say of tissues that are guesses; empty when none is.
-std::string warningOfGuesses(const std::vector<sono::LabelInfo>& labels)
-{
-  std::string guesses;
-  bool nameless = false;
-  for (const sono::LabelInfo& label : labels)
-  {
-    if (label.guessed)
-    {
-      guesses += (guesses.empty() ? "" : ", ") + label.name + " (" + label.tissue + ")";
-      nameless = nameless || sono::saysNothing(label.name);
-    }
-  }
-  if (guesses.empty())
-  {
-    return {};
-  }
-  return "These labels' tissues are guesses, to be changed in View > Ultrasound Tissues: " + guesses + "." +
-         (nameless
-            ? " The label map does not name them all: choose a list of names in its reader (Label Names), or put a "
-              "table beside the file."
-            : "");
-}
-
-} // namespace
 
 vtkSonoSceneBuilder::vtkSonoSceneBuilder()
   : Parameters(new sono::SettingsOf<sono::BodyFillSettings>)
@@ -153,36 +122,11 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
 void vtkSonoSceneBuilder::AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume)
 {
   const auto map = sono::LabelTissueMap::read(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv"));
-  const std::string heart = sono::guessHeart(volume);
-  const std::vector<std::string> unmapped = sono::assignTissues(volume, map, table, this->FallbackTissue);
-  const std::string guesses = warningOfGuesses(volume.labels);
-  if (!guesses.empty())
+  for (const std::string& sentence :
+       sono::prepareBody(volume, map, table, this->FallbackTissue, sono::BodyFillMode(this->FillBody),
+                         sono::settingsIn<sono::BodyFillSettings>(*this->Parameters)))
   {
-    this->Warn(heart + (heart.empty() ? "" : " ") + guesses);
-  }
-  const sono::BodyEnd end = this->FillBody == FILL_AUTO ? sono::bodyEnd(volume, unmapped) : sono::BodyEnd::Skin;
-  const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);
-  if (end == sono::BodyEnd::NoSkin)
-  {
-    sono::fillBody(volume, settings);
-    this->Warn("The label map has no skin: its body was filled with soft tissue and skin, whose place is an "
-               "estimate (Fill Body is Auto; Off leaves it as it is).");
-  }
-  else if (end == sono::BodyEnd::BareOrgan)
-  {
-    sono::batheOrgan(volume, settings);
-    this->Warn("The label map holds a bare organ without a body around it: a bath of soft tissue, " +
-               std::to_string(int(sono::bathMm)) +
-               " mm thick, was put around it (Fill Body is Auto; Off leaves it as it is).");
-  }
-  if (end != sono::BodyEnd::Skin)
-  {
-    sono::assignTissues(volume, map, table, this->FallbackTissue); // of what was added
-  }
-  if (sono::hasHeartWithoutChambers(volume))
-  {
-    this->Warn("The heart is one label without blood in it: its chambers are missing and will look like muscle; "
-               "take a segmentation that has chambers.");
+    this->Warn(sentence);
   }
 }
 

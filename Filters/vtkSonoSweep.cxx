@@ -1,9 +1,9 @@
 #include "vtkSonoSweep.h"
 
+#include "ChestDefaults.h"
 #include "Core/ParallelFor.h"
 #include "Simulator.h"
 #include "SonoAnatomy.h"
-#include "SonoChestDefaults.h"
 #include "SonoImageSettings.h"
 #include "SonoLabelImage.h"
 #include "SonoPoses.h"

@@ -37,7 +37,7 @@ class vtkSonoSceneBuilder;
  * "ErrorPercent" then, too.
  *
  * The settings are those of the stages: ask for a stage, and set it up. They have the stages' defaults but for those
- * of SonoChestDefaults.h. The ray tracer's Device is that of all stages, the scan converter's PixelMm that of the error
+ * of ChestDefaults.h. The ray tracer's Device is that of all stages, the scan converter's PixelMm that of the error
  * map.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoUltrasound : public vtkImageAlgorithm

@@ -14,6 +14,7 @@ constexpr double mostGapMm = 10.0;
 constexpr double farMm = 500.0;
 constexpr double mostInsideMm = 15.0;
 constexpr double leastImage = 0.5;
+constexpr double farthestSkinMm = 60.0;
 
 /// Label of the voxel at a place in the world; nothing beyond the volume.
 const LabelInfo* labelAt(const Scene& scene, const Vec3d& world)
@@ -39,11 +40,16 @@ bool keepsSoundOut(const Tissue& tissue)
   return r * r > mostReflected;
 }
 
+double halfVoxelMm(const Scene& scene)
+{
+  const Vec3d spacing = scene.placement().spacingMm;
+  return 0.5 * std::min({ spacing.x, spacing.y, spacing.z });
+}
+
 /// Way along a line to the first voxel of the body; infinite where there is none.
 double gapMm(const Scene& scene, const ScanLine& line)
 {
-  const Vec3d spacing = scene.placement().spacingMm;
-  const double step = 0.5 * std::min({ spacing.x, spacing.y, spacing.z });
+  const double step = halfVoxelMm(scene);
   for (double t = 0.0; t < farMm; t += step)
   {
     if (!isOutside(scene, labelAt(scene, line.originMm + t * line.axis)))
@@ -119,10 +125,22 @@ std::string probePlaceWarning(const Scene& scene, const ScanGeometry& geometry, 
            "onto the skin.";
   }
 
+  const double share = shareInsideVolume(scene, geometry, probe);
+  if (share < leastImage)
+  {
+    return "Only " + std::to_string(std::lround(100.0 * share)) +
+           " % of the image lies within the label map's volume, and what lies beyond is unknown and stays dark: take "
+           "another place with Find Window in the panel of the probe (in a script: Acoustic Window), or less depth.";
+  }
+  return {};
+}
+
+double shareInsideVolume(const Scene& scene, const ScanGeometry& geometry, const ProbePose& pose)
+{
   ScanGeometry plane = geometry;
   plane.kind = plane.isVolume() ? ScanKind::PhasedSector : plane.kind;
   plane.lineCount = 33;
-  const auto lines = makeScanLines(plane, probe);
+  const auto lines = makeScanLines(plane, pose.orthonormalized());
   double all = 0.0;
   double within = 0.0;
   const double stepMm = plane.depthMm / 64.0;
@@ -136,13 +154,24 @@ std::string probePlaceWarning(const Scene& scene, const ScanGeometry& geometry, 
       within += labelAt(scene, line.originMm + r * line.axis) ? areaMm2 : 0.0;
     }
   }
-  if (within < leastImage * all)
+  return within / all;
+}
+
+std::optional<ProbePose> poseOnSkin(const Scene& scene, const ProbePose& pose)
+{
+  ProbePose probe = pose.orthonormalized();
+  const Vec3d start = probe.positionMm;
+  const bool startsInside = !isOutside(scene, labelAt(scene, start));
+  const double step = halfVoxelMm(scene);
+  for (double t = 0.0; t <= farthestSkinMm; t += step)
   {
-    return "Only " + std::to_string(std::lround(100.0 * within / all)) +
-           " % of the image lies within the label map's volume, and what lies beyond is unknown and stays dark: take "
-           "another place with Find Window in the panel of the probe (in a script: Acoustic Window), or less depth.";
+    probe.positionMm = start + (startsInside ? -t : t) * probe.axial;
+    if (isOutside(scene, labelAt(scene, probe.positionMm)) == startsInside)
+    {
+      return probe;
+    }
   }
-  return {};
+  return std::nullopt;
 }
 
 } // namespace sono

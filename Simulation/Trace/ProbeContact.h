@@ -3,6 +3,7 @@
 #include "Probe/ScanGeometry.h"
 #include "Scene/Scene.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,12 @@ std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>&
 /// that is no catheter is in the wrong place where its face lies more than 15 mm inside the body; and of an image of
 /// which less than half lies in the label map's box, most is unknown.
 std::string probePlaceWarning(const Scene& scene, const ScanGeometry& geometry, const ProbePose& pose);
+
+/// Share of the image's area, of a matrix that of the plane without elevation, that lies in the label map's box.
+double shareInsideVolume(const Scene& scene, const ScanGeometry& geometry, const ProbePose& pose);
+
+/// The pose moved along its axis onto the body's surface: from inside back to the first place that is outside, from
+/// outside on to the first that is not, at most 60 mm, by half a voxel's edge. None where no surface lies there.
+std::optional<ProbePose> poseOnSkin(const Scene& scene, const ProbePose& pose);
 
 } // namespace sono

@@ -1,0 +1,144 @@
+#pragma once
+
+#include "DataSets/Draw.h"
+#include "Labels/TissueTable.h"
+#include "Probe/ScanGeometry.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sono {
+
+/// What a patient's images are for.
+enum class Split
+{
+  Train,
+  Validation,
+  Test
+};
+constexpr int splitCount = 3;
+/// "train", "validation", "test".
+const char* nameOf(Split split);
+
+enum class DataSetFormat
+{
+  NnUNet, ///< imagesTr, labelsTr, imagesTs, labelsTs, dataset.json, splits_final.json
+  Monai   ///< images, labels and a data list dataset.json
+};
+
+/// Where the probe stands before it is jittered.
+struct DataSetView
+{
+  std::string name;
+  std::optional<ProbePose> pose; ///< world LPS mm, of the patient as the file has it
+  /// Of what findAcousticWindows finds for a label or an organ the best; empty, and no pose: the bundled thorax's A4C.
+  std::string window;
+};
+
+/// An anatomy, and how often it is used.
+struct DataSetPatient
+{
+  std::string id;
+  std::string labels;     ///< path of the label map; empty: the bundled thorax
+  std::string names;      ///< path of a table of its labels; empty: none
+  double spacingMm = 1.0; ///< of the bundled thorax
+  std::string licence;
+  std::string provenance;
+  int copies = 1;             ///< bodies made of it, each stretched by itself along the grid's three axes
+  Draw stretch = always(1.0); ///< factor
+  std::optional<Split> split; ///< none: drawn
+  std::vector<DataSetView> views;
+};
+
+/// How far off its view the probe is held, drawn for each image: degrees and millimetres, in the view's own frame.
+struct PoseJitter
+{
+  double tiltDeg = 0.0;     ///< out of the plane, about lateral
+  double rockDeg = 0.0;     ///< in the plane, about elevation
+  double rotationDeg = 0.0; ///< about axial
+  double slideLateralMm = 0.0;
+  double slideElevationMm = 0.0;
+
+  /// Visits each number and its name in a file.
+  template<class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor(self.tiltDeg, "tiltDeg");
+    visitor(self.rockDeg, "rockDeg");
+    visitor(self.rotationDeg, "rotationDeg");
+    visitor(self.slideLateralMm, "slideLateralMm");
+    visitor(self.slideElevationMm, "slideElevationMm");
+  }
+};
+
+/// Whose settings a parameter belongs to.
+enum class SettingsGroup
+{
+  Probe,   ///< ProbeSettings: drawn for each exam; the others for each image
+  Tracing, ///< TraceSettings
+  Echo,    ///< EchoSettings, and its sampling
+  Display  ///< BModeSettings
+};
+/// The keys of the file: "probe", "tracing", "echo", "display".
+const char* nameOf(SettingsGroup group);
+
+/// A parameter of the simulation (Core/Parameters.h), by the name that its settings struct gives it.
+struct DrawnParameter
+{
+  SettingsGroup group = SettingsGroup::Probe;
+  std::string name;
+  Draw draw;
+};
+
+/// The tissue outside the bodies.
+constexpr const char* couplingTissue = "air";
+
+/// A number of a tissue, drawn for each exam.
+struct DrawnTissue
+{
+  std::string tissue; ///< "*": of each tissue but couplingTissue by itself
+  TissueColumn column;
+  bool isFactor = false; ///< of the table's number
+  Draw draw;
+};
+
+/// Labels that share a value of the masks.
+struct MaskGroup
+{
+  std::string name;
+  std::vector<std::string> labels; ///< patterns of words, see LabelTissueMap; the first group that fits a label has it
+};
+
+/// A data set as one file declares it. Data/datasets/schema.json and Data/docs/datasets.md say what each key means.
+struct DataSet
+{
+  std::string path; ///< of the file
+  std::string text; ///< its bytes
+  std::string name;
+  std::string description;
+  std::uint64_t seed = 0;
+  std::int64_t exams = 1;
+  int imagesPerExam = 1;
+  std::vector<DataSetPatient> patients;
+  std::array<double, splitCount> splitShares{ 0.7, 0.15, 0.15 }; ///< of the bodies whose split is drawn; sum 1
+  std::array<Draw, 5> jitter{ always(0), always(0), always(0), always(0), always(0) }; ///< in the order of PoseJitter
+  ProbeSettings probe;
+  std::vector<DrawnParameter> parameters;
+  double pixelMm = 0.5;
+  TissueTable tissues;
+  std::string labelTissues; ///< path of the table which label is which tissue
+  std::vector<DrawnTissue> drawnTissues;
+  std::vector<MaskGroup> masks; ///< value n + 1 in a mask; 0 is everything else
+  DataSetFormat format = DataSetFormat::NnUNet;
+};
+
+/// Reads and checks a declarative file (JSON). Paths in it are relative to it; presets, tables and probes that come
+/// with SonoVDB lie in `dataFolder`. Throws Error, in one sentence that names the file and the key, for a key that is
+/// unknown, missing or there twice, a value of the wrong type, a range that is upside down or wider than the
+/// parameter's own, a probe, tissue or file that is not there.
+DataSet readDataSet(const std::string& path, const std::string& dataFolder);
+
+} // namespace sono

@@ -1,0 +1,300 @@
+#include "DataSets/DataSetImager.h"
+
+#include "Cuda/RunOnDevice.h"
+#include "DataSets/DataSetInfo.h"
+#include "Labels/PrepareBody.h"
+#include "Labels/ReadLabelMap.h"
+#include "Phantoms/ThoraxPhantom.h"
+#include "Probe/AcousticWindow.h"
+#include "Simulator.h"
+#include "Trace/ProbeContact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace sono {
+
+namespace {
+
+constexpr int mostAttempts = 32;
+constexpr const char* fallbackTissue = "soft_tissue";
+
+/// The linear map that stretches a grid along its own axes.
+Mat3d stretchMap(const GridPlacement& placement, const Vec3d& stretch)
+{
+  Mat3d scaled = placement.direction;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    scaled[axis] *= stretch[axis];
+  }
+  return scaled * glm::transpose(placement.direction);
+}
+
+GridPlacement stretched(GridPlacement placement, const Vec3d& stretch)
+{
+  placement.originMm = stretchMap(placement, stretch) * placement.originMm;
+  placement.spacingMm *= stretch;
+  return placement;
+}
+
+/// Rodrigues' formula; `axis` has length 1.
+Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
+{
+  const double angle = deg * M_PI / 180.0;
+  return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
+         axis * (glm::dot(axis, v) * (1.0 - std::cos(angle)));
+}
+
+ProbePose jittered(const ProbePose& view, const PoseJitter& jitter)
+{
+  const Vec3d elevation = glm::cross(view.axial, view.lateral);
+  ProbePose pose = view;
+  pose.positionMm += jitter.slideLateralMm * view.lateral + jitter.slideElevationMm * elevation;
+  const auto turn = [&](const Vec3d& axis, double deg) {
+    pose.axial = rotated(pose.axial, axis, deg);
+    pose.lateral = rotated(pose.lateral, axis, deg);
+  };
+  turn(view.lateral, jitter.tiltDeg);
+  turn(elevation, jitter.rockDeg);
+  turn(pose.axial, jitter.rotationDeg);
+  return pose.orthonormalized();
+}
+
+/// The mask's value of each label id.
+std::vector<std::uint8_t> groupsOf(const std::vector<LabelInfo>& labels, const std::vector<MaskGroup>& masks)
+{
+  LabelTissueMap patterns; // whose "tissues" are the groups
+  for (std::size_t group = 0; group < masks.size(); ++group)
+  {
+    for (const std::string& pattern : masks[group].labels)
+    {
+      patterns.add({ pattern, std::to_string(group + 1) });
+    }
+  }
+  std::vector<std::uint8_t> values(65536, 0);
+  for (const LabelInfo& label : labels)
+  {
+    if (const LabelTissueRule* rule = patterns.matchName(label.name))
+    {
+      values[std::size_t(label.id)] = std::uint8_t(std::stoi(rule->tissue));
+    }
+  }
+  return values;
+}
+
+} // namespace
+
+/// A patient's labels with tissues, and skin around them; not stretched.
+struct DataSetImager::Patient
+{
+  int number = 0;
+  LabelVolume volume;
+  std::vector<std::uint8_t> groups; ///< of each label id
+  std::vector<bool> groupIsThere;
+};
+
+struct DataSetImager::Exam
+{
+  std::int64_t number = 0;
+  int body = 0;
+  std::shared_ptr<const Scene> scene;
+  Simulator simulator;
+  std::map<int, ProbePose> found; ///< of views with a window
+};
+
+struct DataSetImager::Placed
+{
+  ProbePose pose;
+  PoseJitter jitter;
+};
+
+DataSetImager::DataSetImager(std::shared_ptr<const DataSetPlan> plan, Device device)
+  : plan_(std::move(plan))
+  , device_(device)
+{
+}
+
+DataSetImager::~DataSetImager() = default;
+
+void DataSetImager::preparePatient(int number, const Progress& progress)
+{
+  if (patient_ && patient_->number == number)
+  {
+    return;
+  }
+  exam_ = nullptr;
+  patient_ = nullptr;
+  const DataSet& set = plan_->set();
+  const DataSetPatient& patient = set.patients[std::size_t(number)];
+  auto made = std::make_unique<Patient>();
+  made->number = number;
+  made->volume =
+    patient.labels.empty() ? makeThoraxPhantom(patient.spacingMm) : readLabelMap(patient.labels, 0, progress);
+  if (!patient.names.empty())
+  {
+    readLabelTable(patient.names, made->volume);
+  }
+  prepareBody(made->volume, LabelTissueMap::read(set.labelTissues), set.tissues, fallbackTissue, BodyFillMode::Auto);
+  made->groups = groupsOf(made->volume.labels, set.masks);
+  made->groupIsThere.assign(set.masks.size(), false);
+  for (const std::uint8_t value : made->groups)
+  {
+    if (value > 0)
+    {
+      made->groupIsThere[value - 1u] = true;
+    }
+  }
+  if (std::find(made->groupIsThere.begin(), made->groupIsThere.end(), true) == made->groupIsThere.end())
+  {
+    throw Error("patient '" + patient.id + "' has no label of any group of 'masks'; correct their 'labels'.");
+  }
+  patient_ = std::move(made);
+}
+
+void DataSetImager::prepareExam(const PlannedImage& image, const Progress& progress)
+{
+  preparePatient(plan_->bodies()[std::size_t(image.body)].patient, progress);
+  const bool sameTissues = plan_->set().drawnTissues.empty() || (exam_ && exam_->number == image.exam);
+  if (exam_ && exam_->body == image.body && sameTissues)
+  {
+    if (exam_->number != image.exam)
+    {
+      exam_->number = image.exam;
+      exam_->found.clear(); // by the probe of that exam
+    }
+    return;
+  }
+  exam_ = nullptr; // before the next one takes as much memory
+  LabelVolume volume = patient_->volume;
+  volume.placement = stretched(volume.placement, plan_->bodies()[std::size_t(image.body)].stretch);
+  auto exam = std::make_unique<Exam>();
+  exam->number = image.exam;
+  exam->body = image.body;
+  exam->scene = std::make_shared<const Scene>(std::move(volume), plan_->tissues(image.exam), couplingTissue);
+  exam->simulator.setScene(exam->scene);
+  exam_ = std::move(exam);
+}
+
+ProbePose DataSetImager::viewPose(const PlannedImage& image, const ScanGeometry& geometry)
+{
+  const DataSetView& view = plan_->patientOf(image.body).views[std::size_t(image.view)];
+  if (!view.window.empty())
+  {
+    const auto known = exam_->found.find(image.view);
+    if (known != exam_->found.end())
+    {
+      return known->second;
+    }
+    ProbeSettings probe = plan_->settings(image).probe;
+    probe.geometry = geometry;
+    const auto windows = findAcousticWindows(*exam_->scene, windowTarget(*exam_->scene, view.window), probe, 1);
+    return exam_->found[image.view] = windows.front().pose;
+  }
+  ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C();
+  const Mat3d map = stretchMap(patient_->volume.placement, plan_->bodies()[std::size_t(image.body)].stretch);
+  pose.positionMm = map * pose.positionMm;
+  pose.axial = map * pose.axial;
+  pose.lateral = map * pose.lateral;
+  return pose.orthonormalized();
+}
+
+DataSetImager::Placed DataSetImager::place(const PlannedImage& image, const ImageSettings& settings)
+{
+  const ProbePose view = viewPose(image, settings.geometry);
+  const bool isCatheter = settings.geometry.lineOrigin() == LineOrigin::Catheter;
+  std::string why = "No surface of the body lies there.";
+  for (int attempt = 0; attempt < mostAttempts; ++attempt)
+  {
+    const PoseJitter jitter = plan_->jitter(image.index, attempt);
+    ProbePose pose = jittered(view, jitter);
+    if (!isCatheter)
+    {
+      const std::optional<ProbePose> onSkin = poseOnSkin(*exam_->scene, pose);
+      if (!onSkin)
+      {
+        continue;
+      }
+      pose = *onSkin;
+    }
+    why = probeContactWarning(*exam_->scene, makeScanLines(settings.geometry, pose));
+    why = why.empty() ? probePlaceWarning(*exam_->scene, settings.geometry, pose) : why;
+    if (why.empty())
+    {
+      return { pose, jitter };
+    }
+  }
+  throw Error("none of " + std::to_string(mostAttempts) + " poses drawn for view '" +
+              plan_->patientOf(image.body).views[std::size_t(image.view)].name +
+              "' stands on the skin; narrow 'jitter' or correct the view. " + why);
+}
+
+DataSetImage DataSetImager::make(std::int64_t index, const Progress& progress)
+{
+  const DataSet& set = plan_->set();
+  if (index < 0 || index >= plan_->imageCount())
+  {
+    throw Error("'" + set.path + "': there is no image " + std::to_string(index) + "; choose 0 to " +
+                std::to_string(plan_->imageCount() - 1) + ".");
+  }
+  const PlannedImage image = plan_->image(index);
+  try
+  {
+    return makePlanned(image, progress);
+  }
+  catch (const Error& error)
+  {
+    throw Error("'" + set.path + "': image " + std::to_string(index) + " of patient '" +
+                plan_->patientOf(image.body).id + "': " + error.what());
+  }
+}
+
+DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progress& progress)
+{
+  prepareExam(image, partOf(progress, 0.0, 0.2));
+  DataSetFacts facts;
+  facts.image = image;
+  facts.settings = plan_->settings(image);
+  ImageInput input;
+  input.settings = facts.settings.image(plan_->set().pixelMm, device_);
+  input.settings.tracing.interactive = true; // images of a body share what is prepared of its scene
+  const Placed placed = place(image, input.settings);
+  input.pose = facts.pose = placed.pose;
+  facts.jitter = placed.jitter;
+  facts.onGpu = runsOnDevice(input.settings.tracing);
+
+  const ImageResult result = exam_->simulator.image(input, partOf(progress, 0.2, 0.95));
+  if (result.isVolume())
+  {
+    throw Error("a matrix makes volumes; choose a probe with lines in a plane.");
+  }
+  const TracedResult traced = exam_->simulator.traced(input);
+  const ScanPicture picture = exam_->simulator.picture(result, input.settings.geometry, input.pose, traced);
+  const PlaneImage layout = planeImageLayout(input.settings.geometry, input.settings.pixelMm);
+  DataSetImage made{
+    layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}
+  };
+  made.grey.assign(picture.grey.begin(), picture.grey.end());
+  made.mask.resize(made.grey.size());
+  std::transform(picture.labels.begin(), picture.labels.end(), made.mask.begin(),
+                 [&](std::uint16_t label) { return patient_->groups[label]; });
+  for (std::size_t group = 0; group < plan_->set().masks.size(); ++group)
+  {
+    made.groups.push_back(plan_->set().masks[group].name);
+    facts.groupPixels.push_back(std::size_t(std::count(made.mask.begin(), made.mask.end(), std::uint8_t(group + 1))));
+  }
+  facts.groupIsThere = patient_->groupIsThere;
+  facts.width = layout.width;
+  facts.height = layout.height;
+  facts.lateralMinMm = layout.lateralMinMm;
+  facts.axialMinMm = layout.axialMinMm;
+  const std::vector<ScanLine> lines = makeScanLines(input.settings.geometry, input.pose);
+  facts.flags = { probeContactWarning(*exam_->scene, lines).empty(),
+                  shareInsideVolume(*exam_->scene, input.settings.geometry, input.pose),
+                  shareShadowed(lines, input.settings, traced.host()) };
+  made.info = describeImage(*plan_, *exam_->scene, facts);
+  return made;
+}
+
+} // namespace sono

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "Core/Device.h"
+#include "Core/Progress.h"
+#include "DataSets/DataSetPlan.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sono {
+
+/// A picture of a data set with its mask, rows from the transducer on, lateral fastest.
+struct DataSetImage
+{
+  int width = 0;
+  int height = 0;
+  double pixelMm = 0.0;
+  double lateralMinMm = 0.0; ///< of the first pixel, in the probe's plane
+  double axialMinMm = 0.0;
+  std::vector<std::uint8_t> grey;  ///< see greyBytes
+  std::vector<std::uint8_t> mask;  ///< n + 1: mask group n; 0: another label, or outside the scanned area
+  std::vector<std::string> groups; ///< names of the mask groups
+  /// JSON: what was drawn, all settings, the tissues' numbers, the pose, licence and provenance of the patient, and
+  /// flags (see Data/docs/datasets.md).
+  std::string info;
+};
+
+/// Makes the images of a plan, whichever are asked for. Keeps the last patient's labels and the last exam's scene, so
+/// that images of one exam are quick one after the other. An image does not depend on those before it, to the bit. Not
+/// for several threads at a time.
+class DataSetImager
+{
+public:
+  explicit DataSetImager(std::shared_ptr<const DataSetPlan> plan, Device device = Device::Auto);
+  ~DataSetImager();
+  DataSetImager(const DataSetImager&) = delete;
+  DataSetImager& operator=(const DataSetImager&) = delete;
+
+  const DataSetPlan& plan() const { return *plan_; }
+  /// Throws Error, naming the data set and the image, when there is no such image, its patient cannot be read or no
+  /// pose that is drawn for it stands on the skin; Aborted.
+  DataSetImage make(std::int64_t index, const Progress& progress = {});
+
+private:
+  struct Patient;
+  struct Exam;
+  struct Placed;
+
+  void preparePatient(int patient, const Progress& progress);
+  void prepareExam(const PlannedImage& image, const Progress& progress);
+  ProbePose viewPose(const PlannedImage& image, const ScanGeometry& geometry);
+  Placed place(const PlannedImage& image, const ImageSettings& settings);
+  DataSetImage makePlanned(const PlannedImage& image, const Progress& progress);
+
+  std::shared_ptr<const DataSetPlan> plan_;
+  Device device_;
+  std::unique_ptr<Patient> patient_;
+  std::unique_ptr<Exam> exam_;
+};
+
+} // namespace sono

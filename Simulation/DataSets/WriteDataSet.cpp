@@ -1,0 +1,262 @@
+#include "DataSets/WriteDataSet.h"
+
+#include "Core/WholeFile.h"
+#include "DataSets/DataSetImager.h"
+#include "Image/PngFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <ostream>
+#include <set>
+
+namespace sono {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* infoFolder = "info";
+constexpr const char* sourceFile = "dataset_source.json";
+
+/// Where the files of an image lie in the folder.
+struct CaseFiles
+{
+  std::string image;
+  std::string mask;
+  std::string info;
+};
+
+CaseFiles filesOf(const DataSetPlan& plan, std::int64_t index)
+{
+  const std::string name = plan.caseName(index);
+  const std::string info = std::string(infoFolder) + "/" + name + ".json";
+  if (plan.set().format == DataSetFormat::Monai)
+  {
+    return { "images/" + name + ".png", "labels/" + name + ".png", info };
+  }
+  const std::string end = plan.splitOf(index) == Split::Test ? "Ts/" : "Tr/";
+  return { "images" + end + name + "_0000.png", "labels" + end + name + ".png", info };
+}
+
+std::vector<std::string> foldersOf(const DataSetPlan& plan)
+{
+  return plan.set().format == DataSetFormat::Monai
+           ? std::vector<std::string>{ "images", "labels", infoFolder }
+           : std::vector<std::string>{ "imagesTr", "labelsTr", "imagesTs", "labelsTs", infoFolder };
+}
+
+void write(const fs::path& path, const std::function<void(std::ostream&)>& content)
+{
+  if (!writeWholeFile(path.string(), content))
+  {
+    throw Error("cannot write '" + path.string() +
+                "': its folder is protected or the disk is full; make room, or choose another folder.");
+  }
+}
+
+void write(const fs::path& path, const std::string& bytes)
+{
+  write(path, [&](std::ostream& out) { out.write(bytes.data(), std::streamsize(bytes.size())); });
+}
+
+/// Number of the image that a file of the data set belongs to, from its name; none of others.
+std::optional<std::int64_t> imageOf(const DataSetPlan& plan, const std::string& file)
+{
+  const std::string begin = plan.set().name + "_";
+  const std::size_t end = file.find_first_not_of("0123456789", begin.size());
+  if (file.compare(0, begin.size(), begin) != 0 || end == std::string::npos || end == begin.size() ||
+      end - begin.size() > 18)
+  {
+    return std::nullopt;
+  }
+  return std::stoll(file.substr(begin.size(), end - begin.size()));
+}
+
+/// What a killed process has left half written of these images.
+void removeParts(const DataSetPlan& plan, const fs::path& folder, const PlannedRange& images)
+{
+  for (const std::string& sub : foldersOf(plan))
+  {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / sub))
+    {
+      if (entry.path().extension() == ".part")
+      {
+        const auto index = imageOf(plan, entry.path().filename().string());
+        if (index && *index >= images.first && *index < images.end)
+        {
+          std::error_code ignored;
+          fs::remove(entry.path(), ignored);
+        }
+      }
+    }
+  }
+}
+
+/// Makes the folders, or finds that they are of the same data set.
+void claim(const DataSetPlan& plan, const fs::path& folder)
+{
+  std::error_code error;
+  for (const std::string& sub : foldersOf(plan))
+  {
+    fs::create_directories(folder / sub, error);
+  }
+  if (error)
+  {
+    throw Error("cannot make the folder '" + folder.string() + "': " + error.message() + "; choose another one.");
+  }
+  std::ifstream stream(folder / sourceFile, std::ios::binary);
+  if (!stream)
+  {
+    write(folder / sourceFile, plan.set().text);
+  }
+  else if (std::string(std::istreambuf_iterator<char>(stream), {}) != plan.set().text)
+  {
+    throw Error("'" + folder.string() + "' holds images of another data set, or of an earlier '" + plan.set().path +
+                "'; choose an empty folder.");
+  }
+}
+
+/// Keys and values without the brackets around them, so that a list can follow that is too long to be held.
+std::string open(const Json& json)
+{
+  std::string text = json.dump(1);
+  text.resize(text.size() - 2); // "\n}"
+  return text;
+}
+
+/// A list of the images of some splits, an entry a line.
+template<class Entry>
+void writeList(const DataSetPlan& plan, std::initializer_list<Split> splits, const Entry& entry, std::ostream& out)
+{
+  out << "[";
+  const char* separator = "\n  ";
+  for (std::int64_t index = 0; index < plan.imageCount(); ++index)
+  {
+    if (std::find(splits.begin(), splits.end(), plan.splitOf(index)) != splits.end())
+    {
+      out << separator << entry(index);
+      separator = ",\n  ";
+    }
+  }
+  out << "\n ]";
+}
+
+Json licencesOf(const DataSet& set)
+{
+  std::set<std::string> licences;
+  for (const DataSetPatient& patient : set.patients)
+  {
+    licences.insert(patient.licence);
+  }
+  return licences;
+}
+
+void writeNnUNetLists(const DataSetPlan& plan, const fs::path& folder)
+{
+  const DataSet& set = plan.set();
+  Json json = { { "name", set.name }, { "description", set.description }, { "licence", licencesOf(set) } };
+  json["channel_names"] = { { "0", "ultrasound" } };
+  json["labels"]["background"] = 0;
+  for (std::size_t group = 0; group < set.masks.size(); ++group)
+  {
+    json["labels"][set.masks[group].name] = group + 1;
+  }
+  json["numTraining"] = plan.imagesIn(Split::Train) + plan.imagesIn(Split::Validation);
+  json["file_ending"] = ".png";
+  json["overwrite_image_reader_writer"] = "NaturalImage2DIO";
+  write(folder / "dataset.json", json.dump(1) + "\n");
+  const auto name = [&](std::int64_t index) { return '"' + plan.caseName(index) + '"'; };
+  write(folder / "splits_final.json", [&](std::ostream& out) {
+    out << "[{\n \"train\": ";
+    writeList(plan, { Split::Train }, name, out);
+    out << ",\n \"val\": ";
+    writeList(plan, { Split::Validation }, name, out);
+    out << "\n}]\n";
+  });
+}
+
+void writeMonaiList(const DataSetPlan& plan, const fs::path& folder)
+{
+  const DataSet& set = plan.set();
+  Json json = { { "name", set.name }, { "description", set.description }, { "licence", licencesOf(set) } };
+  json["tensorImageSize"] = "2D";
+  json["modality"] = { { "0", "ultrasound" } };
+  json["labels"]["0"] = "background";
+  for (std::size_t group = 0; group < set.masks.size(); ++group)
+  {
+    json["labels"][std::to_string(group + 1)] = set.masks[group].name;
+  }
+  json["numTraining"] = plan.imagesIn(Split::Train);
+  json["numTest"] = plan.imagesIn(Split::Test);
+  const auto entry = [&](std::int64_t index) {
+    const CaseFiles files = filesOf(plan, index);
+    return R"({"image": ")" + files.image + R"(", "label": ")" + files.mask + R"(", "info": ")" + files.info + "\"}";
+  };
+  write(folder / "dataset.json", [&](std::ostream& out) {
+    out << open(json) << ",\n \"training\": ";
+    writeList(plan, { Split::Train }, entry, out);
+    out << ",\n \"validation\": ";
+    writeList(plan, { Split::Validation }, entry, out);
+    out << ",\n \"test\": ";
+    writeList(plan, { Split::Test }, entry, out);
+    out << "\n}\n";
+  });
+}
+
+void writeImage(const DataSetImage& image, const CaseFiles& files, const fs::path& folder)
+{
+  write(folder / files.image, pngBytes(image.grey.data(), image.width, image.height, image.pixelMm));
+  write(folder / files.mask, pngBytes(image.mask.data(), image.width, image.height, image.pixelMm));
+  write(folder / files.info, image.info);
+}
+
+} // namespace
+
+DataSetTally writeDataSet(const std::shared_ptr<const DataSetPlan>& plan, const std::string& folderName,
+                          const DataSetShare& share, Device device, const Progress& progress,
+                          const std::function<void(const DataSetTally&)>& tell)
+{
+  if (folderName.empty())
+  {
+    throw Error("no folder is named for the data set; name one.");
+  }
+  const fs::path folder(folderName);
+  const PlannedRange images = plan->imagesOf(share);
+  claim(*plan, folder);
+  removeParts(*plan, folder, images);
+  if (share.rank == 0)
+  {
+    plan->set().format == DataSetFormat::Monai ? writeMonaiList(*plan, folder) : writeNnUNetLists(*plan, folder);
+  }
+  DataSetImager imager(plan, device);
+  DataSetTally tally;
+  tally.total = images.end - images.first;
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::int64_t index = images.first; index < images.end; ++index)
+  {
+    const CaseFiles files = filesOf(*plan, index);
+    const double done = double(tally.done) / double(tally.total);
+    if (!fs::exists(folder / files.info))
+    {
+      writeImage(imager.make(index, partOf(progress, done, done + 1.0 / double(tally.total))), files, folder);
+      ++tally.made;
+    }
+    ++tally.done;
+    tally.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (tell)
+    {
+      tell(tally);
+    }
+    report(progress, double(tally.done) / double(tally.total));
+  }
+  return tally;
+}
+
+} // namespace sono
