@@ -99,7 +99,7 @@ struct DataSetImager::Exam
 {
   std::int64_t number = 0;
   int body = 0;
-  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<Scene> scene;
   Simulator simulator;
   std::map<int, ProbePose> found; ///< of views with a window
 };
@@ -156,25 +156,24 @@ void DataSetImager::preparePatient(int number, const Progress& progress)
 void DataSetImager::prepareExam(const PlannedImage& image, const Progress& progress)
 {
   preparePatient(plan_->bodies()[std::size_t(image.body)].patient, progress);
-  const bool sameTissues = plan_->set().drawnTissues.empty() || (exam_ && exam_->number == image.exam);
-  if (exam_ && exam_->body == image.body && sameTissues)
+  if (exam_ && exam_->body == image.body && exam_->number == image.exam)
   {
-    if (exam_->number != image.exam)
-    {
-      exam_->number = image.exam;
-      exam_->found.clear(); // by the probe of that exam
-    }
     return;
   }
-  exam_ = nullptr; // before the next one takes as much memory
-  LabelVolume volume = patient_->volume;
-  volume.placement = stretched(volume.placement, plan_->bodies()[std::size_t(image.body)].stretch);
-  auto exam = std::make_unique<Exam>();
-  exam->number = image.exam;
-  exam->body = image.body;
-  exam->scene = std::make_shared<const Scene>(std::move(volume), plan_->tissues(image.exam), couplingTissue);
-  exam->simulator.setScene(exam->scene);
-  exam_ = std::move(exam);
+  if (!exam_ || exam_->body != image.body)
+  {
+    exam_ = nullptr; // before the next one takes as much memory
+    LabelVolume volume = patient_->volume;
+    volume.placement = stretched(volume.placement, plan_->bodies()[std::size_t(image.body)].stretch);
+    exam_ = std::make_unique<Exam>();
+    exam_->scene = std::make_shared<Scene>(std::move(volume), plan_->set().tissues, couplingTissue);
+  }
+  exam_->simulator.setScene(nullptr); // its results are of other tissues
+  exam_->scene->setTissues(plan_->tissues(image.exam));
+  exam_->simulator.setScene(exam_->scene);
+  exam_->found.clear(); // by the probe of that exam
+  exam_->body = image.body;
+  exam_->number = image.exam;
 }
 
 ProbePose DataSetImager::viewPose(const PlannedImage& image, const ScanGeometry& geometry)

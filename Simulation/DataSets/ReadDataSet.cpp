@@ -342,9 +342,7 @@ void checkTogether(const DataSet& set)
     }
     catch (const Error& error)
     {
-      const DrawnParameter& p = set.parameters[std::min(other, set.parameters.size() - 1)];
-      throw Error("'" + set.path + "': '" + nameOf(p.group) + "." + p.name +
-                  "' and the other settings do not go together: " + error.what());
+      throw Error("'" + set.path + "': its settings do not go together: " + error.what());
     }
   };
   for (std::size_t other = 0; other < set.parameters.size(); ++other)

@@ -286,6 +286,28 @@ void Scene::adopt(LabelGrid labels, std::vector<SurfaceField> surfaces)
   }
 }
 
+void Scene::setTissues(const TissueTable& table)
+{
+  std::vector<Tissue> tissues;
+  bool sameFibres = true;
+  for (const Tissue& before : tissues_)
+  {
+    const Tissue* tissue = table.find(before.name);
+    if (!tissue)
+    {
+      throw Error("the tissue table does not hold '" + before.name + "', which the label map uses: add it there");
+    }
+    sameFibres = sameFibres && (tissue->fibreAnisotropyDb > 0.0) == (before.fibreAnisotropyDb > 0.0);
+    tissues.push_back(*tissue);
+  }
+  tissues_ = std::move(tissues);
+  id_ = nextId();
+  if (!sameFibres)
+  {
+    fibres_ = nullptr;
+  }
+}
+
 const FibreField* Scene::fibres() const
 {
   std::vector<bool> isMuscle(256, false);

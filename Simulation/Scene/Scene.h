@@ -70,6 +70,10 @@ public:
   /// occur is dropped.
   void adopt(LabelGrid labels, std::vector<SurfaceField> surfaces);
 
+  /// The same anatomy with other numbers of its tissues; what was built of its voxels stays. The scene has another id()
+  /// then. Nobody else may use it meanwhile. Throws Error where the table lacks one of its tissues.
+  void setTissues(const TissueTable& table);
+
   /// The fibres of the tissues that have a fibreAnisotropyDb, built on first need; null where none has. Blood is the
   /// tissue of that name.
   const FibreField* fibres() const;

@@ -211,6 +211,34 @@ TEST(Simulator, AnotherSceneForgetsTheResultsOfTheOneBefore)
   EXPECT_EQ(changed(before, ask(simulator, smallInput())), all);
 }
 
+TEST(Simulator, OtherTissuesOfASceneGiveWhatASceneOfTheirOwnDoes)
+{
+  TissueTable before;
+  TissueTable after;
+  for (Tissue tissue : busyScene()->tissues())
+  {
+    before.add(tissue);
+    tissue.impedanceMRayl *= tissue.name == "air" ? 1.0 : 1.1;
+    tissue.attenuationDbPerCmMHz += 0.3;
+    tissue.fibreAnisotropyDb = 10.0 - tissue.fibreAnisotropyDb; // so that fibres come or go
+    after.add(tissue);
+  }
+  const auto outside = busyScene()->outsideIndex();
+  const std::string outsideName = outside < 0 ? "" : busyScene()->tissues()[std::size_t(outside)].name;
+  const auto retuned = std::make_shared<Scene>(busyScene()->volume(), before, outsideName);
+  ImageInput input = smallInput();
+  input.settings.tracing.interactive = true;
+  const auto first = Simulator(retuned).image(input).plane().host().value;
+  const std::uint64_t id = retuned->id();
+  retuned->setTissues(after);
+  EXPECT_NE(retuned->id(), id);
+  const auto own = std::make_shared<Scene>(busyScene()->volume(), after, outsideName);
+  const auto again = Simulator(retuned).image(input).plane().host().value;
+  EXPECT_EQ(again, Simulator(own).image(input).plane().host().value);
+  EXPECT_NE(again, first);
+  expectContains(errorOf([&] { retuned->setTissues({}); }), "the tissue table does not hold");
+}
+
 TEST(Simulator, HandlesOutliveWhatIsMadeNext)
 {
   Simulator simulator(busyScene());
