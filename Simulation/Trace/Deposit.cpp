@@ -212,7 +212,7 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
   }
 }
 
-void LineTally::addReverberation(const PathSegment& s)
+SONO_SIMD_CLONES __attribute__((flatten)) void LineTally::addReverberation(const PathSegment& s)
 {
   const TissueEcho echo = tissueEcho(way_, *axis_, line_, s);
   const DepthSpan span = depthSpan(echo.r0, echo.mu, s.length, tissueBins_.endMm());
