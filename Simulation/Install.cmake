@@ -25,6 +25,7 @@ set(public_headers
   Probe/HeartLandmarks.h
   Probe/PulseEchoFieldFile.h
   Probe/PulseFile.h
+  Probe/StandardViews.h
   Scene/SceneFile.h
   Simulator.h
   Trace/CollisionLimit.h

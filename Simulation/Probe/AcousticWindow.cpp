@@ -2,6 +2,7 @@
 
 #include "Core/Error.h"
 #include "Core/ParallelFor.h"
+#include "Probe/ProbeOnSkin.h"
 #include "Probe/WindowGrid.h"
 
 #include <algorithm>
@@ -15,16 +16,10 @@ constexpr double behind = 0.5;             // sine of 30 degrees
 constexpr double steepFromEnds = 0.766;    // sine of 50 degrees
 constexpr double cosineOfSteepest = 0.707; // of 45 degrees
 constexpr double cosineOfSteepestLinear = 0.94;
-constexpr double softDbPerCmMHz = 0.5;
-constexpr double shadowDb = 12.0;
 constexpr double lossScaleDb = 40.0; // for a factor of 10
 constexpr double enoughInsidePercent = 65.0;
-constexpr double deeper = 1.3; // than a preset says, by its depth knob
 constexpr double beyondTarget = 1.15;
 constexpr double depthStepMm = 10.0;
-constexpr double contactMm = 6.0;
-constexpr double handleMm = 70.0;
-constexpr double handleRadiusMm = 10.0;
 constexpr double apartMm = 40.0;
 constexpr double apartLinearMm = 20.0;
 constexpr double aimsApartMm = 60.0;
@@ -33,7 +28,6 @@ constexpr double alongBody = 0.8;    // an oblique plane up to 53 degrees counts
 constexpr std::size_t mostAims = 6;
 constexpr std::size_t targetSamples = 24;
 constexpr std::size_t mostPlaces = 800; // that are looked at line by line
-constexpr int lineCount = 49;
 constexpr int rollCount = 12;
 
 /// A place and what to look at from there, local.
@@ -49,17 +43,10 @@ class WindowSearch
 public:
   WindowSearch(const WindowGrid& grid, const ProbeSettings& probe)
     : grid_(grid)
-    , geometry_(probe.geometry)
+    , probe_(grid, probe)
     , toLocal_(grid.scene().rotationToLocal())
     , toWorld_(glm::transpose(toLocal_))
   {
-    geometry_.kind = geometry_.isVolume() ? ScanKind::PhasedSector : geometry_.kind; // its middle plane
-    geometry_.lineCount = lineCount;
-    isLinear_ = geometry_.kind == ScanKind::Linear;
-    geometry_.depthMm *= deeper;
-    const double edgeMm = std::abs(planeFromBeam(geometry_, lineCount - 1.0, 0.0).x);
-    halfFaceMm_ = std::max(edgeMm, 0.5 * probe.apertureMm);
-    lookUpLosses(probe.centreFrequencyMHz);
     chooseAims();
     const std::size_t count = grid_.targetCentres().size();
     for (std::size_t i = 0; i < targetSamples && i < count; ++i)
@@ -68,7 +55,7 @@ public:
     }
   }
 
-  double apart() const { return isLinear_ ? apartLinearMm : apartMm; }
+  double apart() const { return probe_.isLinear() ? apartLinearMm : apartMm; }
 
   /// The best view from a place by a handful of ways to the target; a score of 0 where no probe can stand so.
   Sight glance(const WindowGrid::SkinPlace& place) const
@@ -77,7 +64,7 @@ public:
     for (const Vec3d& aim : aims_)
     {
       const Vec3d axis = glm::normalize(aim - place.localMm);
-      if (!mayLook(axis, place.outward) || !hasRoom(place.localMm, axis))
+      if (!mayLook(axis, place.outward) || !probe_.hasRoom(place.localMm, axis))
       {
         continue;
       }
@@ -129,21 +116,6 @@ private:
     return window.seenPercent * window.insidePercent * enough * enough;
   }
 
-  void lookUpLosses(double frequencyMHz)
-  {
-    const auto& tissues = grid_.scene().tissues();
-    for (const Tissue& here : tissues)
-    {
-      lossOfStep_.push_back(here.attenuationDbPerCmMHz * frequencyMHz * grid_.stepMm() / 10.0);
-      for (const Tissue& before : tissues)
-      {
-        const double sum = here.impedanceMRayl + before.impedanceMRayl;
-        lossOfBoundary_.push_back(-10.0 * std::log10(4.0 * here.impedanceMRayl * before.impedanceMRayl / (sum * sum)));
-      }
-    }
-    softLossOfMm_ = softDbPerCmMHz * frequencyMHz / 10.0;
-  }
-
   /// The target's middle, or what of it is nearest to that; of a long one, others far from these.
   void chooseAims()
   {
@@ -173,35 +145,8 @@ private:
   bool mayLook(const Vec3d& axis, const Vec3d& outward) const
   {
     const Vec3d away = toWorld_ * -axis;
-    return -glm::dot(axis, outward) >= (isLinear_ ? cosineOfSteepestLinear : cosineOfSteepest) && away.y <= behind &&
-           std::abs(away.z) <= steepFromEnds;
-  }
-
-  /// Whether hand and handle have air around them, which also keeps the probe out of airways.
-  bool hasRoom(const Vec3d& place, const Vec3d& axis) const
-  {
-    const Vec3d helper = std::abs(axis.x) < 0.9 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
-    const Vec3d across = handleRadiusMm * glm::normalize(glm::cross(axis, helper));
-    const Vec3d over = glm::cross(axis, across);
-    for (const Vec3d& offset : { Vec3d(0.0), across, -across, over, -over })
-    {
-      if (!grid_.isOpen(place + offset, -axis))
-      {
-        return false;
-      }
-    }
-    for (double behindMm = 20.0; behindMm <= handleMm; behindMm += 10.0)
-    {
-      for (const Vec3d& offset : { across, -across, over, -over })
-      {
-        const Vec3d at = place - behindMm * axis + offset;
-        if (grid_.isInside(at) && !grid_.isOuter(grid_.at(at)))
-        {
-          return false;
-        }
-      }
-    }
-    return true;
+    return -glm::dot(axis, outward) >= (probe_.isLinear() ? cosineOfSteepestLinear : cosineOfSteepest) &&
+           away.y <= behind && std::abs(away.z) <= steepFromEnds;
   }
 
   /// Whether an image can be turned about the axis so that it shows the point.
@@ -210,141 +155,65 @@ private:
     const Vec3d way = point - place;
     const double axialMm = glm::dot(way, axis);
     const double lateralMm = glm::length(way - axialMm * axis);
-    return axialMm > 0.0 && !std::isnan(beamFromPlane(geometry_, lateralMm, axialMm).x);
-  }
-
-  /// Walks through the grid: visit(r, cell, loss and what of it is beyond that of soft tissue, dB, one way) at each
-  /// step within the box.
-  template<class Visit>
-  void walk(const Vec3d& from, const Vec3d& axis, double lengthMm, const Visit& visit) const
-  {
-    const std::size_t tissueCount = lossOfStep_.size();
-    const double stepMm = grid_.stepMm();
-    int last = -1;
-    double lossDb = 0.0;
-    double softDb = 0.0;
-    for (double r = 0.5 * stepMm; r < lengthMm; r += stepMm)
-    {
-      const Vec3d at = from + r * axis;
-      if (!grid_.isInside(at))
-      {
-        continue;
-      }
-      const std::size_t cell = grid_.at(at);
-      const int tissue = grid_.tissue(cell);
-      const bool isGel = last < 0 && grid_.isOuter(cell); // between the face and the skin
-      if (!isGel)
-      {
-        lossDb += lossOfStep_[std::size_t(tissue)];
-        softDb += softLossOfMm_ * stepMm;
-        lossDb += last >= 0 ? lossOfBoundary_[std::size_t(last) * tissueCount + std::size_t(tissue)] : 0.0;
-        last = tissue;
-      }
-      visit(r, cell, lossDb, std::max(0.0, lossDb - softDb));
-    }
+    return axialMm > 0.0 && !std::isnan(beamFromPlane(probe_.geometry(), lateralMm, axialMm).x);
   }
 
   double amplitudeAt(const Vec3d& from, const Vec3d& to) const
   {
     double excess = 0.0;
-    walk(from, glm::normalize(to - from), glm::distance(to, from),
-         [&](double, std::size_t, double, double excessDb) { excess = excessDb; });
+    probe_.walk(from, glm::normalize(to - from), glm::distance(to, from),
+                [&](double, const Vec3d&, std::size_t, double, double excessDb) { excess = excessDb; });
     return std::pow(10.0, -excess / 20.0);
-  }
-
-  /// Whether the face lies on skin: at five points along it, and at two across, at least five of the seven.
-  bool touches(const Vec3d& place, const Vec3d& axis, const Vec3d& lateral) const
-  {
-    const Vec3d elevation = glm::cross(axis, lateral);
-    int touching = 0;
-    const auto check = [&](const Vec3d& face) {
-      for (double r = -contactMm; r <= contactMm; r += grid_.stepMm())
-      {
-        const Vec3d at = face + r * axis;
-        if (!grid_.isInside(at))
-        {
-          return;
-        }
-        const bool isBody = !grid_.isOuter(grid_.at(at));
-        if (isBody)
-        {
-          const bool isTooDeep = r <= -contactMm; // the face would be pressed in
-          touching += !isTooDeep && grid_.isCovered(at, -axis) ? 1 : 0;
-          return;
-        }
-      }
-    };
-    for (int i = -2; i <= 2; ++i)
-    {
-      const double share = 0.5 * i;
-      const Vec2f edge = planeFromBeam(geometry_, 0.5 * (1.0 + share) * (lineCount - 1), 0.0);
-      check(place + double(edge.y) * axis + share * halfFaceMm_ * lateral);
-    }
-    check(place + 0.7 * contactMm * elevation);
-    check(place - 0.7 * contactMm * elevation);
-    return touching >= 5;
   }
 
   AcousticWindow show(const Vec3d& place, const Vec3d& axis, const Vec3d& lateral) const
   {
     AcousticWindow window;
-    if (!touches(place, axis, lateral))
+    if (!probe_.touches(place, axis, lateral))
     {
       return window;
     }
-    const auto lines = makeScanLines(geometry_, ProbePose{ place, axis, lateral });
+    const auto lines = makeScanLines(probe_.geometry(), ProbePose{ place, axis, lateral });
     const double stepMm = grid_.stepMm();
-    const auto bins = std::size_t(geometry_.depthMm / stepMm) + 1;
-    std::vector<double> all(bins, 0.0);    // area by depth
-    std::vector<double> inside(bins, 0.0); // of these within the box
-    std::vector<double> clear(bins, 0.0);  // of these without shadow
-    std::vector<double> areas(bins);       // of a step
-    for (std::size_t bin = 0; bin < bins; ++bin)
-    {
-      const double r = (double(bin) + 0.5) * stepMm;
-      const ScanLine& a = lines[lineCount / 2];
-      const ScanLine& b = lines[lineCount / 2 + 1];
-      areas[bin] = stepMm * glm::distance(a.originMm + r * a.axis, b.originMm + r * b.axis);
-      all[bin] = areas[bin] * lineCount;
-    }
+    const std::vector<double> areas = probe_.stepAreas(lines);
+    const std::size_t bins = areas.size();
+    std::vector<Vec2d> within(bins, Vec2d(0.0)); // area within the box, by depth, and of this without shadow
     double seenMm2 = 0.0;
     double lossSum = 0.0;
     double farMm = 0.0;
     for (const ScanLine& line : lines)
     {
-      walk(line.originMm, line.axis, geometry_.depthMm,
-           [&](double r, std::size_t cell, double lossDb, double excessDb) {
-             const auto bin = std::size_t(r / stepMm);
-             inside[bin] += areas[bin];
-             clear[bin] += excessDb < shadowDb ? areas[bin] : 0.0;
-             if (grid_.isTarget(cell))
-             {
-               const double amplitude = std::pow(10.0, -excessDb / 20.0);
-               seenMm2 += amplitude * areas[bin];
-               lossSum += amplitude * areas[bin] * lossDb;
-               farMm = excessDb < shadowDb ? std::max(farMm, r) : farMm;
-             }
-           });
+      probe_.walk(line.originMm, line.axis, probe_.geometry().depthMm,
+                  [&](double r, const Vec3d&, std::size_t cell, double lossDb, double excessDb) {
+                    const auto bin = std::size_t(r / stepMm);
+                    within[bin] += areas[bin] * Vec2d(1.0, excessDb < ProbeOnSkin::shadowDb ? 1.0 : 0.0);
+                    if (grid_.isTarget(cell))
+                    {
+                      const double amplitude = std::pow(10.0, -excessDb / 20.0);
+                      seenMm2 += amplitude * areas[bin];
+                      lossSum += amplitude * areas[bin] * lossDb;
+                      farMm = excessDb < ProbeOnSkin::shadowDb ? std::max(farMm, r) : farMm;
+                    }
+                  });
     }
     if (seenMm2 <= 0.0)
     {
       return window;
     }
-    const double leastMm = isLinear_ ? 20.0 : 40.0;
-    const double reachMm = std::floor(geometry_.depthMm / depthStepMm) * depthStepMm;
+    const double leastMm = probe_.isLinear() ? 20.0 : 40.0;
+    const double reachMm = std::floor(probe_.geometry().depthMm / depthStepMm) * depthStepMm;
     window.depthMm =
       std::clamp(std::ceil(farMm * beyondTarget / depthStepMm) * depthStepMm, leastMm, std::max(leastMm, reachMm));
     const auto until = std::min(bins, std::size_t(window.depthMm / stepMm));
-    const auto sumOf = [&](const std::vector<double>& values) {
-      double sum = 0.0;
-      for (std::size_t bin = 0; bin < until; ++bin)
-      {
-        sum += values[bin];
-      }
-      return sum;
-    };
-    const double insideShare = sumOf(inside) / sumOf(all);
-    const double clearShare = sumOf(clear) / std::max(sumOf(inside), 1e-9);
+    double all = 0.0;
+    Vec2d sum(0.0);
+    for (std::size_t bin = 0; bin < until; ++bin)
+    {
+      all += areas[bin] * ProbeOnSkin::lineCount;
+      sum += within[bin];
+    }
+    const double insideShare = sum.x / all;
+    const double clearShare = sum.y / std::max(sum.x, 1e-9);
     const double seenShare = std::min(1.0, seenMm2 / grid_.targetAreaMm2());
     window.seenPercent = 100.0 * seenShare;
     window.insidePercent = 100.0 * insideShare;
@@ -354,14 +223,9 @@ private:
   }
 
   const WindowGrid& grid_;
-  ScanGeometry geometry_;
-  bool isLinear_ = false;
+  ProbeOnSkin probe_;
   Mat3d toLocal_;
   Mat3d toWorld_;
-  double halfFaceMm_ = 0.0;
-  std::vector<double> lossOfStep_;     // dB, by tissue
-  std::vector<double> lossOfBoundary_; // dB, from a tissue to another
-  double softLossOfMm_ = 0.0;
   std::vector<Vec3d> aims_;
   std::vector<Vec3d> samples_; // of the target
 };

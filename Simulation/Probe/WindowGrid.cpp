@@ -227,7 +227,7 @@ bool WindowGrid::isSurface(const Vec3i& cell) const
   return false;
 }
 
-/// Away from where the body is; zero where it is all around. What lies beyond the border is not known.
+/// What lies beyond the border is not known.
 Vec3d WindowGrid::outwardNormal(const Vec3d& local) const
 {
   Vec3d sum(0.0);

@@ -42,6 +42,8 @@ public:
     Vec3d outward; ///< normal
   };
   std::vector<SkinPlace> skinPlaces() const;
+  /// Of the body's surface at a place: away from where the body is; zero where that is all around.
+  Vec3d outwardNormal(const Vec3d& local) const;
   /// Whether there is skin at a place on the surface, in a map that has any. A cut face has none, even one that lies
   /// askew in the box.
   bool isCovered(const Vec3d& local, const Vec3d& outward) const;
@@ -64,7 +66,6 @@ private:
   bool meetsBorder() const;
   int voxelTissue(const Vec3d& local) const; ///< -1 beyond the box
   double voxelStepMm() const;
-  Vec3d outwardNormal(const Vec3d& local) const;
 
   const Scene& scene_;
   Vec3i factor_;

@@ -1,0 +1,436 @@
+#include "Probe/StandardViews.h"
+
+#include "Core/Error.h"
+#include "Core/ParallelFor.h"
+#include "Probe/PlaneFit.h"
+#include "Probe/ProbeOnSkin.h"
+#include "Probe/ViewStructures.h"
+#include "Probe/WindowTarget.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace sono {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+constexpr double steepestDeg = 55.0;
+constexpr double offDeg = 6.0; // that halve a score, and a little more
+constexpr double offMm = 6.0;
+constexpr double rockStepDeg = 8.0;
+constexpr int mostRocks = 3; // to each side
+constexpr std::size_t mostRefined = 10;
+constexpr double refinedApartMm = 16.0;
+constexpr double atFirst = 2.0; // times as far off the plane may a place be that is moved then
+constexpr double firstMoveMm = 6.0;
+constexpr double lastMoveMm = 1.5;
+constexpr double degreesOfMm = 2.0; // rocked, for a step of a place
+constexpr double smallestSectionMm2 = 60.0;
+constexpr double depthStepMm = 10.0;
+constexpr double beyondMm = 10.0;
+constexpr double leastDepthMm = 60.0;
+constexpr double leastShadowDb = 3.0; // that is worth a word
+constexpr double lossScaleDb = 40.0;  // for a factor of 10
+constexpr double dimDb = 10.0;        // loss beyond soft tissue's from which on less is shown; a rib's is 14
+constexpr double goneDb = 16.0;
+
+/// Where a probe is tried: local.
+struct Trial
+{
+  WindowGrid::SkinPlace place;
+  double rockDeg = 0.0;
+};
+
+/// What became of it. The higher the stage, the nearer it came.
+struct Outcome
+{
+  enum Stage
+  {
+    OffPlane, ///< no plane through the place is near the ideal one
+    OffLook,  ///< it would look from another side, or too steeply
+    OffSkin,  ///< the face does not lie on skin, or there is no room for the hand
+    Shown
+  };
+  Stage stage = OffPlane;
+  StandardView view;
+};
+
+class ViewSearch
+{
+public:
+  ViewSearch(const ProbeOnSkin& probe, const ViewPlan& plan)
+    : probe_(probe)
+    , plan_(plan)
+    , grid_(probe.grid())
+    , structures_(grid_.scene(), plan)
+    , ideal_(idealSection(grid_.scene(), plan, structures_))
+    , toLocal_(grid_.scene().rotationToLocal())
+    , normal_(toLocal_ * plan.normal)
+    , look_(toLocal_ * plan.look)
+    , mark_(grid_.scene().localFromWorld(plan.markMm))
+    , weights_(plan.points.size(), 1.0)
+  {
+    for (const Vec3d& point : plan.points)
+    {
+      points_.push_back(grid_.scene().localFromWorld(point));
+    }
+  }
+
+  /// A structure that the ideal plane does not meet; empty where it meets all.
+  std::string notMet() const
+  {
+    for (std::size_t i = 0; i < structures_.count(); ++i)
+    {
+      if (ideal_.areaMm2[i] < smallestSectionMm2)
+      {
+        return plan_.demands[i].structure;
+      }
+    }
+    return {};
+  }
+
+  Outcome tryAt(const Trial& trial) const
+  {
+    Outcome outcome;
+    StandardView& view = outcome.view;
+    const PlaneFit fit = fitPlaneThrough(trial.place.localMm, points_, weights_);
+    const Vec3d normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
+    view.planeOffDeg = std::acos(std::min(1.0, glm::dot(normal, normal_))) / degree;
+    view.markOffMm = std::abs(glm::dot(normal, mark_ - trial.place.localMm));
+    if (view.planeOffDeg > atFirst * plan_.mostOffDeg || view.markOffMm > atFirst * plan_.mostOffMm)
+    {
+      return outcome;
+    }
+    outcome.stage = Outcome::OffLook;
+    const Vec3d way = ideal_.middle - trial.place.localMm;
+    const Vec3d straight = glm::normalize(way - glm::dot(way, normal) * normal);
+    const Vec3d aside = glm::cross(normal, straight);
+    const double rock = trial.rockDeg * degree;
+    const Vec3d axis = std::cos(rock) * straight + std::sin(rock) * aside;
+    const double lookOffDeg = std::acos(std::min(1.0, glm::dot(straight, look_))) / degree;
+    if (lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
+    {
+      return outcome;
+    }
+    outcome.stage = Outcome::OffSkin;
+    const Vec3d place = grid_.entry(trial.place.localMm, axis);
+    const Vec3d across = glm::cross(axis, normal);
+    const Vec3d lateral = glm::dot(glm::transpose(toLocal_) * across, plan_.rightward) < 0.0 ? -across : across;
+    if (!probe_.hasRoom(place, axis) || !probe_.touches(place, axis, lateral))
+    {
+      return outcome;
+    }
+    outcome.stage = Outcome::Shown;
+    const Mat3d toWorld = glm::transpose(toLocal_);
+    view.pose = ProbePose{ grid_.scene().worldFromLocal(place), toWorld * axis, toWorld * lateral }.orthonormalized();
+    show(ProbePose{ place, axis, lateral }, lookOffDeg, view);
+    return outcome;
+  }
+
+  /// The best trial, by how far it came and then by its score, moved as long as that helps.
+  Outcome refine(Trial trial, Outcome best) const
+  {
+    for (double moveMm = firstMoveMm; moveMm >= lastMoveMm;)
+    {
+      const Vec3d out = trial.place.outward;
+      const Vec3d u = glm::normalize(glm::cross(out, std::abs(out.x) < 0.8 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
+      const Vec3d v = glm::cross(out, u);
+      std::vector<Trial> moved(6, trial);
+      const Vec3d offsets[] = { u, -u, v, -v };
+      for (std::size_t i = 0; i < 4; ++i)
+      {
+        moved[i].place.localMm = grid_.entry(trial.place.localMm + moveMm * offsets[i], -out);
+        moved[i].place.outward = grid_.outwardNormal(moved[i].place.localMm);
+      }
+      moved[4].rockDeg += degreesOfMm * moveMm;
+      moved[5].rockDeg -= degreesOfMm * moveMm;
+      bool isBetter = false;
+      for (const Trial& other : moved)
+      {
+        const bool isPlace = other.place.outward != Vec3d(0.0) &&
+                             grid_.isCovered(other.place.localMm, other.place.outward) &&
+                             std::abs(other.rockDeg) <= mostRocks * rockStepDeg;
+        const Outcome outcome = isPlace ? tryAt(other) : Outcome();
+        if (isFurther(outcome, best))
+        {
+          best = outcome;
+          trial = other;
+          isBetter = true;
+        }
+      }
+      moveMm *= isBetter ? 1.0 : 0.5;
+    }
+    return best;
+  }
+
+  static bool isFurther(const Outcome& a, const Outcome& b)
+  {
+    return a.stage != b.stage ? a.stage > b.stage : a.view.score > b.view.score;
+  }
+
+private:
+  void show(const ProbePose& pose, double lookOffDeg, StandardView& view) const
+  {
+    const auto lines = makeScanLines(probe_.geometry(), pose);
+    const std::vector<double> areas = probe_.stepAreas(lines);
+    const double stepMm = grid_.stepMm();
+    std::vector<double> seen(structures_.count(), 0.0);
+    double met = 0.0;        // with what lies in a shadow, mm^2
+    double seenExcess = 0.0; // dB mm^2
+    std::vector<double> inside(areas.size(), 0.0);
+    std::vector<double> excessOfTissue(grid_.scene().tissues().size(), 0.0); // dB mm^2
+    double farMm = 0.0;
+    for (const ScanLine& line : lines)
+    {
+      std::vector<double> own(excessOfTissue.size(), 0.0); // dB until here
+      double before = 0.0;
+      probe_.walk(line.originMm, line.axis, probe_.geometry().depthMm,
+                  [&](double r, const Vec3d& at, std::size_t cell, double, double excessDb) {
+                    const auto bin = std::min(areas.size() - 1, std::size_t(r / stepMm));
+                    inside[bin] += areas[bin];
+                    own[std::size_t(grid_.tissue(cell))] += excessDb - before;
+                    before = excessDb;
+                    const int demand = structures_.at(at);
+                    if (demand < 0)
+                    {
+                      return;
+                    }
+                    const double clear = std::clamp((goneDb - excessDb) / (goneDb - dimDb), 0.0, 1.0);
+                    seen[std::size_t(demand)] += clear * areas[bin];
+                    met += areas[bin];
+                    seenExcess += clear * areas[bin] * excessDb;
+                    farMm = std::max(farMm, r);
+                    for (std::size_t i = 0; i < own.size(); ++i)
+                    {
+                      excessOfTissue[i] += own[i] * areas[bin];
+                    }
+                  });
+    }
+    const double reachMm = std::floor(probe_.geometry().depthMm / depthStepMm) * depthStepMm;
+    view.depthMm = std::clamp(std::ceil((farMm + beyondMm) / depthStepMm) * depthStepMm, leastDepthMm, reachMm);
+    rate(seen, view);
+    view.score *= std::exp(-0.5 * std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0));
+    const double seenMm2 = std::accumulate(seen.begin(), seen.end(), 0.0);
+    view.score *= std::pow(10.0, -seenExcess / std::max(1e-9, seenMm2) / lossScaleDb);
+    sayShadow(excessOfTissue, met, view);
+    double all = 0.0;
+    double within = 0.0;
+    for (std::size_t bin = 0; bin < areas.size() && double(bin) * stepMm < view.depthMm; ++bin)
+    {
+      all += areas[bin] * ProbeOnSkin::lineCount;
+      within += inside[bin];
+    }
+    view.insidePercent = 100.0 * within / all;
+    view.score *= within / all;
+  }
+
+  void rate(const std::vector<double>& seen, StandardView& view) const
+  {
+    double sum = 0.0;
+    double worst = 1.0;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+    {
+      const ViewDemand& demand = plan_.demands[i];
+      const double share = std::min(1.0, seen[i] / ideal_.areaMm2[i]);
+      view.shown.push_back({ demand.structure, 100.0 * share });
+      sum += share / double(seen.size());
+      worst = std::min(worst, 100.0 * share / demand.leastPercent);
+    }
+    const double off = std::pow(view.planeOffDeg / offDeg, 2.0) + std::pow(view.markOffMm / offMm, 2.0);
+    view.score = sum * worst * std::exp(-0.5 * off);
+  }
+
+  void sayShadow(const std::vector<double>& excessOfTissue, double areaMm2, StandardView& view) const
+  {
+    const auto most = std::max_element(excessOfTissue.begin(), excessOfTissue.end());
+    const double db = areaMm2 > 0.0 ? *most / areaMm2 : 0.0;
+    if (db >= leastShadowDb)
+    {
+      view.shadow = grid_.scene().tissues()[std::size_t(most - excessOfTissue.begin())].name;
+      std::replace(view.shadow.begin(), view.shadow.end(), '_', ' ');
+      view.shadowDb = db;
+    }
+  }
+
+  const ProbeOnSkin& probe_;
+  const ViewPlan& plan_;
+  const WindowGrid& grid_;
+  ViewStructures structures_;
+  IdealSection ideal_;
+  Mat3d toLocal_;
+  Vec3d normal_;
+  Vec3d look_;
+  Vec3d mark_;
+  std::vector<Vec3d> points_;
+  std::vector<double> weights_;
+};
+
+std::string whole(double value)
+{
+  return std::to_string(std::lround(value));
+}
+
+std::string shares(const StandardView& view)
+{
+  std::string text;
+  for (const ShownStructure& shown : view.shown)
+  {
+    text += (text.empty() ? "" : ", ") + whole(shown.percent) + " % of the " + shown.structure;
+  }
+  return text;
+}
+
+/// Why the best that there is will not do; empty where it does.
+std::string refusalOf(const Outcome& best, const ViewPlan& plan)
+{
+  switch (best.stage)
+  {
+    case Outcome::OffPlane:
+      return "No skin in the label map lies near its plane.";
+    case Outcome::OffLook:
+      return "Where its plane meets the skin, a probe would have to look from another side or too steeply.";
+    case Outcome::OffSkin:
+      return "Where its plane meets the skin, the probe's face does not lie on it.";
+    case Outcome::Shown:
+      break;
+  }
+  if (best.view.planeOffDeg > plan.mostOffDeg || best.view.markOffMm > plan.mostOffMm)
+  {
+    return "The best plane through the skin is " + whole(best.view.planeOffDeg) + " degrees and " +
+           whole(best.view.markOffMm) + " mm off.";
+  }
+  for (std::size_t i = 0; i < plan.demands.size(); ++i)
+  {
+    const ShownStructure& shown = best.view.shown[i];
+    if (shown.percent < plan.demands[i].leastPercent)
+    {
+      return "The best place shows " + whole(shown.percent) + " % of the " + shown.structure +
+             (best.view.shadow.empty()
+                ? std::string("; the rest lies beside its plane or beyond its image.")
+                : ", behind " + best.view.shadow + " that takes " + whole(best.view.shadowDb) + " dB.");
+    }
+  }
+  return {};
+}
+
+/// The places that came furthest, no two of them neighbours.
+std::vector<std::size_t> bestApart(const std::vector<WindowGrid::SkinPlace>& places,
+                                   const std::vector<Outcome>& outcomes)
+{
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return ViewSearch::isFurther(outcomes[a], outcomes[b]); });
+  std::vector<std::size_t> best;
+  for (const std::size_t at : order)
+  {
+    const bool isNeighbour = std::any_of(best.begin(), best.end(), [&](std::size_t other) {
+      return glm::distance(places[at].localMm, places[other].localMm) < refinedApartMm;
+    });
+    if (!isNeighbour)
+    {
+      best.push_back(at);
+    }
+    if (best.size() == mostRefined)
+    {
+      break;
+    }
+  }
+  return best;
+}
+
+StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std::vector<WindowGrid::SkinPlace>& places)
+{
+  const ViewSearch search(probe, plan);
+  const std::string notMet = search.notMet();
+  if (!notMet.empty())
+  {
+    StandardView view;
+    view.refusal = "Its plane does not meet the " + notMet + ".";
+    return view;
+  }
+  constexpr int rocks = 2 * mostRocks + 1;
+  std::vector<Trial> trials(places.size());
+  std::vector<Outcome> outcomes(places.size());
+  parallelFor(int(places.size()), {}, [&](int i) {
+    const std::size_t at = std::size_t(i);
+    for (int rock = 0; rock < rocks; ++rock)
+    {
+      const Trial trial{ places[at], (rock % 2 == 0 ? -1.0 : 1.0) * double((rock + 1) / 2) * rockStepDeg };
+      const Outcome outcome = search.tryAt(trial);
+      if (rock == 0 || ViewSearch::isFurther(outcome, outcomes[at]))
+      {
+        trials[at] = trial;
+        outcomes[at] = outcome;
+      }
+      if (outcome.stage == Outcome::OffPlane)
+      {
+        break; // however it is rocked
+      }
+    }
+  });
+  const std::vector<std::size_t> starts = bestApart(places, outcomes);
+  std::vector<Outcome> refined(starts.size());
+  parallelFor(int(starts.size()), {}, [&](int i) {
+    const std::size_t at = starts[std::size_t(i)];
+    refined[std::size_t(i)] = search.refine(trials[at], outcomes[at]);
+  });
+  StandardView best;
+  best.refusal = refusalOf(Outcome(), plan);
+  Outcome::Stage stage = Outcome::OffPlane;
+  for (Outcome& outcome : refined)
+  {
+    outcome.view.refusal = refusalOf(outcome, plan);
+    const bool isBetter = outcome.view.refusal.empty() != best.refusal.empty() ? outcome.view.refusal.empty()
+                          : outcome.stage != stage                             ? outcome.stage > stage
+                                                                               : outcome.view.score > best.score;
+    if (isBetter)
+    {
+      best = outcome.view;
+      stage = outcome.stage;
+    }
+  }
+  return best;
+}
+
+} // namespace
+
+std::vector<StandardView> findStandardViews(const Scene& scene, const ProbeByPreset& probeOf, const Progress& progress)
+{
+  const WindowGrid grid(scene, WindowTarget());
+  const std::vector<WindowGrid::SkinPlace> places = grid.skinPlaces();
+  const std::vector<ViewPlan> plans = planStandardViews(scene);
+  std::vector<StandardView> views;
+  for (std::size_t i = 0; i < plans.size(); ++i)
+  {
+    report(progress, double(i) / double(plans.size()));
+    const ViewPlan& plan = plans[i];
+    StandardView view;
+    view.refusal = plan.refusal;
+    if (plan.refusal.empty())
+    {
+      view = findView(ProbeOnSkin(grid, probeOf(plan.preset)), plan, places);
+    }
+    view.name = plan.name;
+    view.title = plan.title;
+    view.preset = plan.preset;
+    views.push_back(view);
+  }
+  return views;
+}
+
+std::string describe(const StandardView& view)
+{
+  const std::string name = view.name + ", " + view.title + ": ";
+  if (!view.refusal.empty())
+  {
+    return name + "not obtainable from this patient. " + view.refusal;
+  }
+  return name + "shows " + shares(view) + "; " + whole(view.planeOffDeg) + " degrees and " + whole(view.markOffMm) +
+         " mm off the ideal plane" +
+         (view.shadow.empty() ? "." : ", " + whole(view.shadowDb) + " dB lost in " + view.shadow + ".");
+}
+
+} // namespace sono

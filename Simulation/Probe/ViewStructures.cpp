@@ -1,0 +1,73 @@
+#include "Probe/ViewStructures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sono {
+namespace {
+
+constexpr double sectionStepMm = 1.5;
+constexpr double sectionReachMm = 130.0;
+
+} // namespace
+
+ViewStructures::ViewStructures(const Scene& scene, const ViewPlan& plan)
+  : scene_(scene)
+  , demandOfLabel_(65536, -1)
+{
+  for (std::size_t i = 0; i < plan.demands.size(); ++i)
+  {
+    const ViewDemand& demand = plan.demands[i];
+    for (const int id : demand.labels)
+    {
+      demandOfLabel_[std::size_t(id)] = int(i);
+    }
+    nearLocal_.push_back(scene.localFromWorld(demand.nearMm));
+    withinMm_.push_back(demand.withinMm);
+  }
+}
+
+int ViewStructures::at(const Vec3d& local) const
+{
+  const Vec3i n = scene_.placement().size;
+  const Vec3i v = Vec3i(glm::floor(local / scene_.placement().spacingMm));
+  if (glm::any(glm::lessThan(v, Vec3i(0))) || glm::any(glm::greaterThanEqual(v, n)))
+  {
+    return -1;
+  }
+  const int demand = demandOfLabel_[scene_.volume().voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x]];
+  const bool isNear =
+    demand >= 0 && glm::distance(local, nearLocal_[std::size_t(demand)]) < withinMm_[std::size_t(demand)];
+  return isNear ? demand : -1;
+}
+
+IdealSection idealSection(const Scene& scene, const ViewPlan& plan, const ViewStructures& structures)
+{
+  const Vec3d middle = scene.localFromWorld(plan.middleMm);
+  const Vec3d normal = scene.rotationToLocal() * plan.normal;
+  const Vec3d u = glm::normalize(glm::cross(normal, std::abs(normal.x) < 0.8 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
+  const Vec3d v = glm::cross(normal, u);
+  IdealSection section{ std::vector<double>(structures.count(), 0.0) };
+  std::vector<Vec3d> sums(structures.count(), Vec3d(0.0));
+  const int steps = int(sectionReachMm / sectionStepMm);
+  for (int j = -steps; j <= steps; ++j)
+  {
+    for (int i = -steps; i <= steps; ++i)
+    {
+      const Vec3d at = middle + sectionStepMm * (double(i) * u + double(j) * v);
+      const int demand = structures.at(at);
+      if (demand >= 0)
+      {
+        section.areaMm2[std::size_t(demand)] += sectionStepMm * sectionStepMm;
+        sums[std::size_t(demand)] += sectionStepMm * sectionStepMm * at;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < structures.count(); ++i)
+  {
+    section.middle += sums[i] / std::max(1e-9, section.areaMm2[i]) / double(structures.count());
+  }
+  return section;
+}
+
+} // namespace sono
