@@ -32,6 +32,12 @@ vtk_module_wrap_python(
   MODULE_DESTINATION "${sono_python_dir}"
   INSTALL_EXPORT SonoVDB)
 
+# Beside them in the same package what is Python itself.
+foreach(file __init__.py datasets.py)
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/python/${file}" "${CMAKE_BINARY_DIR}/${sono_python_dir}/sonovdb/${file}" COPYONLY)
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/python/${file}" DESTINATION "${sono_python_dir}/sonovdb" COMPONENT python)
+endforeach()
+
 paraview_plugin_scan(
   PLUGIN_FILES "${CMAKE_SOURCE_DIR}/Plugin/paraview.plugin"
   PROVIDES_PLUGINS sono_plugins
@@ -47,6 +53,7 @@ paraview_plugin_build(
   DISABLE_XML_DOCUMENTATION OFF)
 
 install(PROGRAMS
+  "${CMAKE_SOURCE_DIR}/Plugin/examples/dataset.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/plain_vtk.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/state.py"

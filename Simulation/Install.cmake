@@ -4,6 +4,7 @@
 set(public_headers
   Core/ParallelFor.h
   Core/Version.h
+  DataSets/WriteDataSet.h
   Echo/FormRf.h
   Echo/PointScatterers.h
   Image/BMode.h

@@ -231,12 +231,7 @@ DataSetImager::Placed DataSetImager::place(const PlannedImage& image, const Imag
 
 DataSetImage DataSetImager::make(std::int64_t index, const Progress& progress)
 {
-  const DataSet& set = plan_->set();
-  if (index < 0 || index >= plan_->imageCount())
-  {
-    throw Error("'" + set.path + "': there is no image " + std::to_string(index) + "; choose 0 to " +
-                std::to_string(plan_->imageCount() - 1) + ".");
-  }
+  plan_->requireImage(index);
   const PlannedImage image = plan_->image(index);
   try
   {
@@ -244,7 +239,7 @@ DataSetImage DataSetImager::make(std::int64_t index, const Progress& progress)
   }
   catch (const Error& error)
   {
-    throw Error("'" + set.path + "': image " + std::to_string(index) + " of patient '" +
+    throw Error("'" + plan_->set().path + "': image " + std::to_string(index) + " of patient '" +
                 plan_->patientOf(image.body).id + "': " + error.what());
   }
 }
@@ -270,7 +265,7 @@ DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progres
   }
   const TracedResult traced = exam_->simulator.traced(input);
   const ScanPicture picture = exam_->simulator.picture(result, input.settings.geometry, input.pose, traced);
-  const PlaneImage layout = planeImageLayout(input.settings.geometry, input.settings.pixelMm);
+  const PlaneImage layout = plan_->layout(image);
   DataSetImage made{
     layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}
   };

@@ -115,6 +115,15 @@ std::int64_t DataSetPlan::imagesIn(Split split) const
   return exams * set_.imagesPerExam;
 }
 
+void DataSetPlan::requireImage(std::int64_t index) const
+{
+  if (index < 0 || index >= imageCount())
+  {
+    throw Error("'" + set_.path + "': there is no image " + std::to_string(index) + "; choose 0 to " +
+                std::to_string(imageCount() - 1) + ".");
+  }
+}
+
 PlannedImage DataSetPlan::image(std::int64_t index) const
 {
   static const std::uint32_t pathKey = drawKey("pathSeed");
@@ -163,6 +172,11 @@ DataSetSettings DataSetPlan::settings(const PlannedImage& image) const
   settings.echo.seed = image.scattererSeed;
   settings.display.noiseSeed = image.noiseSeed;
   return settings;
+}
+
+PlaneImage DataSetPlan::layout(const PlannedImage& image) const
+{
+  return planeImageLayout(settings(image).probe.geometry, set_.pixelMm);
 }
 
 TissueTable DataSetPlan::tissues(std::int64_t exam) const

@@ -2,6 +2,7 @@
 
 #include "DataSets/DataSet.h"
 #include "DataSets/DataSetSettings.h"
+#include "Image/ScanConvert.h"
 
 #include <array>
 #include <cstdint>
@@ -63,11 +64,15 @@ public:
   Split splitOf(std::int64_t image) const;
   std::int64_t imagesIn(Split split) const;
 
+  /// Throws Error where there is no such image; for those who ask from outside.
+  void requireImage(std::int64_t index) const;
   PlannedImage image(std::int64_t index) const;
   /// How the probe is held; each attempt holds it otherwise.
   PoseJitter jitter(std::int64_t index, int attempt) const;
   /// The settings of an image.
   DataSetSettings settings(const PlannedImage& image) const;
+  /// Size and place of the picture.
+  PlaneImage layout(const PlannedImage& image) const;
   /// The data set's tissues as an exam has them.
   TissueTable tissues(std::int64_t exam) const;
   /// "apical_0000042": the name of the data set and the image's number, with seven digits or what the last one needs.

@@ -1,7 +1,6 @@
 #include "DataSets/WriteDataSet.h"
 
 #include "Core/WholeFile.h"
-#include "DataSets/DataSetImager.h"
 #include "Image/PngFile.h"
 
 #include <nlohmann/json.hpp>
@@ -219,29 +218,28 @@ void writeImage(const DataSetImage& image, const CaseFiles& files, const fs::pat
 
 } // namespace
 
-DataSetTally writeDataSet(const std::shared_ptr<const DataSetPlan>& plan, const std::string& folderName,
-                          const DataSetShare& share, Device device, const Progress& progress,
-                          const std::function<void(const DataSetTally&)>& tell)
+DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, const DataSetShare& share,
+                          const Progress& progress, const std::function<void(const DataSetTally&)>& tell)
 {
   if (folderName.empty())
   {
     throw Error("no folder is named for the data set; name one.");
   }
   const fs::path folder(folderName);
-  const PlannedRange images = plan->imagesOf(share);
-  claim(*plan, folder);
-  removeParts(*plan, folder, images);
+  const DataSetPlan& plan = imager.plan();
+  const PlannedRange images = plan.imagesOf(share);
+  claim(plan, folder);
+  removeParts(plan, folder, images);
   if (share.rank == 0)
   {
-    plan->set().format == DataSetFormat::Monai ? writeMonaiList(*plan, folder) : writeNnUNetLists(*plan, folder);
+    plan.set().format == DataSetFormat::Monai ? writeMonaiList(plan, folder) : writeNnUNetLists(plan, folder);
   }
-  DataSetImager imager(plan, device);
   DataSetTally tally;
   tally.total = images.end - images.first;
   const auto begin = std::chrono::steady_clock::now();
   for (std::int64_t index = images.first; index < images.end; ++index)
   {
-    const CaseFiles files = filesOf(*plan, index);
+    const CaseFiles files = filesOf(plan, index);
     const double done = double(tally.done) / double(tally.total);
     if (!fs::exists(folder / files.info))
     {

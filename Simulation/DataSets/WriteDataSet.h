@@ -1,11 +1,9 @@
 #pragma once
 
-#include "Core/Device.h"
 #include "Core/Progress.h"
-#include "DataSets/DataSetPlan.h"
+#include "DataSets/DataSetImager.h"
 
 #include <functional>
-#include <memory>
 #include <string>
 
 namespace sono {
@@ -30,8 +28,7 @@ struct DataSetTally
 ///
 /// `tell` hears after each image, on the calling thread. Throws Error as DataSetImager, where the folder holds another
 /// data set, and where a file cannot be written; Aborted.
-DataSetTally writeDataSet(const std::shared_ptr<const DataSetPlan>& plan, const std::string& folder,
-                          const DataSetShare& share = {}, Device device = Device::Auto, const Progress& progress = {},
-                          const std::function<void(const DataSetTally&)>& tell = {});
+DataSetTally writeDataSet(DataSetImager& imager, const std::string& folder, const DataSetShare& share = {},
+                          const Progress& progress = {}, const std::function<void(const DataSetTally&)>& tell = {});
 
 } // namespace sono

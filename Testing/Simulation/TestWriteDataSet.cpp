@@ -1,0 +1,239 @@
+// What a data set's folder holds, and what becomes of it when its writing was cut off.
+#include "ErrorText.h"
+
+#include "DataSets/WriteDataSet.h"
+#include "Labels/ReadLabelMap.h"
+#include "Trace/ProbeContact.h"
+
+#include <nlohmann/json.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+using namespace sono;
+using sono::testing::errorOf;
+using sono::testing::expectContains;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::json;
+using Content = std::map<std::string, std::string>;
+
+/// A head of skin around a ball of blood, in air, 40 voxels of 2.5 mm, turned against the world.
+LabelVolume ball()
+{
+  LabelVolume volume;
+  volume.placement.size = Vec3i(40);
+  volume.placement.spacingMm = Vec3d(2.5);
+  volume.placement.direction = { { 0.0, 1.0, 0.0 }, { -1.0, 0.0, 0.0 }, { 0.0, 0.0, 1.0 } };
+  volume.placement.originMm = volume.placement.direction * Vec3d(-48.75);
+  volume.voxels.resize(volume.placement.voxelCount());
+  for (std::size_t i = 0; i < volume.voxels.size(); ++i)
+  {
+    const double r = glm::length(2.5 * (Vec3d(double(i % 40), double(i / 40 % 40), double(i / 1600)) - 19.5));
+    volume.voxels[i] = r < 20.0 ? 7 : r < 40.0 ? 9 : 0;
+  }
+  volume.collectLabels();
+  for (LabelInfo& label : volume.labels)
+  {
+    label.name = label.id == 7 ? "left_ventricle_blood" : label.id == 9 ? "skin" : "background";
+  }
+  return volume;
+}
+
+class DataSetFolder : public ::testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+    writeLabelMap((root_ / "ball.nii.gz").string(), ball());
+    json_ = Json::parse(R"({
+      "name": "ball", "seed": 5, "exams": 6, "imagesPerExam": 2, "pixelMm": 2, "format": "nnU-Net",
+      "patients": [{"id": "ball", "labels": "ball.nii.gz", "licence": "CC0-1.0", "provenance": "a test",
+                    "views": [{"name": "top", "pose": {"positionMm": [0, -60, 0], "axial": [0, 1, 0], "lateral": [1, 0, 0]}}]}],
+      "probe": {"preset": "phased_p4-2", "lineCount": 12, "depthMm": 70, "sectorDeg": 60},
+      "tracing": {"pathsPerLine": 8}, "echo": {"samplingMHz": 10},
+      "display": {"gainDb": {"from": -3, "to": 3}},
+      "masks": [{"name": "none", "labels": ["liver"]}, {"name": "cavity", "labels": ["ventricle left"]}]})");
+    json_["patients"].push_back(json_["patients"][0]);
+    json_["patients"][1]["id"] = "other";
+    json_["patients"][1]["split"] = "test";
+    json_["patients"][0]["split"] = "train";
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  std::shared_ptr<const DataSetPlan> plan()
+  {
+    std::ofstream(root_ / "set.json") << json_.dump();
+    return std::make_shared<const DataSetPlan>(readDataSet((root_ / "set.json").string(), SONOVDB_DATA_DIR));
+  }
+  DataSetTally write(const std::string& folder, const DataSetShare& share = {}, const Progress& progress = {})
+  {
+    DataSetImager imager(plan(), Device::Cpu);
+    return writeDataSet(imager, (root_ / folder).string(), share, progress);
+  }
+  Content content(const std::string& folder)
+  {
+    Content files;
+    for (const auto& entry : fs::recursive_directory_iterator(root_ / folder))
+    {
+      if (entry.is_regular_file())
+      {
+        std::ifstream stream(entry.path(), std::ios::binary);
+        files[fs::relative(entry.path(), root_ / folder).string()].assign(std::istreambuf_iterator<char>(stream), {});
+      }
+    }
+    return files;
+  }
+
+  const fs::path root_ = fs::path(::testing::TempDir()) / "sono_data_set";
+  Json json_;
+};
+
+} // namespace
+
+TEST_F(DataSetFolder, IsWhatNnUNetTakes)
+{
+  const DataSetTally tally = write("out");
+  EXPECT_EQ(tally.made, 12);
+  EXPECT_EQ(tally.total, 12);
+  const Content files = content("out");
+  EXPECT_EQ(files.size(), 12u * 3u + 3u);
+  const Json list = Json::parse(files.at("dataset.json"));
+  EXPECT_EQ(list["labels"], Json::parse(R"({"background": 0, "none": 1, "cavity": 2})"));
+  EXPECT_EQ(list["numTraining"], 6);
+  EXPECT_EQ(list["file_ending"], ".png");
+  const Json splits = Json::parse(files.at("splits_final.json"));
+  ASSERT_EQ(splits[0]["train"].size(), 6u);
+  for (const std::string name : splits[0]["train"])
+  {
+    EXPECT_EQ(files.count("imagesTr/" + name + "_0000.png"), 1u);
+    EXPECT_EQ(files.count("labelsTr/" + name + ".png"), 1u);
+  }
+  EXPECT_EQ(files.count("imagesTs/ball_0000011_0000.png"), 1u);
+  EXPECT_EQ(files.count("labelsTs/ball_0000011.png"), 1u);
+  EXPECT_EQ(files.at("dataset_source.json"), json_.dump());
+}
+
+TEST_F(DataSetFolder, IsWhatMonaiTakes)
+{
+  json_["format"] = "MONAI";
+  write("out");
+  const Content files = content("out");
+  const Json list = Json::parse(files.at("dataset.json"));
+  EXPECT_EQ(list["training"].size(), 6u);
+  EXPECT_EQ(list["validation"].size(), 0u);
+  EXPECT_EQ(list["test"].size(), 6u);
+  for (const char* split : { "training", "test" })
+  {
+    for (const Json& entry : list[split])
+    {
+      for (const char* part : { "image", "label", "info" })
+      {
+        EXPECT_EQ(files.count(entry[part]), 1u) << entry;
+      }
+    }
+  }
+  EXPECT_EQ(list["labels"]["2"], "cavity");
+  EXPECT_EQ(list["licence"], Json::array({ "CC0-1.0" }));
+}
+
+/// The cavity is a ball of 20 mm in the middle of the fan, whose face is put onto the skin at 40 mm: the area that the
+/// mask has of it is that of a circle, and the fan's depth and width leave the head's box where the geometry says.
+TEST_F(DataSetFolder, SaysWhereTheProbeIsAndWhatItSees)
+{
+  const auto set = plan();
+  DataSetImager imager(set, Device::Cpu);
+  const DataSetImage image = imager.make(3);
+  const Json info = Json::parse(image.info);
+  EXPECT_NEAR(info["pose"]["positionMm"][1], -40.0, 2.5); // a voxel
+  EXPECT_EQ(info["masks"]["none"]["inPatient"], false);
+  EXPECT_EQ(info["masks"]["none"]["pixels"], 0);
+  const double areaMm2 = 4.0 * double(info["masks"]["cavity"]["pixels"]);
+  EXPECT_NEAR(areaMm2, 400.0 * M_PI, 0.12 * 400.0 * M_PI); // voxels of 2.5 mm, pixels of 2 mm, refraction none: 4 % rms
+  EXPECT_EQ(info["display"]["gainDb"].get<double>(), set->settings(set->image(3)).display.gainDb);
+  EXPECT_EQ(info["flags"]["faceOnSkin"], true);
+  EXPECT_DOUBLE_EQ(info["flags"]["shareInsideVolume"].get<double>(), 1.0);
+  EXPECT_EQ(std::size_t(std::count(image.mask.begin(), image.mask.end(), 2)),
+            info["masks"]["cavity"]["pixels"].get<std::size_t>());
+}
+
+/// Stretched by a half along each axis, a sphere has 2.25 times the area, at 1.5 times the distance.
+TEST_F(DataSetFolder, StretchesThePatientAndThePoseAlike)
+{
+  json_["patients"][0]["stretch"] = 1.5;
+  json_["probe"].update({ { "depthMm", 100 }, { "sectorDeg", 80 } }); // so that all of it is in the fan
+  const DataSetImage image = DataSetImager(plan(), Device::Cpu).make(0);
+  const Json info = Json::parse(image.info);
+  EXPECT_NEAR(info["pose"]["positionMm"][1], -60.0, 3.75);
+  EXPECT_NEAR(4.0 * double(info["masks"]["cavity"]["pixels"]), 900.0 * M_PI, 0.12 * 900.0 * M_PI);
+}
+
+TEST_F(DataSetFolder, GoesOnWhereItWasCutOff)
+{
+  write("whole");
+  const Content whole = content("whole");
+  int heard = 0;
+  EXPECT_THROW(write("cut", {}, [&](double) { return ++heard < 40; }), Aborted);
+  // Cut off between an image's files, and while one was written, by this process and by another.
+  for (const char* name : { "imagesTr/ball_0000002_0000.png", "labelsTr/ball_0000002.png" })
+  {
+    fs::copy_file(root_ / "whole" / name, root_ / "cut" / name, fs::copy_options::overwrite_existing);
+  }
+  std::ofstream(root_ / "cut/imagesTr/ball_0000003_0000.png.123.part") << "half";
+  std::ofstream(root_ / "cut/info/ball_0000011.json.99.part") << "half";
+  std::ofstream(root_ / "cut/info/another.part") << "not ours";
+  const DataSetTally first = write("cut", { 0, 2 });
+  EXPECT_EQ(first.total, 6);
+  EXPECT_FALSE(fs::exists(root_ / "cut/imagesTr/ball_0000003_0000.png.123.part"));
+  EXPECT_TRUE(fs::exists(root_ / "cut/info/ball_0000011.json.99.part")); // of a process that may be at work
+  EXPECT_EQ(write("cut", { 1, 2 }).total, 6);
+  EXPECT_TRUE(fs::remove(root_ / "cut/info/another.part"));
+  EXPECT_EQ(content("cut"), whole);
+  EXPECT_EQ(write("cut").made, 0);
+}
+
+TEST_F(DataSetFolder, KeepsDataSetsApart)
+{
+  write("out");
+  json_["seed"] = 6;
+  expectContains(errorOf([&] { write("out"); }), "holds images of another data set");
+  DataSetImager imager(plan(), Device::Cpu);
+  expectContains(errorOf([&] { writeDataSet(imager, ""); }), "no folder is named");
+}
+
+TEST_F(DataSetFolder, SaysWhichImageCannotBeMade)
+{
+  json_["patients"][0]["views"][0]["pose"]["positionMm"] = { 0, -500, 0 };
+  const std::string said = errorOf([&] { write("out"); });
+  expectContains(said, "image 0 of patient 'ball': none of 32 poses drawn for view 'top' stands on the skin");
+  json_["masks"].erase(1);
+  expectContains(errorOf([&] { write("out2"); }), "patient 'ball' has no label of any group of 'masks'");
+}
+
+TEST(PoseOnSkin, FindsTheSurfaceFromBothSides)
+{
+  TissueTable table = TissueTable::read(std::string(SONOVDB_DATA_DIR) + "/tissues.csv");
+  LabelVolume volume = ball();
+  for (LabelInfo& label : volume.labels)
+  {
+    label.tissue = label.id == 7 ? "blood" : label.id == 9 ? "skin" : "air";
+  }
+  const Scene scene(std::move(volume), table, "air");
+  for (const double from : { -90.0, -41.0, -39.0, -1.0 })
+  {
+    const auto pose = poseOnSkin(scene, { { 0.0, from, 0.0 }, { 0.0, 1.0, 0.0 }, { 1.0, 0.0, 0.0 } });
+    ASSERT_TRUE(pose);
+    EXPECT_NEAR(pose->positionMm.y, -40.0, 2.5);
+  }
+  EXPECT_FALSE(poseOnSkin(scene, { { 0.0, -120.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 1.0, 0.0, 0.0 } }));
+  EXPECT_FALSE(poseOnSkin(scene, { { 0.0, -60.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 } }));
+}
