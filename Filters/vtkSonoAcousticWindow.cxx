@@ -3,33 +3,27 @@
 #include "Core/KeptResults.h"
 #include "Core/KeyText.h"
 #include "Probe/AcousticWindow.h"
-#include "SonoAnatomy.h"
 #include "SonoContentKey.h"
 #include "SonoDataFile.h"
 #include "SonoKeptArrays.h"
-#include "SonoProbeField.h"
 #include "SonoStage.h"
+#include "SonoWay.h"
 #include "vtkSonoSceneBuilder.h"
-#include "vtkSonoSceneHandle.h"
 
-#include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
 #include <initializer_list>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -39,21 +33,6 @@ vtkStandardNewMacro(vtkSonoAcousticWindow);
 namespace {
 
 constexpr const char* keptKind = "window";
-
-/// The scene of the input, or of the label image that it is.
-std::shared_ptr<const sono::Scene> sceneOf(vtkDataObject* input, int fillBody, vtkAlgorithm* owner)
-{
-  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(input))
-  {
-    return vtkSonoSceneHandle::Get(blocks);
-  }
-  vtkNew<vtkSonoSceneBuilder> builder;
-  builder->SetFillBody(fillBody);
-  builder->BuildSurfacesOff();
-  builder->SetProgressText(owner->GetProgressText());  // it is a part of that
-  sono::Anatomy anatomy(owner, builder, 0.5, nullptr); // the filter that makes a picture of it will say what there is
-  return vtkSonoSceneHandle::Get(anatomy.blocks(input));
-}
 
 /// The pose that the data bring along.
 std::optional<sono::ProbePose> carriedPose(vtkFieldData* field)
@@ -111,18 +90,6 @@ std::vector<sono::AcousticWindow> findWindows(const sono::Scene& scene, const so
   return windows;
 }
 
-std::string rowOf(const sono::AcousticWindow& window, const std::string& preset, const std::string& sentence)
-{
-  std::ostringstream row;
-  row.precision(17);
-  row << sentence << '\t' << preset << '\t' << window.depthMm;
-  for (const sono::Vec3d& part : { window.pose.positionMm, window.pose.axial, window.pose.lateral })
-  {
-    row << '\t' << part.x << '\t' << part.y << '\t' << part.z;
-  }
-  return row.str();
-}
-
 /// An array with a tuple a window.
 template<class Value>
 void writeAll(const char* name, const std::vector<sono::AcousticWindow>& windows, const Value& value,
@@ -146,28 +113,6 @@ void writeAll(const char* name, const std::vector<sono::AcousticWindow>& windows
     }
   }
   field->AddArray(array);
-}
-
-void drawWay(const sono::Vec3d& begin, const sono::Vec3d& end, vtkPolyData* way)
-{
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> lines;
-  points->InsertNextPoint(&begin.x);
-  points->InsertNextPoint(&end.x);
-  lines->InsertNextCell({ 0, 1 });
-  way->SetPoints(points);
-  way->SetLines(lines);
-}
-
-vtkSmartPointer<vtkStringArray> strings(const char* name, const std::vector<std::string>& values)
-{
-  auto array = vtkSmartPointer<vtkStringArray>::New();
-  array->SetName(name);
-  for (const std::string& value : values)
-  {
-    array->InsertNextValue(value);
-  }
-  return array;
 }
 
 } // namespace
@@ -286,7 +231,7 @@ bool vtkSonoAcousticWindow::TakeKept(vtkPolyData* way)
   sono::Vec3d end;
   ends->GetTuple(0, &begin.x);
   ends->GetTuple(1, &end.x);
-  drawWay(begin, end, way);
+  sono::drawWay(begin, end, way);
   return true;
 }
 
@@ -314,9 +259,9 @@ void vtkSonoAcousticWindow::Keep(vtkPolyData* way)
 
 void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
 {
-  this->Scene = sceneOf(input, this->FillBody, this);
+  this->Scene = sono::sceneToSearch(input, this->FillBody, this);
   const std::shared_ptr<const sono::Scene> scene = this->Scene;
-  this->Targets = strings("Targets", sono::windowTargetNames(*scene));
+  this->Targets = sono::namedStrings("Targets", sono::windowTargetNames(*scene));
   const bool isFree = !this->ChooseTarget && this->Target.empty();
   const auto carried = isFree ? carriedPose(input->GetFieldData()) : std::nullopt;
   const sono::WindowTarget target =
@@ -339,9 +284,9 @@ void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < windows.size(); ++i)
   {
-    rows.push_back(rowOf(windows[i], preset, sentences[i]));
+    rows.push_back(sono::rowOf(windows[i].pose, windows[i].depthMm, preset, sentences[i]));
   }
-  this->Rows = strings("Rows", rows);
+  this->Rows = sono::namedStrings("Rows", rows);
   if (std::size_t(this->Candidate) >= windows.size())
   {
     throw sono::Error("Candidate is " + std::to_string(this->Candidate) +
@@ -350,12 +295,8 @@ void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
 
   const sono::AcousticWindow& chosen = windows[std::size_t(this->Candidate)];
   constexpr double shownMm = 100.0; // of a pose that names no depth
-  const sono::Vec3d end = chosen.pose.positionMm + (carried ? shownMm : chosen.depthMm) * chosen.pose.axial;
-  drawWay(chosen.pose.positionMm, end, way);
+  sono::writeWay(chosen.pose, carried ? shownMm : chosen.depthMm, way);
   vtkFieldData* field = way->GetFieldData();
-  sono::writeVector("ProbePositionMm", chosen.pose.positionMm, field);
-  sono::writeVector("ProbeAxial", chosen.pose.axial, field);
-  sono::writeVector("ProbeLateral", chosen.pose.lateral, field);
   using Window = sono::AcousticWindow;
   const auto vectors = [&](const char* name, sono::Vec3d sono::ProbePose::*part) {
     writeAll(
@@ -375,13 +316,13 @@ void vtkSonoAcousticWindow::Find(vtkDataObject* input, vtkPolyData* way)
     writeAll(
       "InsidePercent", windows, [](const Window& w) { return w.insidePercent; }, field);
   }
-  field->AddArray(strings("Sentence", sentences));
-  field->AddArray(strings("ProbePreset", { preset }));
+  field->AddArray(sono::namedStrings("Sentence", sentences));
+  field->AddArray(sono::namedStrings("ProbePreset", { preset }));
 }
 
 int vtkSonoAcousticWindow::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  this->Rows = strings("Rows", {});
+  this->Rows = sono::namedStrings("Rows", {});
   this->Refusal.clear();
   return sono::runStage(this, output, [&] {
     try

@@ -38,11 +38,10 @@ vtkSmartPointer<vtkSMSourceProxy> makeProxy(vtkSMSessionProxyManager* manager, c
   return vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy(group, name)));
 }
 
-} // namespace
-
-SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, const std::string& target)
+/// A search in the label map that is connected to a Simulate Ultrasound, or in the anatomy that it makes of it.
+vtkSmartPointer<vtkSMSourceProxy> makeSearch(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, const char* name)
 {
-  const auto search = makeProxy(ultrasound->GetSessionProxyManager(), "filters", "SonoAcousticWindow");
+  auto search = makeProxy(ultrasound->GetSessionProxyManager(), "filters", name);
   const vtkSMPropertyHelper input(ultrasound, "Input");
   if (what == SonoWindowsOf::Anatomy)
   {
@@ -53,14 +52,17 @@ SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, co
     vtkSMPropertyHelper(search, "Input").Set(input.GetAsProxy(), input.GetOutputPort());
   }
   vtkSMPropertyHelper(search, "FillBody").Set(vtkSMPropertyHelper(ultrasound, "FillBody").GetAsInt());
-  vtkSMPropertyHelper(search, "Target").Set(target.c_str());
-  vtkSMPropertyHelper(search, "CacheFolder").Set(vtkSMPropertyHelper(ultrasound, "CacheFolder").GetAsString());
+  return search;
+}
+
+/// Runs it, and takes the places and the refusal.
+SonoWindows findBy(vtkSMSourceProxy* search)
+{
   search->UpdateVTKObjects();
   search->UpdatePipeline();
   search->UpdatePropertyInformation();
 
   SonoWindows found;
-  found.targets = stringsOf(search, "Targets");
   const std::vector<std::string> refusal = stringsOf(search, "Refusal");
   found.refusal = refusal.empty() ? "" : refusal[0];
   constexpr std::size_t columns = 12;
@@ -77,6 +79,26 @@ SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, co
       found.windows.push_back(window);
     }
   }
+  return found;
+}
+
+} // namespace
+
+SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, const std::string& target)
+{
+  const auto search = makeSearch(ultrasound, what, "SonoAcousticWindow");
+  vtkSMPropertyHelper(search, "Target").Set(target.c_str());
+  vtkSMPropertyHelper(search, "CacheFolder").Set(vtkSMPropertyHelper(ultrasound, "CacheFolder").GetAsString());
+  SonoWindows found = findBy(search);
+  found.targets = stringsOf(search, "Targets");
+  return found;
+}
+
+SonoWindows sonoFindViews(vtkSMSourceProxy* ultrasound)
+{
+  const auto search = makeSearch(ultrasound, SonoWindowsOf::Anatomy, "SonoStandardViews");
+  SonoWindows found = findBy(search);
+  found.refused = stringsOf(search, "RefusedRows");
   return found;
 }
 

@@ -8,7 +8,7 @@
 class vtkSMSessionProxyManager;
 class vtkSMSourceProxy;
 
-/// A place for a probe, as an Acoustic Window finds it.
+/// A place for a probe, as an Acoustic Window or Standard Views find it.
 struct SonoWindow
 {
   std::string sentence;         ///< what is seen from there
@@ -21,6 +21,7 @@ struct SonoWindows
 {
   std::vector<SonoWindow> windows;  ///< best first
   std::vector<std::string> targets; ///< names that a target may have
+  std::vector<std::string> refused; ///< views that are not obtainable, a sentence each
   std::string refusal;              ///< why there are no windows, one sentence
 };
 
@@ -33,6 +34,9 @@ enum class SonoWindowsOf
   Anatomy
 };
 SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, const std::string& target);
+
+/// Looks for standard views in that anatomy; each sentence begins with the view's name.
+SonoWindows sonoFindViews(vtkSMSourceProxy* ultrasound);
 
 /// The settings that a bundled preset gives, by the names of properties; none where there is no such preset.
 std::vector<std::pair<std::string, double>> sonoPresetNumbers(vtkSMSessionProxyManager* manager,

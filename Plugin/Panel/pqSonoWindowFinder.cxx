@@ -7,6 +7,7 @@
 #include <QGridLayout>
 #include <QPushButton>
 #include <QSignalBlocker>
+#include <QStandardItemModel>
 
 pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, QWidget* parentObject)
   : QWidget(parentObject)
@@ -34,14 +35,23 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, QWidget* parentOb
   button->setToolTip(tr("Puts the probe onto the skin where it sees most of the organ, through the least bone and gas, "
                         "and takes the probe and the depth for it. Where the label map is cut is no skin."));
   this->Candidate->setObjectName("WindowCandidate");
-  this->Candidate->setToolTip(tr("The best places, at most five, and what the probe sees from each."));
+  this->Candidate->setToolTip(
+    tr("The best places, at most five, or the standard views, and what the probe sees from each."));
   this->Candidate->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   this->Candidate->setMinimumContentsLength(20);
   this->Candidate->hide();
   grid->addWidget(this->Target, 0, 0);
+  auto* views = new QPushButton(tr("Standard Views"), this);
+  views->setObjectName("StandardViews");
+  views->setToolTip(
+    tr("Looks for the standard views (A4C, A2C, A3C, A5C, PLAX, PSAX, subcostal, upper quadrants) by the "
+       "landmarks of the labels; choose one in the list. Those that are not obtainable from this "
+       "patient say why."));
   grid->addWidget(button, 0, 1);
-  grid->addWidget(this->Candidate, 1, 0, 1, 2);
+  grid->addWidget(views, 1, 0, 1, 2);
+  grid->addWidget(this->Candidate, 2, 0, 1, 2);
   QObject::connect(button, &QPushButton::clicked, this, [this] { find(); });
+  QObject::connect(views, &QPushButton::clicked, this, [this] { findViews(); });
   QObject::connect(this->Candidate, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
                    [this](int candidate) { choose(candidate); });
 }
@@ -60,24 +70,40 @@ void pqSonoWindowFinder::find()
     }
     this->Target->setCurrentText(target);
   }
+  this->offer(std::move(found), true);
+  choose(0);
+}
+
+void pqSonoWindowFinder::findViews()
+{
+  this->offer(sonoFindViews(vtkSMSourceProxy::SafeDownCast(this->Ultrasound)), false);
+}
+
+void pqSonoWindowFinder::offer(SonoWindows found, bool areRanked)
+{
+  const QSignalBlocker quiet(this->Candidate);
+  this->Windows = std::move(found.windows);
+  this->Candidate->clear();
+  const auto add = [this](const QString& text, const std::string& sentence) {
+    this->Candidate->addItem(text);
+    this->Candidate->setItemData(this->Candidate->count() - 1, QString::fromStdString(sentence), Qt::ToolTipRole);
+  };
+  for (const SonoWindow& window : this->Windows)
   {
-    const QSignalBlocker quiet(this->Candidate);
-    this->Windows = std::move(found.windows);
-    this->Candidate->clear();
-    for (const SonoWindow& window : this->Windows)
-    {
-      const QString sentence = QString::fromStdString(window.sentence);
-      this->Candidate->addItem(QString("%1. %2").arg(this->Candidate->count() + 1).arg(sentence));
-      this->Candidate->setItemData(this->Candidate->count() - 1, sentence, Qt::ToolTipRole);
-    }
+    const QString sentence = QString::fromStdString(window.sentence);
+    add(areRanked ? QString("%1. %2").arg(this->Candidate->count() + 1).arg(sentence) : sentence, window.sentence);
   }
-  this->Candidate->setVisible(!this->Windows.empty());
+  for (const std::string& sentence : found.refused)
+  {
+    add(QString::fromStdString(sentence), sentence);
+    qobject_cast<QStandardItemModel*>(this->Candidate->model())->item(this->Candidate->count() - 1)->setEnabled(false);
+  }
+  this->Candidate->setCurrentIndex(areRanked ? 0 : -1); // the first is the best; of views a person chooses
+  this->Candidate->setVisible(this->Candidate->count() > 0);
   if (this->Windows.empty())
   {
     Q_EMIT said(QString::fromStdString(found.refusal));
-    return;
   }
-  choose(0);
 }
 
 void pqSonoWindowFinder::choose(int candidate)

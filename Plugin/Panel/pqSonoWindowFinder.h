@@ -10,8 +10,8 @@
 class QComboBox;
 class vtkSMProxy;
 
-/// The part of a probe's panel that looks for places on the skin from which an organ is seen: a name, a button, and the
-/// places that were found to choose from.
+/// The part of a probe's panel that looks for places on the skin: from which an organ is seen (a name, a button), or of
+/// standard views (another button), and what was found to choose from.
 class pqSonoWindowFinder : public QWidget
 {
   Q_OBJECT
@@ -29,6 +29,8 @@ private:
   Q_DISABLE_COPY(pqSonoWindowFinder)
 
   void find();
+  void findViews();
+  void offer(SonoWindows found, bool areRanked);
   void choose(int candidate);
 
   vtkSMProxy* Ultrasound;

@@ -37,6 +37,18 @@ sentence, preset, depth, *pose = window.SMProxy.GetProperty("Rows").GetElement(2
 with open(sys.argv[1], "w", encoding="utf-8") as file:
     json.dump({"sentence": sentence, "place": [float(number) for number in pose[:3]]}, file)
 """
+# What the two-chamber view is, likewise.
+TWO_CHAMBERS = """
+import json
+views = StandardViews(Input=ThoraxPhantom(Spacingmm=4))
+views.UpdatePipeline()
+views.SMProxy.UpdatePropertyInformation()
+rows = views.SMProxy.GetProperty("Rows")
+row = next(row for row in (rows.GetElement(i) for i in range(rows.GetNumberOfElements())) if row.startswith("A2C"))
+sentence, preset, depth, *pose = row.split("\\t")
+with open(sys.argv[1], "w", encoding="utf-8") as file:
+    json.dump({"sentence": sentence, "place": [float(number) for number in pose[:3]]}, file)
+"""
 # A rib, something of which nobody knows what it is, and skin, so that nothing is filled.
 THREE_LABELS = (b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nSegment0_Name:=left rib 6\n"
                 b"Segment1_Name:=thing\nSegment2_Name:=skin\n\n" + bytes([0, 1, 2, 3] * 16))
@@ -264,6 +276,21 @@ class TestGui(GuiCase):
         self.assertGreater(math.dist(places[0], places[1]), 40)
         self.assertGreaterEqual(math.dist(places[1], places[2]), 40)  # so far apart are those that are offered
         self.assertLess(math.dist(places[2], expected["place"]), 1e-3)
+
+    def test_standard_views_are_offered_by_name(self):
+        """A search moves nothing; the view that is chosen then does."""
+        with tempfile.TemporaryDirectory() as folder:
+            view = pathlib.Path(folder, "view.json")
+            self.run_script(TWO_CHAMBERS, folder, view)
+            expected = json.loads(view.read_text(encoding="utf-8"))
+            script = pathlib.Path(folder, "views.xml")
+            script.write_text((PLAYBACKS / script.name).read_text().replace("SENTENCE", expected["sentence"]))
+            self.assertEqual(self.play(script, folder, f"--script={PLAYBACKS / 'window.py'}"), [])
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("searched", "chosen")]
+            places = [self.probe_of(state, "SonoUltrasound")["PositionMm"] for state in states]
+        self.assertLess(math.dist(places[0], [87.8, -86.5, -45]), 0.1)
+        self.assertLess(math.dist(places[1], expected["place"]), 1e-3)
+        self.assertGreater(math.dist(*places), 1)
 
     def test_probe_is_dragged_along_the_skin(self):
         """With real mouse events: it slides, the picture follows, a button tilts it. Undo takes back that and the
