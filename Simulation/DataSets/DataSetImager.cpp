@@ -6,12 +6,13 @@
 #include "Labels/ReadLabelMap.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Probe/AcousticWindow.h"
+#include "Probe/StandardViews.h"
 #include "Simulator.h"
 #include "Trace/ProbeContact.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <utility>
 
 namespace sono {
@@ -84,6 +85,60 @@ std::vector<std::uint8_t> groupsOf(const std::vector<LabelInfo>& labels, const s
   return values;
 }
 
+/// The standard view of a name; none where it is not obtainable, and `why` says it then.
+std::optional<ProbePose> standardPose(const std::vector<StandardView>& views, const std::string& name, std::string& why)
+{
+  std::string names;
+  for (const StandardView& view : views)
+  {
+    if (view.name == name)
+    {
+      why = view.refusal;
+      return view.refusal.empty() ? std::optional<ProbePose>(view.pose) : std::nullopt;
+    }
+    names += (names.empty() ? "" : ", ") + view.name;
+  }
+  throw Error("'" + name + "' is no standard view; choose one of " + names + ", or give it a 'pose' or a 'window'.");
+}
+
+/// Where the probe stands for each of a patient's views. Throws Error where none is obtainable.
+std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSetPatient& patient,
+                                                const ProbeSettings& probe, const Mat3d& stretch,
+                                                const Progress& progress)
+{
+  std::vector<std::optional<ProbePose>> poses;
+  std::vector<StandardView> standard;
+  std::string why;
+  for (const DataSetView& view : patient.views)
+  {
+    const bool isBundled = patient.labels.empty() && view.name == "A4C";
+    if (!view.window.empty())
+    {
+      poses.emplace_back(findAcousticWindows(scene, windowTarget(scene, view.window), probe, 1).front().pose);
+    }
+    else if (view.pose || isBundled)
+    {
+      const ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C();
+      poses.emplace_back(
+        ProbePose{ stretch * pose.positionMm, stretch * pose.axial, stretch * pose.lateral }.orthonormalized());
+    }
+    else
+    {
+      if (standard.empty())
+      {
+        standard = findStandardViews(
+          scene, [&](const std::string&) { return probe; }, progress);
+      }
+      poses.push_back(standardPose(standard, view.name, why));
+    }
+  }
+  if (std::none_of(poses.begin(), poses.end(), [](const auto& pose) { return pose.has_value(); }))
+  {
+    throw Error("none of its views is obtainable; give it others. " + why);
+  }
+  return poses;
+}
+
 } // namespace
 
 /// A patient's labels with tissues, and skin around them; not stretched.
@@ -95,17 +150,19 @@ struct DataSetImager::Patient
   std::vector<bool> groupIsThere;
 };
 
-struct DataSetImager::Exam
+/// One of the patient's bodies, in the last exam.
+struct DataSetImager::Body
 {
-  std::int64_t number = 0;
-  int body = 0;
+  int number = 0;
+  std::int64_t exam = -1;
   std::shared_ptr<Scene> scene;
   Simulator simulator;
-  std::map<int, ProbePose> found; ///< of views with a window
+  std::vector<std::optional<ProbePose>> views; ///< of the patient's; none: not obtainable
 };
 
 struct DataSetImager::Placed
 {
+  int view = 0;
   ProbePose pose;
   PoseJitter jitter;
 };
@@ -124,7 +181,7 @@ void DataSetImager::preparePatient(int number, const Progress& progress)
   {
     return;
   }
-  exam_ = nullptr;
+  body_ = nullptr;
   patient_ = nullptr;
   const DataSet& set = plan_->set();
   const DataSetPatient& patient = set.patients[std::size_t(number)];
@@ -136,7 +193,8 @@ void DataSetImager::preparePatient(int number, const Progress& progress)
   {
     readLabelTable(patient.names, made->volume);
   }
-  prepareBody(made->volume, LabelTissueMap::read(set.labelTissues), set.tissues, fallbackTissue, BodyFillMode::Auto);
+  sono::prepareBody(made->volume, LabelTissueMap::read(set.labelTissues), set.tissues, fallbackTissue,
+                    BodyFillMode::Auto);
   made->groups = groupsOf(made->volume.labels, set.masks);
   made->groupIsThere.assign(set.masks.size(), false);
   for (const std::uint8_t value : made->groups)
@@ -153,79 +211,71 @@ void DataSetImager::preparePatient(int number, const Progress& progress)
   patient_ = std::move(made);
 }
 
-void DataSetImager::prepareExam(const PlannedImage& image, const Progress& progress)
+void DataSetImager::prepareBody(int number, const Progress& progress)
 {
-  preparePatient(plan_->bodies()[std::size_t(image.body)].patient, progress);
-  if (exam_ && exam_->body == image.body && exam_->number == image.exam)
+  preparePatient(plan_->bodies()[std::size_t(number)].patient, progress);
+  if (body_ && body_->number == number)
   {
     return;
   }
-  if (!exam_ || exam_->body != image.body)
-  {
-    exam_ = nullptr; // before the next one takes as much memory
-    LabelVolume volume = patient_->volume;
-    volume.placement = stretched(volume.placement, plan_->bodies()[std::size_t(image.body)].stretch);
-    exam_ = std::make_unique<Exam>();
-    exam_->scene = std::make_shared<Scene>(std::move(volume), plan_->set().tissues, couplingTissue);
-  }
-  exam_->simulator.setScene(nullptr); // its results are of other tissues
-  exam_->scene->setTissues(plan_->tissues(image.exam));
-  exam_->simulator.setScene(exam_->scene);
-  exam_->found.clear(); // by the probe of that exam
-  exam_->body = image.body;
-  exam_->number = image.exam;
+  body_ = nullptr; // before the next one takes as much memory
+  const DataSet& set = plan_->set();
+  const Vec3d stretch = plan_->bodies()[std::size_t(number)].stretch;
+  LabelVolume volume = patient_->volume;
+  volume.placement = stretched(volume.placement, stretch);
+  auto body = std::make_unique<Body>();
+  body->number = number;
+  body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
+  body->views = findViews(*body->scene, plan_->patientOf(number), set.probe,
+                          stretchMap(patient_->volume.placement, stretch), progress);
+  body_ = std::move(body);
 }
 
-ProbePose DataSetImager::viewPose(const PlannedImage& image, const ScanGeometry& geometry)
+void DataSetImager::prepareExam(const PlannedImage& image, const Progress& progress)
 {
-  const DataSetView& view = plan_->patientOf(image.body).views[std::size_t(image.view)];
-  if (!view.window.empty())
+  prepareBody(image.body, progress);
+  if (body_->exam != image.exam)
   {
-    const auto known = exam_->found.find(image.view);
-    if (known != exam_->found.end())
-    {
-      return known->second;
-    }
-    ProbeSettings probe = plan_->settings(image).probe;
-    probe.geometry = geometry;
-    const auto windows = findAcousticWindows(*exam_->scene, windowTarget(*exam_->scene, view.window), probe, 1);
-    return exam_->found[image.view] = windows.front().pose;
+    body_->simulator.setScene(nullptr); // its results are of other tissues
+    body_->scene->setTissues(plan_->tissues(image.exam));
+    body_->simulator.setScene(body_->scene);
+    body_->exam = image.exam;
   }
-  ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C();
-  const Mat3d map = stretchMap(patient_->volume.placement, plan_->bodies()[std::size_t(image.body)].stretch);
-  pose.positionMm = map * pose.positionMm;
-  pose.axial = map * pose.axial;
-  pose.lateral = map * pose.lateral;
-  return pose.orthonormalized();
 }
 
 DataSetImager::Placed DataSetImager::place(const PlannedImage& image, const ImageSettings& settings)
 {
-  const ProbePose view = viewPose(image, settings.geometry);
+  Placed placed;
+  placed.view = image.view;
+  while (!body_->views[std::size_t(placed.view)])
+  {
+    placed.view = (placed.view + 1) % int(body_->views.size());
+  }
+  const ProbePose view = *body_->views[std::size_t(placed.view)];
   const bool isCatheter = settings.geometry.lineOrigin() == LineOrigin::Catheter;
   std::string why = "No surface of the body lies there.";
   for (int attempt = 0; attempt < mostAttempts; ++attempt)
   {
-    const PoseJitter jitter = plan_->jitter(image.index, attempt);
-    ProbePose pose = jittered(view, jitter);
+    placed.jitter = plan_->jitter(image.index, attempt);
+    placed.pose = jittered(view, placed.jitter);
     if (!isCatheter)
     {
-      const std::optional<ProbePose> onSkin = poseOnSkin(*exam_->scene, pose);
+      const std::optional<ProbePose> onSkin = poseOnSkin(*body_->scene, placed.pose);
       if (!onSkin)
       {
         continue;
       }
-      pose = *onSkin;
+      placed.pose = *onSkin;
     }
-    why = probeContactWarning(*exam_->scene, makeScanLines(settings.geometry, pose));
-    why = why.empty() ? probePlaceWarning(*exam_->scene, settings.geometry, pose) : why;
+    why = probeContactWarning(*body_->scene, makeScanLines(settings.geometry, placed.pose));
+    why = why.empty() ? probePlaceWarning(*body_->scene, settings.geometry, placed.pose) : why;
     if (why.empty())
     {
-      return { pose, jitter };
+      return placed;
     }
   }
   throw Error("none of " + std::to_string(mostAttempts) + " poses drawn for view '" +
-              plan_->patientOf(image.body).views[std::size_t(image.view)].name +
+              plan_->patientOf(image.body).views[std::size_t(placed.view)].name +
               "' stands on the skin; narrow 'jitter' or correct the view. " + why);
 }
 
@@ -255,16 +305,17 @@ DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progres
   input.settings.tracing.interactive = true; // images of a body share what is prepared of its scene
   const Placed placed = place(image, input.settings);
   input.pose = facts.pose = placed.pose;
+  facts.image.view = placed.view;
   facts.jitter = placed.jitter;
   facts.onGpu = runsOnDevice(input.settings.tracing);
 
-  const ImageResult result = exam_->simulator.image(input, partOf(progress, 0.2, 0.95));
+  const ImageResult result = body_->simulator.image(input, partOf(progress, 0.2, 0.95));
   if (result.isVolume())
   {
     throw Error("a matrix makes volumes; choose a probe with lines in a plane.");
   }
-  const TracedResult traced = exam_->simulator.traced(input);
-  const ScanPicture picture = exam_->simulator.picture(result, input.settings.geometry, input.pose, traced);
+  const TracedResult traced = body_->simulator.traced(input);
+  const ScanPicture picture = body_->simulator.picture(result, input.settings.geometry, input.pose, traced);
   const PlaneImage layout = plan_->layout(image);
   DataSetImage made{
     layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}
@@ -284,10 +335,10 @@ DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progres
   facts.lateralMinMm = layout.lateralMinMm;
   facts.axialMinMm = layout.axialMinMm;
   const std::vector<ScanLine> lines = makeScanLines(input.settings.geometry, input.pose);
-  facts.flags = { probeContactWarning(*exam_->scene, lines).empty(),
-                  shareInsideVolume(*exam_->scene, input.settings.geometry, input.pose),
+  facts.flags = { probeContactWarning(*body_->scene, lines).empty(),
+                  shareInsideVolume(*body_->scene, input.settings.geometry, input.pose),
                   shareShadowed(lines, input.settings, traced.host()) };
-  made.info = describeImage(*plan_, *exam_->scene, facts);
+  made.info = describeImage(*plan_, *body_->scene, facts);
   return made;
 }
 

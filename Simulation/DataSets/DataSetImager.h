@@ -27,9 +27,12 @@ struct DataSetImage
   std::string info;
 };
 
-/// Makes the images of a plan, whichever are asked for. Keeps the last patient's labels and the last exam's scene, so
-/// that images of one exam are quick one after the other. An image does not depend on those before it, to the bit. Not
+/// Makes the images of a plan, whichever are asked for. Keeps the last patient's labels and the last body's scene, so
+/// that images of one body are quick one after the other. An image does not depend on those before it, to the bit. Not
 /// for several threads at a time.
+///
+/// A patient's views are looked for once, with the file's probe and the table's tissues. One that is not obtainable is
+/// replaced by the next in the patient's list that is.
 class DataSetImager
 {
 public:
@@ -45,19 +48,19 @@ public:
 
 private:
   struct Patient;
-  struct Exam;
+  struct Body;
   struct Placed;
 
   void preparePatient(int patient, const Progress& progress);
+  void prepareBody(int body, const Progress& progress);
   void prepareExam(const PlannedImage& image, const Progress& progress);
-  ProbePose viewPose(const PlannedImage& image, const ScanGeometry& geometry);
   Placed place(const PlannedImage& image, const ImageSettings& settings);
   DataSetImage makePlanned(const PlannedImage& image, const Progress& progress);
 
   std::shared_ptr<const DataSetPlan> plan_;
   Device device_;
   std::unique_ptr<Patient> patient_;
-  std::unique_ptr<Exam> exam_;
+  std::unique_ptr<Body> body_;
 };
 
 } // namespace sono

@@ -131,7 +131,7 @@ Vec3d readVector(StrictObject& object, const std::string& key)
   return { value[0].get<double>(), value[1].get<double>(), value[2].get<double>() };
 }
 
-DataSetView readView(StrictObject object, bool isBundled)
+DataSetView readView(StrictObject object)
 {
   DataSetView view;
   view.name = object.text("name");
@@ -152,8 +152,6 @@ DataSetView readView(StrictObject object, bool isBundled)
   }
   object.refuseOthers();
   object.require("name", !(view.pose && !view.window.empty()), "has both a pose and a window; remove one of them");
-  object.require("name", view.pose || !view.window.empty() || (isBundled && view.name == "A4C"),
-                 "is no view of the bundled thorax, which has A4C alone; give it a 'pose' or a 'window' to look for");
   return view;
 }
 
@@ -188,7 +186,7 @@ DataSetPatient readPatient(StrictObject object)
   }
   for (const StrictObject& view : object.objects("views"))
   {
-    patient.views.push_back(readView(view, patient.labels.empty()));
+    patient.views.push_back(readView(view));
   }
   object.refuseOthers();
   return patient;

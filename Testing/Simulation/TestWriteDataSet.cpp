@@ -219,6 +219,32 @@ TEST_F(DataSetFolder, SaysWhichImageCannotBeMade)
   expectContains(errorOf([&] { write("out2"); }), "patient 'ball' has no label of any group of 'masks'");
 }
 
+TEST_F(DataSetFolder, LooksForViewsByNameAndForWindows)
+{
+  json_["patients"].erase(1);
+  Json& patient = json_["patients"][0];
+  patient.erase("labels");
+  patient.update(Json::parse(R"({"bundled": "thorax", "spacingMm": 2, "views": [
+    {"name": "Suprapubic"}, {"name": "A2C"}, {"name": "liver", "window": "liver"}]})"));
+  json_["probe"]["depthMm"] = 150;
+  json_["exams"] = 1;
+  json_["imagesPerExam"] = 3;
+  json_["masks"] = Json::parse(R"([{"name": "cavity", "labels": ["left ventricle blood"]},
+    {"name": "liver", "labels": ["liver"]}])");
+  DataSetImager imager(plan(), Device::Cpu);
+  const auto infoOf = [&](int index) { return Json::parse(imager.make(index).info); };
+  const Json first = infoOf(0);
+  EXPECT_EQ(first["view"], "A2C"); // there is no bladder
+  EXPECT_EQ(infoOf(1)["pose"], first["pose"]);
+  EXPECT_GT(first["masks"]["cavity"]["pixels"], 200);
+  EXPECT_GT(infoOf(2)["masks"]["liver"]["pixels"], 500);
+  patient["views"] = Json::parse(R"([{"name": "A6C"}])");
+  expectContains(errorOf([&] { DataSetImager(plan(), Device::Cpu).make(0); }),
+                 "'A6C' is no standard view; choose one of A4C");
+  patient["views"] = Json::parse(R"([{"name": "Suprapubic"}])");
+  expectContains(errorOf([&] { DataSetImager(plan(), Device::Cpu).make(0); }), "none of its views is obtainable");
+}
+
 TEST(PoseOnSkin, FindsTheSurfaceFromBothSides)
 {
   TissueTable table = TissueTable::read(std::string(SONOVDB_DATA_DIR) + "/tissues.csv");
