@@ -17,10 +17,11 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double steepestDeg = 55.0;
-constexpr double offDeg = 6.0; // that halve a score, and a little more
-constexpr double offMm = 6.0;
+constexpr double offDeg = 4.0; // a score falls to 61 % of it
+constexpr double offMm = 4.0;
 constexpr double rockStepDeg = 8.0;
-constexpr int mostRocks = 3; // to each side
+constexpr int mostRocks = 3;       // to each side
+constexpr double rockedDeg = 18.0; // what is to be shown belongs into the image's middle
 constexpr std::size_t mostRefined = 10;
 constexpr double refinedApartMm = 16.0;
 constexpr double atFirst = 2.0; // times as far off the plane may a place be that is moved then
@@ -125,7 +126,9 @@ public:
     outcome.stage = Outcome::Shown;
     const Mat3d toWorld = glm::transpose(toLocal_);
     view.pose = ProbePose{ grid_.scene().worldFromLocal(place), toWorld * axis, toWorld * lateral }.orthonormalized();
-    show(ProbePose{ place, axis, lateral }, lookOffDeg, view);
+    show(ProbePose{ place, axis, lateral }, view);
+    view.score *=
+      std::exp(-0.5 * (std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0) + std::pow(trial.rockDeg / rockedDeg, 2.0)));
     return outcome;
   }
 
@@ -171,7 +174,7 @@ public:
   }
 
 private:
-  void show(const ProbePose& pose, double lookOffDeg, StandardView& view) const
+  void show(const ProbePose& pose, StandardView& view) const
   {
     const auto lines = makeScanLines(probe_.geometry(), pose);
     const std::vector<double> areas = probe_.stepAreas(lines);
@@ -211,7 +214,6 @@ private:
     const double reachMm = std::floor(probe_.geometry().depthMm / depthStepMm) * depthStepMm;
     view.depthMm = std::clamp(std::ceil((farMm + beyondMm) / depthStepMm) * depthStepMm, leastDepthMm, reachMm);
     rate(seen, view);
-    view.score *= std::exp(-0.5 * std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0));
     const double seenMm2 = std::accumulate(seen.begin(), seen.end(), 0.0);
     view.score *= std::pow(10.0, -seenExcess / std::max(1e-9, seenMm2) / lossScaleDb);
     sayShadow(excessOfTissue, met, view);

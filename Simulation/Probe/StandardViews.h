@@ -46,7 +46,7 @@ using ProbeByPreset = std::function<ProbeSettings(const std::string& preset)>;
 /// run straight through a grid of about 2.5 mm, rocked in the plane by up to 24 degrees. What has lost
 /// 10 dB more than a way through soft tissue begins to lie in a shadow, and from 16 dB on is not shown. The score is
 ///   mean of the structures' shares x the worst of the shares over the least one asked, at most 1
-///   x exp(-((planeOffDeg / 6)^2 + (markOffMm / 6)^2 + (2 lookOff / lookDeg)^2) / 2)
+///   x exp(-((planeOffDeg / 4)^2 + (markOffMm / 4)^2 + (2 lookOff / lookDeg)^2 + (rock / 18)^2) / 2)
 ///   x the image's share within the box,
 /// a tenth for each 40 dB that what is shown has lost beyond soft tissue's loss, with lookOff between the plan's look
 /// and the way from the place to the structures; the best places are then moved in steps down to 1.5 mm and 3 degrees.
