@@ -1,5 +1,6 @@
 // What a data set's file may say, and what follows from it for each image.
 #include "ErrorText.h"
+#include "TemporaryFolder.h"
 
 #include "DataSets/DataSetPlan.h"
 #include "Image/PngFile.h"
@@ -11,7 +12,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -53,9 +53,8 @@ protected:
   {
     return errorOf([&] { read(json); });
   }
-  void TearDown() override { std::filesystem::remove(path_); }
-
-  const std::string path_ = ::testing::TempDir() + "set.json";
+  const sono::testing::TemporaryFolder folder_;
+  const std::string path_ = folder_.file("set.json");
 };
 
 } // namespace
@@ -303,7 +302,7 @@ TEST_F(DataSetFile, PatientsStayInOneSplit)
 {
   Json json = apical();
   json["exams"] = 1003;
-  const std::string labels = ::testing::TempDir() + "map.nii";
+  const std::string labels = folder_.file("map.nii");
   std::ofstream(labels) << "not read by a plan";
   Json patient = json["patients"][0];
   patient.erase("bundled");
@@ -339,7 +338,6 @@ TEST_F(DataSetFile, PatientsStayInOneSplit)
     EXPECT_EQ(images[Split(split)], plan.imagesIn(Split(split)));
     EXPECT_GT(images[Split(split)], 0);
   }
-  std::filesystem::remove(labels);
 }
 
 TEST_F(DataSetFile, ProcessesShareEachImageOnce)

@@ -1,5 +1,6 @@
 // What a data set's folder holds, and what becomes of it when its writing was cut off.
 #include "ErrorText.h"
+#include "TemporaryFolder.h"
 
 #include "DataSets/WriteDataSet.h"
 #include "Labels/ReadLabelMap.h"
@@ -52,8 +53,6 @@ class DataSetFolder : public ::testing::Test
 protected:
   void SetUp() override
   {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
     writeLabelMap((root_ / "ball.nii.gz").string(), ball());
     json_ = Json::parse(R"({
       "name": "ball", "seed": 5, "exams": 6, "imagesPerExam": 2, "pixelMm": 2, "format": "nnU-Net",
@@ -68,7 +67,6 @@ protected:
     json_["patients"][1]["split"] = "test";
     json_["patients"][0]["split"] = "train";
   }
-  void TearDown() override { fs::remove_all(root_); }
 
   std::shared_ptr<const DataSetPlan> plan()
   {
@@ -94,7 +92,8 @@ protected:
     return files;
   }
 
-  const fs::path root_ = fs::path(::testing::TempDir()) / "sono_data_set";
+  const sono::testing::TemporaryFolder folder_;
+  const fs::path root_ = folder_.path();
   Json json_;
 };
 
