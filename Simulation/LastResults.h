@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Echo/MovingScatterers.h"
 #include "Echo/PointScatterers.h"
 #include "ImageResult.h"
 #include "SameSettings.h"
@@ -50,6 +51,15 @@ struct TraceFrom
   {
     return sono::same(settings, o.settings) && sono::same(lines, o.lines) && sono::same(targets, o.targets);
   }
+};
+
+/// Of the user's scatterers together with those of the scene that move.
+struct MovingFrom
+{
+  MovingStatistics statistics;
+  std::shared_ptr<const PointScatterers> points;
+
+  bool same(const MovingFrom& o) const { return points == o.points && statistics == o.statistics; }
 };
 
 /// Of the device's numbers for image formation, which do not depend on traced lines that lie on the device.

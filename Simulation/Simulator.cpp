@@ -90,6 +90,7 @@ struct Simulator::Last
   LastResult<FieldFrom, std::shared_ptr<const ArrayField>> arrayField;
   LastResult<TraceFrom, TracedResult> traced;
   std::unique_ptr<BackgroundTrace> rounds; ///< of what was traced last; null: all of them are made
+  LastResult<MovingFrom, std::shared_ptr<const PointScatterers>> moving;
   LastResult<EchoJobFrom, std::shared_ptr<const EchoJob>> echoJob;
   LastResult<RfFrom, RfResult> rf;
   LastResult<BModeJobFrom, std::shared_ptr<const BModeJob>> bmodeJob;
@@ -205,13 +206,34 @@ EchoSettings Simulator::withBeam(EchoSettings settings, const Progress& progress
   return settings;
 }
 
+std::shared_ptr<const PointScatterers> Simulator::withMoving(const std::shared_ptr<const PointScatterers>& points,
+                                                             const EchoSettings& settings, InterfaceModel model,
+                                                             const Progress& progress)
+{
+  if (!scene_ || !scene_->motion())
+  {
+    return points;
+  }
+  const MovingStatistics statistics = movingStatistics(*scene_, settings, model);
+  return last_->moving.get({ statistics, points }, [&] {
+    std::vector<PointScatterer> all = movingScatterers(*scene_, statistics, progress);
+    if (points)
+    {
+      const std::vector<PointScatterer> own = points->all();
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    return std::make_shared<const PointScatterers>(all);
+  });
+}
+
 RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResult& traced,
-                           const EchoSettings& wantedSettings, const std::shared_ptr<const PointScatterers>& points,
+                           const EchoSettings& wantedSettings, const std::shared_ptr<const PointScatterers>& userPoints,
                            const Progress& wholeProgress)
 {
-  const EchoSettings settings = withBeam(wantedSettings, partOf(wholeProgress, 0.0, 0.2));
+  const EchoSettings settings = withBeam(wantedSettings, partOf(wholeProgress, 0.0, 0.1));
   const Progress progress = partOf(wholeProgress, 0.2, 1.0);
   const InterfaceModel model = traced ? traced.layout().model : InterfaceModel::Acoustic;
+  const auto points = withMoving(userPoints, settings, model, partOf(wholeProgress, 0.1, 0.2));
   const EchoJobFrom from{ lines, settings, points, model, traced ? traced.layout().targets : nullptr };
   return last_->rf.get({ from, traced }, [&] {
     EchoSources sources{ scene_.get(), nullptr, points.get(), model, from.targets.get() };

@@ -68,7 +68,7 @@ void sweepOneByOne(const std::shared_ptr<const Scene>& scene, const std::vector<
 /// A group of poses at a time.
 void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, const ImageSettings& settings,
                    bool withLabels, const SweepSink& sink, const Progress& progress,
-                   const std::vector<TargetSurface>& targets)
+                   const std::vector<TargetSurface>& targets, const PointScatterers* points)
 {
   const int perImage = settings.geometry.totalLineCount();
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, poses);
@@ -87,7 +87,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   DeviceImager& imager = DeviceImager::instance();
   const int together =
     std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
-  const EchoSources sources{ &scene, nullptr, nullptr, settings.tracing.model, &targets };
+  const EchoSources sources{ &scene, nullptr, points, settings.tracing.model, &targets };
   std::shared_ptr<const BModeJob> bmodeJob; // made while the first lines are traced
   SweptPictures before;
   std::shared_ptr<DeviceImager::Download> download;
@@ -150,7 +150,8 @@ void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& 
   if (onDevice && settings.tracing.imagingMode == ImagingMode::Fundamental && !settings.tracing.refines())
   {
     wanted.echo = withBeam(settings.echo, partOf(progress, 0.0, 0.1));
-    sweepOnDevice(needScene(), poses, wanted, withLabels, sink, partOf(progress, 0.1, 1.0), targets);
+    const auto moving = withMoving(nullptr, wanted.echo, settings.tracing.model, partOf(progress, 0.1, 0.2));
+    sweepOnDevice(needScene(), poses, wanted, withLabels, sink, partOf(progress, 0.2, 1.0), targets, moving.get());
   }
   else
   {

@@ -93,7 +93,7 @@ SightJob makeSight(const FieldSight& sight)
 
 VoxelJob makeVoxels(const Scene& scene)
 {
-  return { &scene.tissueVoxels(), &scene.detail(), scene.id(), scene.placement().size,
+  return { &scene.tissueVoxels(), &scene.stillDetail(), scene.id(), scene.placement().size,
            Vec3f(scene.placement().spacingMm) };
 }
 

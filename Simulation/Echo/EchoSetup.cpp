@@ -10,15 +10,6 @@ namespace sono {
 
 namespace {
 
-/// Amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the expected sum
-/// of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * A * integral of g^2, with the beam's area
-/// A = pi sL sE for a Gaussian, at the focus where it has one (Data/docs/physics.md eq. 4.7).
-double scattererScale(const EchoSettings& s, double areaMm2)
-{
-  const double seen = areaMm2 * pulseEnergyMm(s) / (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
-  return std::pow(10.0, s.scattererLevelDb / 20.0) / std::sqrt(seen);
-}
-
 void requireConsistent(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings)
 {
   if (lines.empty())
@@ -88,6 +79,12 @@ ReverberationSpeckle speckleOf(const EchoSettings& settings, InterfaceModel mode
 
 } // namespace
 
+double tissueScattererScale(const EchoSettings& s, double areaMm2)
+{
+  const double seen = areaMm2 * pulseEnergyMm(s) / (s.scattererCellMm * s.scattererCellMm * s.scattererCellMm);
+  return std::pow(10.0, s.scattererLevelDb / 20.0) / std::sqrt(seen);
+}
+
 EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>& scanLines,
                      const EchoSettings& echoSettings)
   : sources(echoSources)
@@ -114,7 +111,7 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   }
   else if (sources.scene)
   {
-    const double scale = scattererScale(settings, beams.focusPowerAreaMm2());
+    const double scale = tissueScattererScale(settings, beams.focusPowerAreaMm2());
     tissues.emplace(*sources.scene, settings.scattererCellMm, scale, settings.seed);
   }
   if (sources.scene && isAcoustic)

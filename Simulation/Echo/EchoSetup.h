@@ -15,6 +15,11 @@
 
 namespace sono {
 
+/// Amadou2024's amplitude of a unit scatterer such that a tissue full of them (one a cell) has the wanted rms echo: the
+/// expected sum of squares over the beam is density * integral of w^2 g^2 = (1 / h^3) * A * integral of g^2, with the
+/// beam's area A = pi sL sE for a Gaussian, at the focus where it has one (Data/docs/physics.md eq. 4.7).
+double tissueScattererScale(const EchoSettings& settings, double areaMm2);
+
 /// Everything that image formation needs, made once from the sources and the settings and held while lines are formed.
 /// The arguments must outlive it.
 struct EchoSetup

@@ -113,6 +113,17 @@ PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
   }
 }
 
+std::vector<PointScatterer> PointScatterers::all() const
+{
+  const PointTable& t = *table_;
+  std::vector<PointScatterer> points;
+  for (std::size_t i = 0; i < t.x.size(); ++i)
+  {
+    points.push_back({ originMm_ + Vec3d(t.x[i], t.y[i], t.z[i]), t.amplitude[i] });
+  }
+  return points;
+}
+
 ScattererView PointScatterers::brick(const Vec3i& brick) const
 {
   const PointTable& t = *table_;

@@ -30,6 +30,8 @@ public:
   const Vec3d& originMm() const { return originMm_; }
   const BrickGrid& grid() const { return grid_; }
   std::shared_ptr<const PointTable> table() const { return table_; }
+  /// All of them again, brick by brick; places to single precision about the centroid.
+  std::vector<PointScatterer> all() const;
   /// The scatterers of a brick; none outside of the grid.
   ScattererView brick(const Vec3i& brick) const;
 

@@ -2,6 +2,7 @@
 
 #include "Core/Error.h"
 #include "Core/ParallelFor.h"
+#include "Phantoms/BeatingHeart.h"
 #include "Phantoms/ThoraxAorta.h"
 #include "Phantoms/ThoraxChest.h"
 #include "Phantoms/ThoraxHeart.h"
@@ -155,7 +156,7 @@ std::vector<LabelInfo> labelsOf(const std::vector<std::uint16_t>& voxels)
 
 } // namespace
 
-LabelVolume makeThoraxPhantom(double spacingMm)
+LabelVolume makeThoraxPhantom(double spacingMm, double phase)
 {
   if (!(spacingMm >= 0.5 && spacingMm <= 5.0))
   {
@@ -174,12 +175,55 @@ LabelVolume makeThoraxPhantom(double spacingMm)
     {
       for (int i = 0; i < size.x; ++i)
       {
-        *voxel++ = anatomy.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
+        const Vec3d now = volume.placement.worldFromIndex(Vec3d(i, j, k));
+        *voxel++ = anatomy.sample(phase == 0.0 ? now : thoraxRestingPlaceMm(now, phase));
       }
     }
   });
   volume.labels = labelsOf(volume.voxels);
   return volume;
+}
+
+Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase)
+{
+  static const HeartFrame frame = heartFrame();
+  return frame.toWorld(heartRestingPlaceMm(frame.fromWorld(world), phase));
+}
+
+std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, double phase)
+{
+  std::vector<Vec3f> displacementMm(grid.voxelCount(), Vec3f(0.0f));
+  parallelFor(grid.size.z, {}, [&](int k) {
+    Vec3f* to = displacementMm.data() + std::size_t(k) * grid.size.x * grid.size.y;
+    for (int j = 0; j < grid.size.y; ++j)
+    {
+      for (int i = 0; i < grid.size.x; ++i)
+      {
+        const Vec3d now = grid.worldFromIndex(Vec3d(i, j, k));
+        *to++ = Vec3f(now - thoraxRestingPlaceMm(now, phase));
+      }
+    }
+  });
+  return displacementMm;
+}
+
+const std::set<int>& thoraxMovingLabels()
+{
+  static const std::set<int> labels{ Pericardium,
+                                     LeftVentricleMyocardium,
+                                     InterventricularSeptum,
+                                     RightVentricleMyocardium,
+                                     LeftAtriumWall,
+                                     RightAtriumWall,
+                                     InteratrialSeptum,
+                                     MitralValve,
+                                     TricuspidValve,
+                                     AorticValve,
+                                     PapillaryMuscleAnterolateral,
+                                     PapillaryMusclePosteromedial,
+                                     PapillaryMuscleRight,
+                                     AortaWall };
+  return labels;
 }
 
 ProbePose thoraxPhantomA4C()

@@ -3,15 +3,29 @@
 #include "Labels/LabelVolume.h"
 #include "Probe/ScanGeometry.h"
 
+#include <set>
+#include <vector>
+
 namespace sono {
 
 /// The bundled anatomy: a parametric adult thorax (outside, skin, subcutaneous fat, muscle, ribs, sternum,
 /// spine, lungs, mediastinal fat, pericardium, myocardium with septum, four blood-filled chambers, mitral,
 /// tricuspid and aortic valve, aorta, liver, stomach) made of implicit shapes, so that it exists at any voxel size.
 /// @param spacingMm voxel size, 0.5 to 5 mm. At 1 mm the map is 292 x 212 x 250 voxels.
-/// Throws Error for any other spacing.
-/// Walls of 2 to 4 mm (atria, right ventricle, valves, pericardium) are closed up to a spacing of 2 mm.
-LabelVolume makeThoraxPhantom(double spacingMm);
+/// @param phase of the heart's cycle (see BeatingHeart.h), 0 to 1; 0 is the end of diastole, the anatomy as it is
+/// drawn. Throws Error for any other spacing. Walls of 2 to 4 mm (atria, right ventricle, valves, pericardium) are
+/// closed up to a spacing of 2 mm.
+LabelVolume makeThoraxPhantom(double spacingMm, double phase = 0.0);
+
+/// Where, in world mm, what is at a place at this phase stands at phase 0.
+Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase);
+
+/// x - thoraxRestingPlaceMm(x) in mm at the voxels of a grid, i fastest.
+std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, double phase);
+
+/// The labels that ride on the motion, the same at each phase: the walls, septa, papillary muscles and valves, not the
+/// blood.
+const std::set<int>& thoraxMovingLabels();
 
 /// The pose of its apical four-chamber view: on the skin in an intercostal space, axis toward the mitral
 /// annulus, lateral toward the left ventricle's free wall.

@@ -136,7 +136,7 @@ SONO_SIMD_CLONES void shiftRun(int offset, const std::int16_t* values, std::size
 {
   for (std::size_t i = 0; i < count; ++i)
   {
-    const int shifted = std::clamp(int(codes[i]) + offset, 0, 255);
+    const int shifted = std::clamp(int(codes[i]) + offset, detailSilent + 1, 255);
     codes[i] = std::uint8_t(values[i] == MatchedScan::nothing ? int(codes[i]) : shifted);
   }
 }

@@ -95,10 +95,12 @@ struct Scene::Making
   std::shared_future<SharedRegion> region; ///< null where memory ran out; its end is waited for
 };
 
-Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail)
+Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail,
+             std::shared_ptr<const TissueMotion> motion)
   : id_(nextId())
   , volume_(std::move(volume))
   , detail_(std::move(detail))
+  , motion_(std::move(motion))
 {
   for (std::size_t code = 0; code < detailFactors_.size(); ++code)
   {
@@ -147,6 +149,21 @@ Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTi
                    [&](std::uint16_t id) { return tissueOfLabel_[id]; });
   });
   surfaces_.resize(volume_.labels.size());
+  if (motion_)
+  {
+    stillDetail_ = detail_;
+    stillDetail_.resize(volume_.voxels.size(), std::uint8_t(detailNone));
+    parallelFor(volume_.placement.size.z, {}, [&](int k) {
+      for (std::size_t v = slice * std::size_t(k); v < slice * std::size_t(k + 1); ++v)
+      {
+        if (motion_->moves(volume_.voxels[v]))
+        {
+          stillDetail_[v] = std::uint8_t(detailSilent);
+        }
+      }
+    });
+  }
+  stillCodes_ = stillDetail().empty() ? nullptr : stillDetail().data();
 }
 
 Scene::~Scene() = default;

@@ -7,6 +7,7 @@
 #include "Scene/RegionOnDemand.h"
 #include "Scene/SurfaceField.h"
 #include "Scene/SurfacePieces.h"
+#include "Scene/TissueMotion.h"
 #include "Scene/VoxelBox.h"
 
 #include <array>
@@ -33,10 +34,11 @@ class Scene
 public:
   /// Every label needs a tissue of `table` (see assignTissues); `outsideTissue` names the tissue that counts as
   /// acoustic coupling between the transducer and the body (usually "air"). `detail` holds the codes of scanDetail, one
-  /// a voxel; empty: none.
+  /// a voxel; empty: none. The scatterers of the labels that `motion` moves ride on it; null: everything stands still.
   /// Throws Error for an empty volume, a label without tissue, more than 255 different tissues in use, or a detail of
   /// another size.
-  Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail = {});
+  Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail = {},
+        std::shared_ptr<const TissueMotion> motion = nullptr);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -54,8 +56,12 @@ public:
   const std::vector<std::uint8_t>& tissueVoxels() const { return tissueVoxels_; }
   /// The backscatter's level within each tissue, as a scan has it (see scanDetail), one code a voxel; empty: none.
   const std::vector<std::uint8_t>& detail() const { return detail_; }
-  /// Of the amplitudes at a voxel, by its number in tissueVoxels(); 1 where there is no detail.
-  float detailAt(std::size_t voxel) const { return detail_.empty() ? 1.0f : detailFactors_[detail_[voxel]]; }
+  /// The same for the scatterers that stand still: silent in what moves.
+  const std::vector<std::uint8_t>& stillDetail() const { return motion_ ? stillDetail_ : detail_; }
+  /// Of the amplitudes of what stands still at a voxel, by its number in tissueVoxels(); 1 where there is no detail.
+  float detailAt(std::size_t voxel) const { return stillCodes_ ? detailFactors_[stillCodes_[voxel]] : 1.0f; }
+  /// Null: everything stands still.
+  const std::shared_ptr<const TissueMotion>& motion() const { return motion_; }
 
   Vec3d localFromWorld(const Vec3d& world) const;
   Vec3d worldFromLocal(const Vec3d& local) const;
@@ -112,6 +118,9 @@ private:
   std::vector<std::uint8_t> tissueVoxels_;
   std::vector<std::uint8_t> detail_;
   std::array<float, 256> detailFactors_;
+  std::shared_ptr<const TissueMotion> motion_;
+  std::vector<std::uint8_t> stillDetail_; // only of a scene with motion
+  const std::uint8_t* stillCodes_ = nullptr;
   int outsideIndex_ = -1;
 
   mutable std::mutex mutex_; // for what follows; not held while any of it is made

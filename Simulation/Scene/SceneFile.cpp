@@ -179,7 +179,7 @@ std::string sceneCacheKey(const LabelVolume& volume)
 
 std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& table, const std::string& outsideTissue,
                                        const std::string& cacheFolder, const Progress& progress,
-                                       std::vector<std::uint8_t> detail)
+                                       std::vector<std::uint8_t> detail, std::shared_ptr<const TissueMotion> motion)
 {
   std::error_code error;
   fs::create_directories(cacheFolder, error);
@@ -187,7 +187,7 @@ std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& ta
   {
     throw Error("cannot use '" + cacheFolder + "' as a cache: it is no folder and none can be made; choose another.");
   }
-  auto scene = std::make_unique<Scene>(std::move(volume), table, outsideTissue, std::move(detail));
+  auto scene = std::make_unique<Scene>(std::move(volume), table, outsideTissue, std::move(detail), std::move(motion));
   const std::string path = (fs::path(cacheFolder) / (sceneCacheKey(scene->volume()) + ".nvdb")).string();
   if (fs::exists(path, error))
   {

@@ -29,13 +29,14 @@ std::unique_ptr<Scene> readScene(const std::string& path, const Progress& progre
 
 /// A scene whose label grid and surfaces come from the folder `cacheFolder` if it holds those of the same voxels and
 /// placement, and are else built and stored there as `<key>.nvdb`, a scene file. Names, tissues and colours are the
-/// caller's, and so is a scan's detail: they are no part of the key, so editing the tissue table rebuilds nothing.
-/// Files of the folder may be deleted at any time; a damaged one is rebuilt; of the whole folder what was not used for
-/// longest goes when it is full (Core/KeptResults.h). Throws Error when the folder cannot be
-/// made or written to.
+/// caller's, and so are a scan's detail and a motion: they are no part of the key, so editing the tissue table rebuilds
+/// nothing. Files of the folder may be deleted at any time; a damaged one is rebuilt; of the whole folder what was not
+/// used for longest goes when it is full (Core/KeptResults.h). Throws Error when the folder cannot be made or written
+/// to.
 std::unique_ptr<Scene> makeCachedScene(LabelVolume volume, const TissueTable& table, const std::string& outsideTissue,
                                        const std::string& cacheFolder, const Progress& progress = {},
-                                       std::vector<std::uint8_t> detail = {});
+                                       std::vector<std::uint8_t> detail = {},
+                                       std::shared_ptr<const TissueMotion> motion = nullptr);
 
 /// The key of a volume in the cache: 16 hexadecimal digits of its voxels, placement and the format's version.
 std::string sceneCacheKey(const LabelVolume& volume);

@@ -1,0 +1,314 @@
+// Speckle tracking on the bundled thorax's beating heart in its apical four-chamber view, against the strain that it
+// has.
+#include "ApicalImage.h"
+#include "Labels/AssignTissues.h"
+#include "Phantoms/ThoraxPhantom.h"
+#include "Simulator.h"
+#include "Stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sono {
+namespace {
+
+const std::string data = SONOVDB_DATA_DIR;
+
+constexpr int phases = 24; // of a cycle
+constexpr int frames = 9;  // of them, from the end of diastole to that of systole
+constexpr int step = 6;    // RF samples between those that are compared
+constexpr double halfKernelMm = 3.5;
+constexpr double halfSearchMm = 3.5;
+constexpr int halfKernelLines = 4;
+constexpr int halfSearchLines = 4;
+
+using Wall = std::vector<Vec3d>; // from base to apex, world mm
+
+std::shared_ptr<const Scene> sceneAt(double phase, bool locked)
+{
+  LabelVolume volume = makeThoraxPhantom(1.0, phase);
+  const auto table = TissueTable::read(data + "/tissues.csv");
+  assignTissues(volume, LabelTissueMap::read(data + "/label_tissues.csv"), table, "soft_tissue");
+  std::shared_ptr<const TissueMotion> motion;
+  if (locked)
+  {
+    motion = std::make_shared<const TissueMotion>(volume.placement, thoraxDisplacementMm(volume.placement, phase),
+                                                  thoraxMovingLabels());
+  }
+  return std::make_shared<const Scene>(std::move(volume), table, "air", std::vector<std::uint8_t>{}, motion);
+}
+
+/// Where a point of the end of diastole is, by iteration on the map that leads there.
+Vec3d placeAt(const Vec3d& rest, double phase)
+{
+  Vec3d now = rest;
+  for (int i = 0; i < 100; ++i)
+  {
+    now += 0.7 * (rest - thoraxRestingPlaceMm(now, phase));
+  }
+  return now;
+}
+
+/// Along the middle of a wall in the image plane, by the shapes that draw it; `side` is -1 for the septum, 1 for the
+/// free wall.
+Wall wallAt(double side)
+{
+  const ProbePose pose = thoraxPhantomA4C();
+  Wall wall;
+  for (double depthMm = 98.0; depthMm >= 52.0; depthMm -= 2.0)
+  {
+    const double radiusMm = 27.0 * std::sqrt(1.0 - std::pow((depthMm - 87.0) / 59.0, 2));
+    wall.push_back(pose.positionMm + depthMm * pose.axial + (5.0 + side * radiusMm) * pose.lateral);
+  }
+  return wall;
+}
+
+double lengthMm(const std::vector<Vec2d>& points)
+{
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+  {
+    sum += glm::distance(points[i], points[i - 1]);
+  }
+  return sum;
+}
+
+/// Lateral and axial, mm, in the image plane.
+Vec2d inPlane(const Vec3d& world)
+{
+  const ProbePose pose = thoraxPhantomA4C().orthonormalized();
+  const Vec3d q = world - pose.positionMm;
+  return { glm::dot(q, pose.lateral), glm::dot(q, pose.axial) };
+}
+
+/// A frame by line and depth.
+struct Frame
+{
+  int lines = 0;
+  int depths = 0;
+  double depthMm = 0.0; // between two
+  double firstRad = 0.0;
+  double lineRad = 0.0;
+  std::vector<float> value;
+
+  float at(int line, int depth) const { return value[std::size_t(line) * std::size_t(depths) + std::size_t(depth)]; }
+  /// Line and depth, in their steps.
+  Vec2d placeOf(const Vec2d& mm) const
+  {
+    return { (std::atan2(mm.x, mm.y) - firstRad) / lineRad, glm::length(mm) / depthMm };
+  }
+  Vec2d mmOf(const Vec2d& place) const
+  {
+    const double angle = firstRad + place.x * lineRad;
+    return place.y * depthMm * Vec2d(std::sin(angle), std::cos(angle));
+  }
+};
+
+Frame frameAt(double phase, bool locked)
+{
+  ImageInput input;
+  input.settings = a4cWith(InterfaceModel::Acoustic);
+  input.settings.tracing.pathsPerLine = 64;
+  input.settings.setDevice(Device::Cpu);
+  input.pose = thoraxPhantomA4C().orthonormalized();
+  Simulator simulator(sceneAt(phase, locked));
+  const RfLines rf = simulator.rf(input).host();
+  const std::vector<ScanLine> lines = a4cLines(input.settings);
+  const auto angleOf = [&](const ScanLine& line) {
+    return std::atan2(glm::dot(line.axis, input.pose.lateral), glm::dot(line.axis, input.pose.axial));
+  };
+  Frame frame;
+  frame.lines = rf.lineCount;
+  frame.depths = rf.sampleCount / step;
+  frame.depthMm = rf.sampleMm * step;
+  frame.firstRad = angleOf(lines.front());
+  frame.lineRad = (angleOf(lines.back()) - frame.firstRad) / double(rf.lineCount - 1);
+  const std::vector<float> envelope = rf.envelope();
+  for (int l = 0; l < frame.lines; ++l)
+  {
+    for (int d = 0; d < frame.depths; ++d)
+    {
+      frame.value.push_back(std::sqrt(envelope[std::size_t(l) * std::size_t(rf.sampleCount) + std::size_t(d) * step]));
+    }
+  }
+  return frame;
+}
+
+/// Normalised cross-correlation of the kernel around a place of one frame with that of another.
+double likeness(const Frame& a, int lineA, int depthA, const Frame& b, int lineB, int depthB, int halfDepths)
+{
+  double sa = 0.0, sb = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+  int count = 0;
+  for (int l = -halfKernelLines; l <= halfKernelLines; ++l)
+  {
+    for (int d = -halfDepths; d <= halfDepths; ++d)
+    {
+      const int la = lineA + l, lb = lineB + l, da = depthA + d, db = depthB + d;
+      if (la < 0 || lb < 0 || la >= a.lines || lb >= b.lines || da < 0 || db < 0 || da >= a.depths || db >= b.depths)
+      {
+        continue;
+      }
+      const double x = double(a.at(la, da));
+      const double y = double(b.at(lb, db));
+      sa += x;
+      sb += y;
+      aa += x * x;
+      bb += y * y;
+      ab += x * y;
+      ++count;
+    }
+  }
+  const double n = std::max(count, 1);
+  const double spread = (aa - sa * sa / n) * (bb - sb * sb / n);
+  return spread > 0.0 ? (ab - sa * sb / n) / std::sqrt(spread) : -1.0;
+}
+
+double peak(double before, double at, double after)
+{
+  const double curve = before - 2.0 * at + after;
+  return curve < 0.0 ? std::clamp(0.5 * (before - after) / curve, -0.5, 0.5) : 0.0;
+}
+
+/// Where the speckle around a point is in the next frame, mm, with its likeness.
+std::pair<Vec2d, double> follow(const Frame& a, const Frame& b, const Vec2d& mm)
+{
+  const Vec2d place = a.placeOf(mm);
+  const int line = int(std::lround(place.x));
+  const int depth = int(std::lround(place.y));
+  const int half = int(halfKernelMm / a.depthMm);
+  const int search = int(halfSearchMm / a.depthMm);
+  const auto like = [&](int l, int d) { return likeness(a, line, depth, b, line + l, depth + d, half); };
+  double best = -2.0;
+  int bestLine = 0;
+  int bestDepth = 0;
+  for (int l = -halfSearchLines; l <= halfSearchLines; ++l)
+  {
+    for (int d = -search; d <= search; ++d)
+    {
+      const double here = like(l, d);
+      if (here > best)
+      {
+        best = here;
+        bestLine = l;
+        bestDepth = d;
+      }
+    }
+  }
+  const Vec2d found(bestLine + peak(like(bestLine - 1, bestDepth), best, like(bestLine + 1, bestDepth)),
+                    bestDepth + peak(like(bestLine, bestDepth - 1), best, like(bestLine, bestDepth + 1)));
+  return { a.mmOf(place + found), std::max(best, 0.0) };
+}
+
+/// The points' steps as a parabola along the wall, weighted by how sure each is.
+std::vector<Vec2d> smoothed(const std::vector<Vec2d>& steps, const std::vector<double>& weights)
+{
+  glm::dmat3 normal(0.0);
+  Vec3d right[2] = { Vec3d(0.0), Vec3d(0.0) };
+  const auto basis = [&](std::size_t i) {
+    const double s = 2.0 * double(i) / double(steps.size() - 1) - 1.0;
+    return Vec3d(1.0, s, s * s);
+  };
+  for (std::size_t i = 0; i < steps.size(); ++i)
+  {
+    const double w = std::pow(weights[i], 4) + 1e-6;
+    normal += w * glm::outerProduct(basis(i), basis(i));
+    right[0] += w * steps[i].x * basis(i);
+    right[1] += w * steps[i].y * basis(i);
+  }
+  const glm::dmat3 solve = glm::inverse(normal);
+  std::vector<Vec2d> out;
+  for (std::size_t i = 0; i < steps.size(); ++i)
+  {
+    out.push_back({ glm::dot(basis(i), solve * right[0]), glm::dot(basis(i), solve * right[1]) });
+  }
+  return out;
+}
+
+struct Tracked
+{
+  double errorPoints = 0.0; ///< largest of the frames and walls, percent points of strain
+  double endErrorPoints = 0.0;
+  double trueEndPercent = 0.0;
+  double likeness = 0.0; ///< mean
+};
+
+Tracked track(const std::vector<Frame>& cine)
+{
+  Tracked result;
+  double likenessSum = 0.0;
+  int likenessCount = 0;
+  for (const double side : { -1.0, 1.0 })
+  {
+    const Wall wall = wallAt(side);
+    std::vector<Vec2d> points;
+    for (const Vec3d& p : wall)
+    {
+      points.push_back(inPlane(p));
+    }
+    const double lengthBefore = lengthMm(points);
+    for (int f = 1; f < frames; ++f)
+    {
+      std::vector<Vec2d> steps;
+      std::vector<double> weights;
+      for (const Vec2d& p : points)
+      {
+        const auto [to, sure] = follow(cine[std::size_t(f - 1)], cine[std::size_t(f)], p);
+        steps.push_back(to - p);
+        weights.push_back(sure);
+        likenessSum += sure;
+        ++likenessCount;
+      }
+      const std::vector<Vec2d> along = smoothed(steps, weights);
+      std::vector<Vec2d> known;
+      for (std::size_t i = 0; i < points.size(); ++i)
+      {
+        points[i] += along[i];
+        known.push_back(inPlane(placeAt(wall[i], double(f) / phases)));
+      }
+      const double measured = 100.0 * (lengthMm(points) / lengthBefore - 1.0);
+      const double truth = 100.0 * (lengthMm(known) / lengthBefore - 1.0);
+      std::fprintf(stderr, "%s wall, frame %d: strain %.2f %%, known %.2f %%\n", side < 0.0 ? "septal" : "lateral", f,
+                   measured, truth);
+      result.errorPoints = std::max(result.errorPoints, std::abs(measured - truth));
+      if (f == frames - 1)
+      {
+        result.endErrorPoints = std::max(result.endErrorPoints, std::abs(measured - truth));
+        result.trueEndPercent += 0.5 * truth;
+      }
+    }
+  }
+  result.likeness = likenessSum / likenessCount;
+  return result;
+}
+
+std::vector<Frame> cineOf(bool locked)
+{
+  std::vector<Frame> cine;
+  for (int f = 0; f < frames; ++f)
+  {
+    cine.push_back(frameAt(double(f) / phases, locked));
+  }
+  return cine;
+}
+
+void measureStrain()
+{
+  const Tracked locked = track(cineOf(true));
+  printFigure("strain_true_percent", locked.trueEndPercent, "%");
+  printFigure("strain_error_percent_points", locked.errorPoints, "points", "at most 2");
+  printFigure("strain_end_error_percent_points", locked.endErrorPoints, "points");
+  printFigure("strain_correlation", locked.likeness, "");
+  const Tracked still = track(cineOf(false));
+  printFigure("strain_unlocked_error_percent_points", still.errorPoints, "points");
+  printFigure("strain_unlocked_correlation", still.likeness, "");
+}
+
+const Stage stage("strain", measureStrain);
+
+} // namespace
+} // namespace sono
