@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -161,6 +162,80 @@ std::vector<std::uint8_t> scanDetailOf(vtkImageData* image)
   auto detail = roomFor<std::uint8_t>(std::size_t(codes->GetNumberOfValues()));
   detail.assign(codes->GetPointer(0), codes->GetPointer(0) + codes->GetNumberOfValues());
   return detail;
+}
+
+std::shared_ptr<const TissueMotion> motionOf(vtkImageData* image, const LabelVolume& volume)
+{
+  vtkDataArray* field = image->GetPointData()->GetArray(displacementArray);
+  if (!field)
+  {
+    return nullptr;
+  }
+  if (field->GetNumberOfComponents() != 3)
+  {
+    throw Error("The array 'DisplacementMm' of the label image has " + std::to_string(field->GetNumberOfComponents()) +
+                " components; give it three, mm along the world's left, posterior and superior axes.");
+  }
+  std::vector<Vec3f> displacementMm(static_cast<std::size_t>(field->GetNumberOfTuples()));
+  for (std::size_t i = 0; i < displacementMm.size(); ++i)
+  {
+    double u[3];
+    field->GetTuple(static_cast<vtkIdType>(i), u);
+    displacementMm[i] = Vec3f(float(u[0]), float(u[1]), float(u[2]));
+  }
+  const GridPlacement placement = placementOfImage(image);
+  std::set<int> moving;
+  if (vtkDataArray* ids = image->GetFieldData()->GetArray(movingLabelsArray))
+  {
+    for (vtkIdType i = 0; i < ids->GetNumberOfValues(); ++i)
+    {
+      moving.insert(int(ids->GetVariantValue(i).ToInt()));
+    }
+    return std::make_shared<const TissueMotion>(placement, displacementMm, moving);
+  }
+  constexpr float leastMm = 0.05f;
+  const Vec3i offset(glm::round(volume.placement.indexFromWorld(placement.originMm))); // of a body that was filled up
+  for (int k = 0; k < placement.size.z; ++k)
+  {
+    for (int j = 0; j < placement.size.y; ++j)
+    {
+      for (int i = 0; i < placement.size.x; ++i)
+      {
+        const Vec3i& size = placement.size;
+        const Vec3i& whole = volume.placement.size;
+        const Vec3i v = Vec3i(i, j, k) + offset;
+        if (glm::length(displacementMm[std::size_t(i) + std::size_t(size.x) * (j + std::size_t(size.y) * k)]) > leastMm)
+        {
+          moving.insert(volume.voxels[std::size_t(v.x) + std::size_t(whole.x) * (v.y + std::size_t(whole.y) * v.z)]);
+        }
+      }
+    }
+  }
+  for (const LabelInfo& label : volume.labels)
+  {
+    if (label.tissue == "blood")
+    {
+      moving.erase(label.id);
+    }
+  }
+  return std::make_shared<const TissueMotion>(placement, displacementMm, moving);
+}
+
+void addMotion(const std::vector<Vec3f>& displacementMm, const std::set<int>& movingLabels, vtkImageData* image)
+{
+  vtkNew<vtkFloatArray> field;
+  field->SetName(displacementArray);
+  field->SetNumberOfComponents(3);
+  field->SetNumberOfTuples(static_cast<vtkIdType>(displacementMm.size()));
+  std::copy(displacementMm.begin(), displacementMm.end(), reinterpret_cast<Vec3f*>(field->GetPointer(0)));
+  image->GetPointData()->AddArray(field);
+  vtkNew<vtkIntArray> ids;
+  ids->SetName(movingLabelsArray);
+  for (const int id : movingLabels)
+  {
+    ids->InsertNextValue(id);
+  }
+  image->GetFieldData()->AddArray(ids);
 }
 
 void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "Labels/LabelVolume.h"
+#include "Scene/TissueMotion.h"
 
 #include <cstdint>
+#include <memory>
+#include <set>
 #include <vector>
 
 class vtkAlgorithm;
@@ -20,6 +23,13 @@ void announceLabelImage(const GridPlacement& placement, vtkInformation* outInfo)
 /// Point array of a label image with the codes of scanDetail, one a voxel.
 constexpr const char* scanDetailArray = "ScanDetail";
 
+/// Point array of a label image with a displacement field: three components, mm along the world's LPS axes. What is at
+/// x stood at x - u in the reference phase.
+constexpr const char* displacementArray = "DisplacementMm";
+
+/// Field array of such an image with the ids of the labels whose speckle moves with it, the same in all phases.
+constexpr const char* movingLabelsArray = "MovingLabels";
+
 /// Field array of an image with its GridPlacement::frameOfReference, where it has one.
 constexpr const char* frameOfReferenceArray = "FrameOfReference";
 
@@ -31,6 +41,14 @@ void placeImage(const GridPlacement& placement, vtkImageData* image);
 
 /// The codes of the scan's detail that a label image carries; empty: none.
 std::vector<std::uint8_t> scanDetailOf(vtkImageData* image);
+
+/// The motion that a label image carries, with the labels that it names; where it names none, those of `volume`, the
+/// image's labels with their tissues, that move by more than 0.05 mm and are no blood. Null where there is no such
+/// array. Throws Error where it has no three components or is not finite.
+std::shared_ptr<const TissueMotion> motionOf(vtkImageData* image, const LabelVolume& volume);
+
+/// Adds the arrays.
+void addMotion(const std::vector<Vec3f>& displacementMm, const std::set<int>& movingLabels, vtkImageData* image);
 
 /// Tells an array of one component its range, which VTK would look for in each value, serially and twice.
 void tellRange(double low, double high, vtkDataArray* array);

@@ -144,10 +144,12 @@ sono::SharedAnatomy vtkSonoSceneBuilder::Build(vtkInformationVector** input, boo
   {
     detail = sono::detailOnLargerGrid(detail, placement, volume.placement);
   }
+  const std::shared_ptr<const sono::TissueMotion> motion = sono::motionOf(vtkImageData::GetData(input[0]), volume);
   const std::shared_ptr<const sono::Scene> scene =
-    cached ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,
-                                   sono::partOf(progress, 0.1, 0.6), std::move(detail))
-           : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue, std::move(detail));
+    cached
+      ? sono::makeCachedScene(std::move(volume), *table, this->OutsideTissue, this->CacheFolder,
+                              sono::partOf(progress, 0.1, 0.6), std::move(detail), motion)
+      : std::make_shared<const sono::Scene>(std::move(volume), *table, this->OutsideTissue, std::move(detail), motion);
   return { scene, table, this->Warnings };
 }
 

@@ -15,7 +15,9 @@ struct LabelVolume;
  * @brief The bundled parametric thorax as a label map
  *
  * The same output as vtkSonoLabelMapReader's. Its field data also hold the probe's pose for the apical four-chamber
- * view: A4CPositionMm (LPS mm), A4CAxial and A4CLateral.
+ * view: A4CPositionMm (LPS mm), A4CAxial and A4CLateral. With more than one phase the heart beats: a cycle as time
+ * steps of 1 / Phases s, each with the point array DisplacementMm and the field array MovingLabels, so that the walls'
+ * speckle moves with them.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoThoraxSource : public vtkImageAlgorithm
 {
@@ -32,6 +34,14 @@ public:
   vtkGetMacro(SpacingMm, double);
   ///@}
 
+  ///@{
+  /**
+   * Time steps of a heart cycle of 1 s from the end of diastole on, 1 to 200. Default 1: the heart stands still.
+   */
+  vtkSetClampMacro(Phases, int, 1, 200);
+  vtkGetMacro(Phases, int);
+  ///@}
+
 protected:
   vtkSonoThoraxSource();
   ~vtkSonoThoraxSource() override;
@@ -44,6 +54,7 @@ private:
   void operator=(const vtkSonoThoraxSource&) = delete;
 
   double SpacingMm = 1.0;
+  int Phases = 1;
   std::shared_ptr<const sono::LabelVolume> Volume; // from the information pass, which needs its size, to the data pass
 };
 

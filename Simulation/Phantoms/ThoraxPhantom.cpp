@@ -187,7 +187,9 @@ LabelVolume makeThoraxPhantom(double spacingMm, double phase)
 Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase)
 {
   static const HeartFrame frame = heartFrame();
-  return frame.toWorld(heartRestingPlaceMm(frame.fromWorld(world), phase));
+  const Vec3d now = frame.fromWorld(world);
+  const Vec3d resting = heartRestingPlaceMm(now, phase);
+  return resting == now ? world : frame.toWorld(resting); // what stands still does so to the last digit
 }
 
 std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, double phase)
