@@ -24,7 +24,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 std::shared_ptr<const sono::LabelVolume> makeVolume(double spacingMm, double phase)
 {
-  return std::make_shared<const sono::LabelVolume>(sono::makeThoraxPhantom(spacingMm, phase));
+  return std::make_shared<const sono::LabelVolume>(sono::makeBeatingThorax(spacingMm, phase));
 }
 
 } // namespace

@@ -78,11 +78,11 @@ Vec3d heartRestingPlaceMm(const Vec3d& p, double phase)
 {
   const double a = contractionAt(phase);
   constexpr double farMm = 30.0;
-  if (a == 0.0 || glm::distance(p, heartSphereCentreMm()) > heartSphereRadiusMm() + farMm)
+  if (a == 0.0 || glm::distance(p, heartSphereCentreMm()) > heartSphereRadiusMm(HeartShape{}) + farMm)
   {
     return p;
   }
-  const double share = 1.0 - smoothStep(0.0, fadeMm, sampleHeart(p).outsideMm);
+  const double share = 1.0 - smoothStep(0.0, fadeMm, sampleHeart(p, HeartShape{}).outsideMm);
   const AlongAxis way = wayAt(p.z);
   const double m = 1.0 + a * way.slope;
   const double Z = p.z + a * way.mm;

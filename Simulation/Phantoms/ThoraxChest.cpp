@@ -36,6 +36,16 @@ double outlineRadius(double x, double y)
   return std::sqrt(std::sqrt(x2 * x2 + outlineBlend * x2 * y2 + y2 * y2));
 }
 
+double halfWidthAt(const ChestShape& chest, double z)
+{
+  return halfWidthMm * chest.scale * outlineScale(z) + chest.extraFatMm;
+}
+
+double halfDepthAt(const ChestShape& chest, double z)
+{
+  return halfDepthMm * chest.scale * outlineScale(z) + chest.extraFatMm;
+}
+
 /// A point as the chest wall sees it.
 struct WallPoint
 {
@@ -44,10 +54,10 @@ struct WallPoint
   double back;    ///< -1 front, 1 back
 };
 
-WallPoint wallPoint(const Vec3d& p)
+WallPoint wallPoint(const Vec3d& p, const ChestShape& chest)
 {
-  const double a = halfWidthMm * outlineScale(p.z);
-  const double b = halfDepthMm * outlineScale(p.z);
+  const double a = halfWidthAt(chest, p.z);
+  const double b = halfDepthAt(chest, p.z);
   const double x = p.x / a;
   const double y = p.y / b;
   const double r = std::max(outlineRadius(x, y), 1e-6);
@@ -71,9 +81,10 @@ double pleuraDepthMm(const Vec3d& p, const WallPoint& w)
 }
 
 /// Height of a rib's centre line: down to the front, then, as cartilage, up to the sternum.
-double ribHeightMm(int rib, const WallPoint& w)
+double ribHeightMm(int rib, const WallPoint& w, double spacingMm)
 {
-  const double bone = firstRibMm - ribSpacingMm * (rib - 1) + 42.0 * w.back + 14.0 * (1.0 - w.back * w.back);
+  const double bone = firstRibMm - 4.5 * (ribSpacingMm - spacingMm) - spacingMm * (rib - 1) + 42.0 * w.back +
+                      14.0 * (1.0 - w.back * w.back);
   const double climb = w.back < 0.0 ? 13.0 * std::max(rib - 3, 0) * smoothStep(0.5, 0.05, std::abs(w.side)) : 0.0;
   return bone + climb;
 }
@@ -85,7 +96,7 @@ bool isSternum(const Vec3d& p, const WallPoint& w, double middleDepthMm)
          std::hypot(p.x / halfWidth, (w.depthMm - middleDepthMm) / 5.5) < 1.0;
 }
 
-ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm)
+ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm, const ChestShape& chest)
 {
   const double middleDepthMm = pleuraMm - 5.5;
   if (std::abs(w.depthMm - middleDepthMm) > 6.0)
@@ -99,7 +110,8 @@ ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm)
   const double across = (w.depthMm - middleDepthMm) / ribHalfThicknessMm;
   for (int rib = 1; rib <= ribPairs; ++rib)
   {
-    const double along = (p.z - ribHeightMm(rib, w)) * 0.94 / ribHalfHeightMm; // 0.94: cosine of the mean slope
+    const double along =
+      (p.z - ribHeightMm(rib, w, chest.ribSpacingMm)) * 0.94 / ribHalfHeightMm; // 0.94: cosine of the mean slope
     if (along * along + across * across > 1.0 || std::abs(p.x) < 8.0)
     {
       continue;
@@ -154,7 +166,7 @@ ThoraxLabel abdomen(const Vec3d& p, double belowDiaphragmMm)
   return liver < 0.0 ? Liver : VisceralFat;
 }
 
-ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Vec3d& q)
+ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Vec3d& q, double overlapMm)
 {
   const double halfWidth = 7.0 + 25.0 * smoothStep(-75.0, -10.0, p.y) - 6.0 * smoothStep(35.0, 60.0, p.y);
   const bool mediastinum = std::abs(p.x - 3.0) < halfWidth + 2.0 * std::sin(0.06 * p.z);
@@ -163,7 +175,7 @@ ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Ve
                                    ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)), 10.0);
   const double hilum =
     ellipsoid(Vec3d(std::abs(p.x - 3.0), p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0));
-  if (mediastinum || hilum < 0.0 || heart.outsideMm < 2.0 || notch < 0.0)
+  if (mediastinum || hilum < 0.0 || heart.outsideMm < 2.0 || notch < -overlapMm)
   {
     return MediastinalFat;
   }
@@ -172,26 +184,26 @@ ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Ve
 
 } // namespace
 
-Vec3d thoraxBoxLowMm()
+Vec3d thoraxBoxLowMm(const ChestShape& chest)
 {
-  return Vec3d(-halfWidthMm - 3.0, -halfDepthMm - 3.0, bottomMm);
+  return Vec3d(-halfWidthAt(chest, 0.0) - 3.0, -halfDepthAt(chest, 0.0) - 3.0, bottomMm);
 }
 
-Vec3d thoraxBoxHighMm()
+Vec3d thoraxBoxHighMm(const ChestShape& chest)
 {
-  return Vec3d(halfWidthMm + 3.0, halfDepthMm + 3.0, topMm);
+  return Vec3d(halfWidthAt(chest, 0.0) + 3.0, halfDepthAt(chest, 0.0) + 3.0, topMm);
 }
 
-Vec3d skinPointMm(double towardsX, double towardsY, double z)
+Vec3d skinPointMm(const ChestShape& chest, double towardsX, double towardsY, double z)
 {
-  const double scale = outlineScale(z);
-  const double r = outlineRadius(towardsX / (halfWidthMm * scale), towardsY / (halfDepthMm * scale));
+  const double r = outlineRadius(towardsX / halfWidthAt(chest, z), towardsY / halfDepthAt(chest, z));
   return Vec3d(towardsX / r, towardsY / r, z);
 }
 
-ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& inHeartFrame)
+ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& inHeartFrame, const ChestShape& chest)
 {
-  const WallPoint w = wallPoint(p);
+  const double spineBackMm = halfDepthMm * (chest.scale - 1.0);
+  WallPoint w = wallPoint(p, chest);
   if (w.depthMm < 0.0)
   {
     return Background;
@@ -200,12 +212,13 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
   {
     return Skin;
   }
+  w.depthMm -= chest.extraFatMm; // the lean body lies below
   if (w.depthMm < fatDepthMm(p, w))
   {
     return SubcutaneousFat;
   }
   const double pleuraMm = pleuraDepthMm(p, w);
-  if (const ThoraxLabel bone = boneOfWall(p, w, pleuraMm))
+  if (const ThoraxLabel bone = boneOfWall(p, w, pleuraMm, chest))
   {
     return bone;
   }
@@ -213,7 +226,7 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
   {
     return heart.label;
   }
-  if (const ThoraxLabel bone = spine(p))
+  if (const ThoraxLabel bone = spine(p - Vec3d(0.0, spineBackMm, 0.0)))
   {
     return bone;
   }
@@ -221,8 +234,15 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
   {
     return Muscle;
   }
-  const double belowDiaphragmMm = diaphragmMm(p) - p.z;
-  return belowDiaphragmMm > 0.0 ? abdomen(p, belowDiaphragmMm) : mediastinumOrLung(p, heart, inHeartFrame);
+  const Vec3d raised = p + Vec3d(0.0, 0.0, chest.diaphragmDownMm);
+  const double belowDiaphragmMm = diaphragmMm(raised) - raised.z;
+  return belowDiaphragmMm > 0.0 ? abdomen(raised, belowDiaphragmMm)
+                                : mediastinumOrLung(p, heart, inHeartFrame, chest.lungOverlapMm);
+}
+
+double skinDepthMm(const Vec3d& p, const ChestShape& chest)
+{
+  return wallPoint(p, chest).depthMm;
 }
 
 } // namespace sono

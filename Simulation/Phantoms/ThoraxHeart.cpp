@@ -10,7 +10,7 @@ namespace {
 
 // Depths of the valve planes; the tricuspid valve sits nearer to the apex, as in every normal heart.
 const Vec3d mitralCentre(0.0, 0.0, 113.0);
-const Vec3d tricuspidCentre(-46.0, 0.0, 106.0);
+const Vec3d tricuspidCentre(-46.0, 0.0, 106.0); // of the default heart
 const Vec3d aorticCentre(-7.0, -28.0, 112.0);
 const Vec3d outflowStart(0.0, -14.0, 94.0);
 
@@ -30,8 +30,42 @@ struct Valve
   Vec3d tipShiftMm; ///< makes one leaflet longer than the other
 };
 
-const Valve mitral{ mitralCentre, mitralRadiusMm, 6.5, 15.0, Vec3d(2.5, 1.0, 0.0) };
-const Valve tricuspid{ tricuspidCentre, tricuspidRadiusMm, 7.0, 14.0, Vec3d(-2.0, 0.0, 0.0) };
+/// The right heart, shifted to make room for the left one.
+Vec3d besideLeft(const Vec3d& p, const HeartShape& shape)
+{
+  return p - Vec3d(shape.rightwardMm(), 0.0, 0.0);
+}
+
+Valve mitralOf(const HeartShape& shape)
+{
+  const double size = std::sqrt(shape.leftScale);
+  const double tips = 6.5 * (shape.valveOpening / 0.4);
+  return { mitralCentre, mitralRadiusMm * size, tips * size, 15.0, Vec3d(2.5, 1.0, 0.0) };
+}
+
+Valve tricuspidOf(const HeartShape& shape)
+{
+  const double tips = 7.0 * (shape.valveOpening / 0.4);
+  return { besideLeft(tricuspidCentre, shape), tricuspidRadiusMm * shape.rightScale, tips, 14.0,
+           Vec3d(-2.0, 0.0, 0.0) };
+}
+
+Vec3d leftAtriumCentre(const HeartShape& shape)
+{
+  return Vec3d(2.0, 0.0, 112.5 + 17.5 * shape.leftAtriumScale); // grows away from the annulus
+}
+
+Vec3d rightAtriumCentre(const HeartShape& shape)
+{
+  return besideLeft(Vec3d(-46.0, -3.0, 104.0 + 22.0 * shape.rightAtriumScale), shape);
+}
+
+const Vec3d leftVentricleCentre(5.0, -0.5, 87.0);
+
+Vec3d leftVentricleRadii(const HeartShape& shape)
+{
+  return Vec3d(22.0 * shape.leftScale, 24.0 * shape.leftScale, 56.0 * std::sqrt(shape.leftScale));
+}
 
 enum class ValveSide
 {
@@ -92,109 +126,116 @@ struct HeartSurfaces
   double rightAtrium;     ///< cavity, with the annulus
 };
 
-void addLeftVentricle(HeartSurfaces& f, const Vec3d& p)
+void addLeftVentricle(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
 {
-  const Vec3d endocardiumCentre(5.0, -0.5, 87.0);
   const Vec3d epicardiumCentre(5.5, -0.5, 87.0);
   // Trabeculae: a ripple of the endocardium that fades towards the base.
   const double ripple = 0.5 * std::sin(0.45 * p.z + 0.3 * p.y) * smoothStep(105.0, 75.0, p.z);
-  const double inner = ellipsoid(p - endocardiumCentre, Vec3d(22.0, 24.0, 56.0)) + ripple;
-  const double outer = ellipsoid(p - epicardiumCentre, Vec3d(32.0, 33.5, 62.5));
+  const double inner = ellipsoid(p - leftVentricleCentre, leftVentricleRadii(shape)) + ripple;
+  const Vec3d wall = (shape.wallMm / 10.0) * Vec3d(10.0, 9.5, 6.5);
+  const double outer = ellipsoid(p - epicardiumCentre, leftVentricleRadii(shape) + wall);
   f.outflow = capsule(p, outflowStart, aorticCentre, outflowRadiusMm, outflowRadiusMm);
   f.leftVentricle = smoothUnion(smoothIntersection(inner, p.z - 108.5, 8.0), f.outflow, 4.0);
   f.leftEpicardium = smoothUnion(smoothIntersection(outer, p.z - 114.5, 5.0), f.outflow - 3.5, 3.0);
 }
 
+const Vec3d rightVentricleCentre(-18.0, -3.0, 85.0);
+
 /// The right ventricle's ellipsoid, grown by `wallMm`. It reaches into the left ventricle, which cuts a crescent
 /// out of it; its long axis goes from the apex, close to the septum, to the tricuspid annulus.
-double rightEllipsoid(const Vec3d& p, double wallMm)
+double rightEllipsoid(const Vec3d& p, const HeartShape& shape, double wallMm)
 {
   static const Vec3d longAxis = glm::normalize(Vec3d(-0.42, -0.08, 0.90));
   static const Vec3d sideAxis = glm::normalize(glm::cross(Vec3d(0.0, 1.0, 0.0), longAxis));
   static const Vec3d depthAxis = glm::cross(longAxis, sideAxis);
-  const Vec3d q = p - Vec3d(-18.0, -3.0, 85.0);
+  const Vec3d q = p - besideLeft(rightVentricleCentre, shape);
   const Vec3d local(glm::dot(q, sideAxis), glm::dot(q, depthAxis), glm::dot(q, longAxis));
-  return ellipsoid(local, Vec3d(44.0, 37.0, 44.0) + wallMm);
+  return ellipsoid(local, shape.rightScale * Vec3d(44.0, 37.0, 44.0) + wallMm);
 }
 
-void addRightVentricle(HeartSurfaces& f, const Vec3d& p)
+void addRightVentricle(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
 {
   const double ripple = 0.6 * std::sin(0.5 * p.z - 0.35 * p.x) * smoothStep(100.0, 65.0, p.z);
-  const double inner = rightEllipsoid(p, 0.0) + ripple;
+  const double inner = rightEllipsoid(p, shape, 0.0) + ripple;
   f.rightVentricle = smoothIntersection(smoothIntersection(inner, p.z - 101.5, 6.0), -f.leftEpicardium, 4.0);
-  f.rightEpicardium = smoothIntersection(rightEllipsoid(p, 4.0), p.z - 107.5, 5.0);
+  f.rightEpicardium = smoothIntersection(rightEllipsoid(p, shape, 4.0), p.z - 107.5, 5.0);
 }
 
-void addAtria(HeartSurfaces& f, const Vec3d& p)
+void addAtria(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
 {
+  const double aside = 0.5 * shape.rightwardMm();
   // The bodies are cut by the plane of the interatrial septum; the septum is what is left between them.
-  const double left =
-    smoothIntersection(ellipsoid(p - Vec3d(2.0, 0.0, 130.0), Vec3d(25.0, 25.0, 17.5)), -20.0 - p.x, 3.0);
-  const double right =
-    smoothIntersection(ellipsoid(p - Vec3d(-46.0, -3.0, 126.0), Vec3d(28.0, 26.0, 22.0)), p.x + 22.5, 3.0);
-  f.leftAtrium = smoothUnion(left, annulusTube(mitral, p, 8.0, 8.0), 3.0);
-  f.rightAtrium = smoothUnion(right, annulusTube(tricuspid, p, 8.0, 8.0), 3.0);
+  const double left = smoothIntersection(
+    ellipsoid(p - leftAtriumCentre(shape), shape.leftAtriumScale * Vec3d(25.0, 25.0, 17.5)), -20.0 - aside - p.x, 3.0);
+  const double right = smoothIntersection(
+    ellipsoid(p - rightAtriumCentre(shape), shape.rightAtriumScale * Vec3d(28.0, 26.0, 22.0)), p.x + 22.5 + aside, 3.0);
+  f.leftAtrium = smoothUnion(left, annulusTube(mitralOf(shape), p, 8.0, 8.0), 3.0);
+  f.rightAtrium = smoothUnion(right, annulusTube(tricuspidOf(shape), p, 8.0, 8.0), 3.0);
   // The outflow tract and its wall pass between the atria.
   f.leftAtrium = smoothIntersection(f.leftAtrium, 3.5 - f.outflow, 2.0);
   f.rightAtrium = smoothIntersection(f.rightAtrium, -f.leftEpicardium, 3.0);
 }
 
-HeartSurfaces heartSurfaces(const Vec3d& p)
+HeartSurfaces heartSurfaces(const Vec3d& p, const HeartShape& shape)
 {
   HeartSurfaces f{};
-  addLeftVentricle(f, p);
-  addRightVentricle(f, p);
-  addAtria(f, p);
+  addLeftVentricle(f, p, shape);
+  addRightVentricle(f, p, shape);
+  addAtria(f, p, shape);
   return f;
 }
 
-ThoraxLabel leftBlood(const HeartSurfaces& f, const Vec3d& p)
+ThoraxLabel leftBlood(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
 {
   if (f.outflow < 0.0)
   {
     return LeftVentricleBlood;
   }
+  // The muscles keep to the wall whatever the size of the cavity.
+  const Vec3d grown = leftVentricleRadii(shape) / Vec3d(22.0, 24.0, 56.0);
+  const Vec3d m = shape.leftScale == 1.0 ? p : leftVentricleCentre + (p - leftVentricleCentre) / grown;
   // Anterolateral and posteromedial papillary muscles, from the middle of the free wall towards the leaflets.
-  if (capsule(p, Vec3d(23.0, -2.0, 61.0), Vec3d(14.0, 0.5, 88.0), 6.5, 3.0) < 0.0)
+  if (capsule(m, Vec3d(23.0, -2.0, 61.0), Vec3d(14.0, 0.5, 88.0), 6.5, 3.0) < 0.0)
   {
     return PapillaryMuscleAnterolateral;
   }
-  if (capsule(p, Vec3d(1.0, 21.0, 62.0), Vec3d(2.0, 11.0, 89.0), 6.5, 3.0) < 0.0)
+  if (capsule(m, Vec3d(1.0, 21.0, 62.0), Vec3d(2.0, 11.0, 89.0), 6.5, 3.0) < 0.0)
   {
     return PapillaryMusclePosteromedial;
   }
-  const ValveSide side = valveSide(mitral, p);
+  const ValveSide side = valveSide(mitralOf(shape), p);
   return side == ValveSide::Leaflet ? MitralValve : side == ValveSide::Atrium ? LeftAtriumBlood : LeftVentricleBlood;
 }
 
-ThoraxLabel rightBlood(const Vec3d& p)
+ThoraxLabel rightBlood(const Vec3d& p, const HeartShape& shape)
 {
+  const Vec3d m = p + Vec3d(shape.rightwardMm(), 0.0, 0.0);
   // The moderator band, from the septum to the free wall, carries the anterior papillary muscle.
-  if (capsule(p, Vec3d(-21.0, -2.0, 62.0), Vec3d(-52.0, -9.0, 72.0), 3.5, 3.0) < 0.0)
+  if (capsule(m, Vec3d(-21.0, -2.0, 62.0), Vec3d(-52.0, -9.0, 72.0), 3.5, 3.0) < 0.0)
   {
     return PapillaryMuscleRight;
   }
-  const ValveSide side = valveSide(tricuspid, p);
+  const ValveSide side = valveSide(tricuspidOf(shape), p);
   return side == ValveSide::Leaflet  ? TricuspidValve
          : side == ValveSide::Atrium ? RightAtriumBlood
                                      : RightVentricleBlood;
 }
 
 /// Whether a point of the left ventricle's wall has the right ventricle on its other side.
-bool facesRightVentricle(const HeartSurfaces& f, const Vec3d& p)
+bool facesRightVentricle(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
 {
   const Vec3d fromAxis(p.x - 5.0, p.y + 0.5, 0.0);
   const Vec3d onEpicardium = p - f.leftEpicardium * fromAxis / std::max(glm::length(fromAxis), 1.0);
-  return rightEllipsoid(onEpicardium, 1.0) < 0.0;
+  return rightEllipsoid(onEpicardium, shape, 1.0) < 0.0;
 }
 
-ThoraxLabel wall(const HeartSurfaces& f, const Vec3d& p)
+ThoraxLabel wall(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
 {
   const bool leftAtrium = f.leftAtrium < atrialWallMm;
   const bool rightAtrium = f.rightAtrium < atrialWallMm;
   if (f.leftEpicardium < 0.0)
   {
-    return facesRightVentricle(f, p) ? InterventricularSeptum : LeftVentricleMyocardium;
+    return facesRightVentricle(f, p, shape) ? InterventricularSeptum : LeftVentricleMyocardium;
   }
   if (f.rightEpicardium < 0.0)
   {
@@ -217,10 +258,10 @@ double pericardialSac(const HeartSurfaces& f)
 
 } // namespace
 
-HeartSample sampleHeart(const Vec3d& point)
+HeartSample sampleHeart(const Vec3d& point, const HeartShape& shape)
 {
   const Vec3d p = warped(point);
-  const HeartSurfaces f = heartSurfaces(p);
+  const HeartSurfaces f = heartSurfaces(p, shape);
   const double sac = pericardialSac(f);
   HeartSample sample;
   sample.outsideMm = sac - pericardiumMm;
@@ -230,15 +271,15 @@ HeartSample sampleHeart(const Vec3d& point)
   }
   if (std::min(f.leftVentricle, f.leftAtrium) < 0.0)
   {
-    sample.label = leftBlood(f, p);
+    sample.label = leftBlood(f, p, shape);
   }
   else if (std::min(f.rightVentricle, f.rightAtrium) < 0.0)
   {
-    sample.label = rightBlood(p);
+    sample.label = rightBlood(p, shape);
   }
   else
   {
-    sample.label = wall(f, p);
+    sample.label = wall(f, p, shape);
   }
   if (sample.label == Background)
   {
@@ -247,14 +288,29 @@ HeartSample sampleHeart(const Vec3d& point)
   return sample;
 }
 
-Vec3d mitralAnnulusCentreMm()
+HeartPoints heartPoints(const HeartShape& shape)
 {
-  return mitralCentre;
-}
-
-Vec3d tricuspidAnnulusCentreMm()
-{
-  return tricuspidCentre;
+  // The point of the frame that `warped` takes to p.
+  const auto unwarped = [](const Vec3d& p) {
+    Vec3d q = p;
+    for (int i = 0; i < 30; ++i)
+    {
+      q += p - warped(q);
+    }
+    return q;
+  };
+  HeartPoints points{};
+  points.apex = unwarped(leftVentricleCentre - Vec3d(0.0, 0.0, leftVentricleRadii(shape).z));
+  points.mitral = unwarped(mitralCentre);
+  points.tricuspid = unwarped(besideLeft(tricuspidCentre, shape));
+  points.mitralRadiusMm = mitralOf(shape).annulusRadiusMm;
+  points.tricuspidRadiusMm = tricuspidOf(shape).annulusRadiusMm;
+  points.aorticRadiusMm = outflowRadiusMm;
+  points.leftVentricle = unwarped(leftVentricleCentre);
+  points.rightVentricle = unwarped(besideLeft(rightVentricleCentre, shape));
+  points.leftAtrium = unwarped(leftAtriumCentre(shape));
+  points.rightAtrium = unwarped(rightAtriumCentre(shape));
+  return points;
 }
 
 Vec3d aorticValveCentreMm()
@@ -272,9 +328,11 @@ Vec3d heartSphereCentreMm()
   return Vec3d(-20.0, -3.0, 92.0);
 }
 
-double heartSphereRadiusMm()
+double heartSphereRadiusMm(const HeartShape& shape)
 {
-  return 84.0;
+  const double largest =
+    std::max({ 1.0, shape.leftScale, shape.rightScale, shape.leftAtriumScale, shape.rightAtriumScale });
+  return 84.0 + 60.0 * (largest - 1.0) + std::max(shape.rightwardMm(), 0.0);
 }
 
 } // namespace sono

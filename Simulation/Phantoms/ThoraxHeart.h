@@ -13,12 +13,33 @@ struct HeartSample
   double outsideMm = 1e9;         ///< distance from the pericardium's outer surface, negative inside
 };
 
-/// What stands at a point of the heart's frame.
-HeartSample sampleHeart(const Vec3d& p);
+/// Which heart. Scales are those of the chambers' ellipsoids across their axes.
+struct HeartShape
+{
+  double leftScale = 1.0;        ///< left ventricle; its length goes with the square root
+  double rightScale = 1.0;       ///< right ventricle
+  double leftAtriumScale = 1.0;  ///< from the annulus away
+  double rightAtriumScale = 1.0; ///< from the annulus away
+  double wallMm = 10.0;          ///< of the left ventricle
+  double valveOpening = 0.4;     ///< tips' radius over the annulus'
 
-/// Centre of the mitral and of the tricuspid annulus, in the heart's frame.
-Vec3d mitralAnnulusCentreMm();
-Vec3d tricuspidAnnulusCentreMm();
+  /// How much wider the left ventricle is on its right side: the right heart makes room.
+  double rightwardMm() const { return 22.0 * leftScale + wallMm - 32.0; }
+};
+
+/// What stands at a point of the heart's frame.
+HeartSample sampleHeart(const Vec3d& p, const HeartShape& shape);
+
+/// Points of a heart, in its frame, mm.
+struct HeartPoints
+{
+  Vec3d apex; ///< of the left ventricle's cavity
+  Vec3d mitral, tricuspid;
+  double mitralRadiusMm, tricuspidRadiusMm, aorticRadiusMm;
+  Vec3d leftVentricle, rightVentricle, leftAtrium, rightAtrium; ///< centres of the ellipsoids
+};
+
+HeartPoints heartPoints(const HeartShape& shape);
 
 /// Where the left ventricular outflow tract ends: centre of the aortic valve in the heart's frame.
 Vec3d aorticValveCentreMm();
@@ -28,6 +49,6 @@ Vec3d aorticFlowDirection();
 
 /// A sphere that holds the heart, in the heart's frame.
 Vec3d heartSphereCentreMm();
-double heartSphereRadiusMm();
+double heartSphereRadiusMm(const HeartShape& shape);
 
 } // namespace sono

@@ -3,12 +3,11 @@
 #include "Core/Error.h"
 #include "Core/ParallelFor.h"
 #include "Phantoms/BeatingHeart.h"
-#include "Phantoms/ThoraxAorta.h"
-#include "Phantoms/ThoraxChest.h"
-#include "Phantoms/ThoraxHeart.h"
+#include "Phantoms/ThoraxBody.h"
 
 #include <glm/common.hpp>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,26 +15,6 @@
 namespace sono {
 
 namespace {
-
-/// The heart's frame in the world: origin on the skin over the apex, columns lateral, elevation, axial.
-struct HeartFrame
-{
-  Vec3d originMm;
-  Mat3d axes;
-
-  Vec3d fromWorld(const Vec3d& p) const { return glm::transpose(axes) * (p - originMm); }
-  Vec3d toWorld(const Vec3d& q) const { return originMm + axes * q; }
-};
-
-HeartFrame heartFrame()
-{
-  // The fifth left intercostal space, in front of the mid-axillary line. The heart's long axis goes from there to the
-  // right, back and up.
-  const Vec3d axial = glm::normalize(Vec3d(-0.53, 0.65, 0.545));
-  const Vec3d leftward(0.84, 0.33, 0.42);
-  const Vec3d lateral = glm::normalize(leftward - glm::dot(leftward, axial) * axial);
-  return { skinPointMm(88.0, -86.7, -45.0), Mat3d(lateral, glm::cross(axial, lateral), axial) };
-}
 
 struct NamedColour
 {
@@ -100,40 +79,16 @@ LabelInfo labelInfo(int id)
   return info;
 }
 
-GridPlacement placementFor(double spacingMm)
+GridPlacement placementFor(const ChestShape& chest, double spacingMm)
 {
-  const Vec3d extentMm = thoraxBoxHighMm() - thoraxBoxLowMm();
+  const Vec3d lowMm = thoraxBoxLowMm(chest);
+  const Vec3d extentMm = thoraxBoxHighMm(chest) - lowMm;
   GridPlacement placement;
   placement.size = Vec3i(glm::round(extentMm / spacingMm));
   placement.spacingMm = Vec3d(spacingMm);
-  placement.originMm = thoraxBoxLowMm() + 0.5 * spacingMm;
+  placement.originMm = lowMm + 0.5 * spacingMm;
   return placement;
 }
-
-/// Everything that does not change from voxel to voxel.
-class Anatomy
-{
-public:
-  ThoraxLabel sample(const Vec3d& p) const
-  {
-    const Vec3d q = frame_.fromWorld(p);
-    const Vec3d fromHeart = q - heartSphereCentreMm();
-    HeartSample heart;
-    if (glm::dot(fromHeart, fromHeart) < heartSphereRadiusMm() * heartSphereRadiusMm())
-    {
-      heart = sampleHeart(q);
-    }
-    if (const ThoraxLabel vessel = aorta_.sample(p))
-    {
-      heart.label = vessel;
-    }
-    return sampleChest(p, heart, q);
-  }
-
-private:
-  HeartFrame frame_ = heartFrame();
-  ThoraxAorta aorta_{ frame_.toWorld(aorticValveCentreMm()), frame_.axes* aorticFlowDirection() };
-};
 
 /// The labels that occur among the voxels, ascending.
 std::vector<LabelInfo> labelsOf(const std::vector<std::uint16_t>& voxels)
@@ -154,9 +109,9 @@ std::vector<LabelInfo> labelsOf(const std::vector<std::uint16_t>& voxels)
   return labels;
 }
 
-} // namespace
-
-LabelVolume makeThoraxPhantom(double spacingMm, double phase)
+/// `restingMm` says where what is at a place in the world stands in the body.
+template<class Place>
+LabelVolume drawn(const ThoraxBody& body, double spacingMm, const Place& restingMm)
 {
   if (!(spacingMm >= 0.5 && spacingMm <= 5.0))
   {
@@ -164,9 +119,8 @@ LabelVolume makeThoraxPhantom(double spacingMm, double phase)
     message << "The bundled thorax cannot have a voxel size of " << spacingMm << " mm; choose 0.5 to 5 mm.";
     throw Error(message.str());
   }
-  const Anatomy anatomy;
   LabelVolume volume;
-  volume.placement = placementFor(spacingMm);
+  volume.placement = placementFor(body.chest(), spacingMm);
   volume.voxels.resize(volume.placement.voxelCount());
   const Vec3i size = volume.placement.size;
   parallelFor(size.z, {}, [&](int k) {
@@ -175,8 +129,7 @@ LabelVolume makeThoraxPhantom(double spacingMm, double phase)
     {
       for (int i = 0; i < size.x; ++i)
       {
-        const Vec3d now = volume.placement.worldFromIndex(Vec3d(i, j, k));
-        *voxel++ = anatomy.sample(phase == 0.0 ? now : thoraxRestingPlaceMm(now, phase));
+        *voxel++ = body.sample(restingMm(volume.placement.worldFromIndex(Vec3d(i, j, k))));
       }
     }
   });
@@ -184,9 +137,22 @@ LabelVolume makeThoraxPhantom(double spacingMm, double phase)
   return volume;
 }
 
+} // namespace
+
+LabelVolume makeThoraxPhantom(double spacingMm, const ThoraxParameters& parameters)
+{
+  return drawn(ThoraxBody(parameters), spacingMm, [](const Vec3d& place) { return place; });
+}
+
+LabelVolume makeBeatingThorax(double spacingMm, double phase)
+{
+  return drawn(ThoraxBody(ThoraxParameters{}), spacingMm,
+               [phase](const Vec3d& place) { return thoraxRestingPlaceMm(place, phase); });
+}
+
 Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase)
 {
-  static const HeartFrame frame = heartFrame();
+  static const HeartFrame frame = heartFrame(ThoraxParameters{});
   const Vec3d now = frame.fromWorld(world);
   const Vec3d resting = heartRestingPlaceMm(now, phase);
   return resting == now ? world : frame.toWorld(resting); // what stands still does so to the last digit
@@ -228,14 +194,19 @@ const std::set<int>& thoraxMovingLabels()
   return labels;
 }
 
-ProbePose thoraxPhantomA4C()
+ProbePose thoraxPhantomA4C(const ThoraxParameters& parameters)
 {
   constexpr double insetMm = 0.5; // the face touches the skin from inside, so that every line starts in tissue
-  const HeartFrame frame = heartFrame();
+  const HeartFrame frame = heartFrame(parameters);
+  const ChestShape chest = chestShape(parameters);
   ProbePose pose;
   pose.axial = frame.axes[2];
   pose.lateral = frame.axes[0];
   pose.positionMm = frame.originMm;
+  for (int round = 0; round < 50 && std::abs(skinDepthMm(pose.positionMm, chest)) > 1e-6; ++round)
+  {
+    pose.positionMm -= skinDepthMm(pose.positionMm, chest) * pose.axial;
+  }
   const Vec3d inward = glm::normalize(Vec3d(-frame.originMm.x, -frame.originMm.y, 0.0));
   pose.positionMm += insetMm * inward;
   return pose;

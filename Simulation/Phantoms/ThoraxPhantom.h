@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Labels/LabelVolume.h"
+#include "Phantoms/ThoraxParameters.h"
 #include "Probe/ScanGeometry.h"
 
 #include <set>
@@ -12,12 +13,16 @@ namespace sono {
 /// spine, lungs, mediastinal fat, pericardium, myocardium with septum, four blood-filled chambers, mitral,
 /// tricuspid and aortic valve, aorta, liver, stomach) made of implicit shapes, so that it exists at any voxel size.
 /// @param spacingMm voxel size, 0.5 to 5 mm. At 1 mm the map is 292 x 212 x 250 voxels.
-/// @param phase of the heart's cycle (see BeatingHeart.h), 0 to 1; 0 is the end of diastole, the anatomy as it is
-/// drawn. Throws Error for any other spacing. Walls of 2 to 4 mm (atria, right ventricle, valves, pericardium) are
-/// closed up to a spacing of 2 mm.
-LabelVolume makeThoraxPhantom(double spacingMm, double phase = 0.0);
+/// @param parameters which body of the family; the box grows with it
+/// Throws Error for any other spacing, and for parameters outside their ranges.
+/// Walls of 2 to 4 mm (atria, right ventricle, valves, pericardium) are closed up to a spacing of 2 mm.
+LabelVolume makeThoraxPhantom(double spacingMm, const ThoraxParameters& parameters = {});
 
-/// Where, in world mm, what is at a place at this phase stands at phase 0.
+/// The default body at a phase of its heart's cycle (see BeatingHeart.h), 0 to 1; 0 is the end of diastole, the anatomy
+/// as it is drawn. Throws as makeThoraxPhantom.
+LabelVolume makeBeatingThorax(double spacingMm, double phase);
+
+/// Of the default body: where, in world mm, what is at a place at this phase stands at phase 0.
 Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase);
 
 /// x - thoraxRestingPlaceMm(x) in mm at the voxels of a grid, i fastest.
@@ -29,6 +34,6 @@ const std::set<int>& thoraxMovingLabels();
 
 /// The pose of its apical four-chamber view: on the skin in an intercostal space, axis toward the mitral
 /// annulus, lateral toward the left ventricle's free wall.
-ProbePose thoraxPhantomA4C();
+ProbePose thoraxPhantomA4C(const ThoraxParameters& parameters = {});
 
 } // namespace sono

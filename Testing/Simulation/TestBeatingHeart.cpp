@@ -74,7 +74,7 @@ TEST(BeatingHeart, FoldsNowhere)
 TEST(BeatingHeart, EjectsAsAHealthyOne)
 {
   const double before = blood(makeThoraxPhantom(2.0));
-  const double after = blood(makeThoraxPhantom(2.0, 0.35));
+  const double after = blood(makeBeatingThorax(2.0, 0.35));
   const double percent = 100.0 * (1.0 - after / before);
   RecordProperty("ejection_percent", std::to_string(percent));
   EXPECT_GE(percent, 55.0);

@@ -2,7 +2,7 @@
 
 #include "ErrorText.h"
 #include "Labels/AssignTissues.h"
-#include "Phantoms/ThoraxHeart.h"
+#include "Phantoms/ThoraxLandmarks.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Probe/PlaneFit.h"
 
@@ -168,33 +168,26 @@ TEST(HeartLandmarks, OfBodiesWithClosedForms)
   }
 }
 
-/// The bundled thorax has its landmarks from the numbers that draw it; an irregularity of up to 1.5 mm is added to
-/// them.
+/// The bundled thorax has its landmarks from the numbers that draw it.
 TEST(HeartLandmarks, OfTheBundledThorax)
 {
   const ProbePose pose = thoraxPhantomA4C();
-  const auto world = [&](const Vec3d& inHeart) {
-    const Mat3d axes(pose.lateral, glm::cross(pose.axial, pose.lateral), pose.axial);
-    const Vec3d& p = inHeart; // where the irregular surface of a regular one is, by ThoraxHeart.cpp
-    const Vec3d irregular(0.9 * std::sin(0.11 * p.z + 0.06 * p.y) + 0.5 * std::sin(0.17 * p.z + 1.0),
-                          0.9 * std::sin(0.10 * p.z - 0.08 * p.x + 2.0), 0.7 * std::sin(0.09 * p.x + 0.10 * p.y + 0.5));
-    return pose.positionMm + axes * (p - irregular); // within the 0.5 mm that the face stands in the skin
-  };
+  const HeartLandmarks drawn = thoraxLandmarks(ThoraxBody(ThoraxParameters{}));
   for (const double spacingMm : { 1.0, 2.0 })
   {
     LabelVolume volume = makeThoraxPhantom(spacingMm);
     nameAll(volume);
     const HeartLandmarks found = findHeartLandmarks(volume);
-    const auto expectAt = [&](const Vec3d& at, const Vec3d& inHeart, const char* what) {
-      const Vec3d off = at - world(inHeart);
+    const auto expectAt = [&](const Vec3d& at, const Vec3d& drawnMm, const char* what) {
+      const Vec3d off = at - drawnMm;
       EXPECT_NEAR(glm::length(off), 0.0, 2.5 + 0.75 * spacingMm)
         << what << " off by " << glm::dot(off, pose.lateral) << " lateral, " << glm::dot(off, pose.axial)
         << " axial of " << glm::length(off) << ", at " << spacingMm << " mm";
     };
-    expectAt(found.mitral.centreMm, mitralAnnulusCentreMm(), "mitral");
-    expectAt(found.tricuspid->centreMm, tricuspidAnnulusCentreMm(), "tricuspid");
-    expectAt(found.aortic->centreMm, aorticValveCentreMm(), "aortic");
-    expectAt(found.apexMm, Vec3d(5.0, -0.5, 31.0), "apex");
+    expectAt(found.mitral.centreMm, drawn.mitral.centreMm, "mitral");
+    expectAt(found.tricuspid->centreMm, drawn.tricuspid->centreMm, "tricuspid");
+    expectAt(found.aortic->centreMm, drawn.aortic->centreMm, "aortic");
+    expectAt(found.apexMm, drawn.apexMm, "apex");
     EXPECT_LT(glm::dot(found.septal(), pose.lateral), -0.97);
   }
 }

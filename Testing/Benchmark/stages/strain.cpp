@@ -31,7 +31,7 @@ using Wall = std::vector<Vec3d>; // from base to apex, world mm
 
 std::shared_ptr<const Scene> sceneAt(double phase, bool locked)
 {
-  LabelVolume volume = makeThoraxPhantom(1.0, phase);
+  LabelVolume volume = makeBeatingThorax(1.0, phase);
   const auto table = TissueTable::read(data + "/tissues.csv");
   assignTissues(volume, LabelTissueMap::read(data + "/label_tissues.csv"), table, "soft_tissue");
   std::shared_ptr<const TissueMotion> motion;

@@ -1,7 +1,7 @@
 // Standard views: how many are found, how far their planes are off where the body's own landmarks say.
 #include "Labels/AssignTissues.h"
 #include "Labels/ReadLabelMap.h"
-#include "Phantoms/ThoraxHeart.h"
+#include "Phantoms/ThoraxLandmarks.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Probe/StandardViews.h"
 #include "Stage.h"
@@ -23,21 +23,6 @@ const std::string data = SONOVDB_DATA_DIR;
 ProbeSettings probeOf(const std::string& preset)
 {
   return readProbePreset(data + "/probes/" + preset + ".json");
-}
-
-/// Of the bundled thorax, by the numbers that draw it.
-HeartLandmarks drawnLandmarks()
-{
-  const ProbePose frame = thoraxPhantomA4C();
-  const Mat3d axes(frame.lateral, glm::cross(frame.axial, frame.lateral), frame.axial);
-  const auto world = [&](const Vec3d& inHeart) { return frame.positionMm + axes * inHeart; };
-  const Vec3d apex(5.0, -0.5, 31.0); // of the cavity's ellipsoid
-  HeartLandmarks marks;
-  marks.apexMm = world(apex);
-  marks.mitral.centreMm = world(mitralAnnulusCentreMm());
-  marks.tricuspid = Annulus{ world(tricuspidAnnulusCentreMm()) };
-  marks.aortic = Annulus{ world(aorticValveCentreMm()) };
-  return marks;
 }
 
 /// Of a heart that was fitted into a thorax, as its file says.
@@ -127,7 +112,7 @@ void measureViews()
   {
     char body[40];
     std::snprintf(body, sizeof body, "bundled thorax, %.1f mm", spacingMm);
-    figures.add(body, makeThoraxPhantom(spacingMm), drawnLandmarks());
+    figures.add(body, makeThoraxPhantom(spacingMm), thoraxLandmarks(ThoraxBody(ThoraxParameters{})));
   }
   const std::filesystem::path fitted = std::filesystem::path(SONOVDB_SHARED_DATA_DIR) / "thorax_heart";
   if (std::filesystem::exists(fitted / "landmarks.json"))

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "Phantoms/ThoraxParameters.h"
+
+#include <cstdint>
+
+namespace sono {
+
+/// A body drawn at random, the same on every platform: a third with a normal left heart, and a third each with a
+/// dilated left ventricle and atrium, and with a thick wall. Numbers are uniform within their ranges. Those of the
+/// normal left ventricle (70 to 140 ml) and its wall (7 to 10 mm) lie within the published ones (see ThoraxParameters);
+/// all others are chosen, as far as bodies stay valid (checkThorax): diseases, right heart, atria, habitus, ribs, lungs
+/// and breath. Not drawn, since the family has none: the phase of the cycle (an end-diastole) and posture (supine).
+ThoraxParameters drawThoraxParameters(std::uint64_t seed);
+
+} // namespace sono

@@ -1,0 +1,139 @@
+#include "Phantoms/ThoraxBody.h"
+
+#include "Core/ParallelFor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace sono {
+
+namespace {
+
+/// Left ventricle, right ventricle, left atrium, right atrium.
+using Chambers = std::array<double, 4>;
+
+/// With what the aorta takes of them.
+Chambers chambersMl(const HeartShape& shape, const HeartFrame& frame, const ThoraxAorta& aorta)
+{
+  constexpr double stepMm = 2.5;
+  const Vec3d middle = heartSphereCentreMm();
+  const double reach = heartSphereRadiusMm(shape);
+  const int count = int(std::ceil(2.0 * reach / stepMm));
+  std::vector<std::array<int, 4>> layers(count, std::array<int, 4>{});
+  parallelFor(count, {}, [&](int k) {
+    for (int j = 0; j < count; ++j)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        const Vec3d q = middle - reach + stepMm * Vec3d(i, j, k);
+        const int chamber = sampleHeart(q, shape).label - LeftVentricleBlood;
+        if (chamber >= 0 && chamber < 4 && aorta.sample(frame.toWorld(q)) == Background)
+        {
+          ++layers[k][chamber];
+        }
+      }
+    }
+  });
+  Chambers volumes{};
+  for (const auto& layer : layers)
+  {
+    for (int c = 0; c < 4; ++c)
+    {
+      volumes[c] += layer[c] * stepMm * stepMm * stepMm / 1000.0;
+    }
+  }
+  return volumes;
+}
+
+/// Scales each chamber until its volume is within 1 % of what is asked.
+HeartShape heartShape(const ThoraxParameters& p, const HeartFrame& frame, const ThoraxAorta& aorta)
+{
+  const Chambers asked{ p.leftVentricleMl, p.rightVentricleMl, p.leftAtriumMl, p.rightAtriumMl };
+  HeartShape shape;
+  shape.wallMm = p.wallThicknessMm;
+  shape.valveOpening = p.valveOpening;
+  Chambers scales{ 1.0, 1.0, 1.0, 1.0 };
+  for (int round = 0; round < 30; ++round)
+  {
+    const Chambers volumes = chambersMl(shape, frame, aorta);
+    bool fits = true;
+    for (int c = 0; c < 4; ++c)
+    {
+      const double ratio = asked[c] / std::max(volumes[c], 1.0);
+      fits = fits && std::abs(ratio - 1.0) < 0.01;
+      scales[c] = std::clamp(scales[c] * std::pow(ratio, 0.35), 0.5, 2.0);
+    }
+    if (fits)
+    {
+      return shape;
+    }
+    shape.leftScale = scales[0];
+    shape.rightScale = scales[1];
+    shape.leftAtriumScale = scales[2];
+    shape.rightAtriumScale = scales[3];
+  }
+  throw Error(
+    "The bundled thorax finds no heart with these chamber volumes and this wall; ask for volumes nearer to the "
+    "defaults.");
+}
+
+const ThoraxParameters& checked(const ThoraxParameters& parameters)
+{
+  requireInRange(parameters);
+  return parameters;
+}
+
+} // namespace
+
+ChestShape chestShape(const ThoraxParameters& p)
+{
+  ChestShape shape;
+  shape.scale = p.bodyScale;
+  shape.extraFatMm = p.extraFatMm;
+  shape.ribSpacingMm = p.ribSpacingMm;
+  shape.lungOverlapMm = p.lungOverlapMm;
+  shape.diaphragmDownMm = 35.0 * p.breathing;
+  return shape;
+}
+
+HeartFrame heartFrame(const ThoraxParameters& p)
+{
+  // The fifth left intercostal space, in front of the mid-axillary line. The heart's long axis goes from there to the
+  // right, back and up.
+  const Vec3d axial = glm::normalize(Vec3d(-0.53, 0.65, 0.545));
+  const Vec3d leftward(0.84, 0.33, 0.42);
+  const Vec3d lateral = glm::normalize(leftward - glm::dot(leftward, axial) * axial);
+  ChestShape lean = chestShape(p);
+  lean.extraFatMm = 0.0;
+  const Vec3d shift(p.heartLeftMm, p.heartBackMm, p.heartUpMm - 10.0 * p.breathing);
+  return { skinPointMm(lean, 88.0, -86.7, -45.0) + shift, Mat3d(lateral, glm::cross(axial, lateral), axial) };
+}
+
+ThoraxBody::ThoraxBody(const ThoraxParameters& parameters)
+  : chest_(chestShape(checked(parameters)))
+  , frame_(heartFrame(parameters))
+  , aorta_(frame_.toWorld(aorticValveCentreMm()), frame_.axes * aorticFlowDirection())
+  , heart_(heartShape(parameters, frame_, aorta_))
+{
+}
+
+ThoraxLabel ThoraxBody::sample(const Vec3d& p) const
+{
+  const Vec3d q = frame_.fromWorld(p);
+  const Vec3d fromHeart = q - heartSphereCentreMm();
+  const double reach = heartSphereRadiusMm(heart_);
+  HeartSample heart;
+  if (glm::dot(fromHeart, fromHeart) < reach * reach)
+  {
+    heart = sampleHeart(q, heart_);
+  }
+  if (const ThoraxLabel vessel = aorta_.sample(p))
+  {
+    heart.label = vessel;
+  }
+  return sampleChest(p, heart, q, chest_);
+}
+
+} // namespace sono

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "Phantoms/ThoraxAorta.h"
+#include "Phantoms/ThoraxChest.h"
+#include "Phantoms/ThoraxHeart.h"
+#include "Phantoms/ThoraxParameters.h"
+
+namespace sono {
+
+/// The heart's frame in the world: its origin in front of the apex, columns lateral, elevation, axial.
+struct HeartFrame
+{
+  Vec3d originMm;
+  Mat3d axes;
+
+  Vec3d fromWorld(const Vec3d& p) const { return glm::transpose(axes) * (p - originMm); }
+  Vec3d toWorld(const Vec3d& q) const { return originMm + axes * q; }
+};
+
+ChestShape chestShape(const ThoraxParameters& parameters);
+HeartFrame heartFrame(const ThoraxParameters& parameters);
+
+/// One body of the family: all that does not change from voxel to voxel.
+class ThoraxBody
+{
+public:
+  /// Throws Error for a parameter outside its range, or for chambers that do not fit one another.
+  explicit ThoraxBody(const ThoraxParameters& parameters);
+
+  /// What stands at a point, world LPS mm.
+  ThoraxLabel sample(const Vec3d& p) const;
+
+  const HeartFrame& frame() const { return frame_; }
+  const HeartShape& heart() const { return heart_; }
+  const ChestShape& chest() const { return chest_; }
+
+private:
+  ChestShape chest_;
+  HeartFrame frame_;
+  ThoraxAorta aorta_;
+  HeartShape heart_;
+};
+
+} // namespace sono

@@ -1,0 +1,190 @@
+#include "ErrorText.h"
+#include "Labels/AssignTissues.h"
+#include "Phantoms/CheckThorax.h"
+#include "Phantoms/DrawThorax.h"
+#include "Phantoms/ThoraxLandmarks.h"
+#include "Phantoms/ThoraxPhantom.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace sono;
+using sono::testing::errorOf;
+using sono::testing::expectContains;
+
+std::array<double, 4> chambersMl(const LabelVolume& volume)
+{
+  const Vec3d s = volume.placement.spacingMm;
+  std::array<double, 4> volumes{};
+  for (const std::uint16_t id : volume.voxels)
+  {
+    if (id >= LeftVentricleBlood && id <= RightAtriumBlood)
+    {
+      volumes[id - LeftVentricleBlood] += s.x * s.y * s.z / 1000.0;
+    }
+  }
+  return volumes;
+}
+
+/// Voxels of one label that lie in a region of the heart's frame become another.
+template<class Region>
+LabelVolume replaced(LabelVolume volume, const HeartFrame& frame, ThoraxLabel from, ThoraxLabel to, Region&& region)
+{
+  const Vec3i n = volume.placement.size;
+  for (std::size_t i = 0; i < volume.voxels.size(); ++i)
+  {
+    const Vec3d index(double(i % n.x), double(i / n.x % n.y), double(i / n.x / n.y));
+    if (volume.voxels[i] == from && region(frame.fromWorld(volume.placement.worldFromIndex(index))))
+    {
+      volume.voxels[i] = to;
+    }
+  }
+  return volume;
+}
+
+/// The map's figures from before it was one of a family.
+TEST(ThoraxBodies, TheDefaultIsTheBundledThorax)
+{
+  const LabelVolume volume = makeThoraxPhantom(1.0, ThoraxParameters{});
+  EXPECT_EQ(volume.placement.size, Vec3i(292, 212, 250));
+  const std::array<double, 4> before{ 91.583, 108.198, 51.209, 73.278 };
+  const std::array<double, 4> now = chambersMl(volume);
+  for (std::size_t chamber = 0; chamber < 4; ++chamber)
+  {
+    EXPECT_NEAR(now[chamber], before[chamber], 0.002);
+  }
+}
+
+TEST(ThoraxBodies, ASeedGivesTheSameBodyOnEveryPlatform)
+{
+  const ThoraxParameters drawn = drawThoraxParameters(7);
+  const std::vector<double> known{ 106.784299016, 99.143105447, 50.782354772, 59.564087391, 12.762989759,
+                                   0.484433955,   -1.876859307, 2.423125863,  -1.734114647, 3.466116190,
+                                   1.043950364,   29.200596690, 10.145078897, 0.423161638 };
+  std::size_t i = 0;
+  ThoraxParameters::visit(drawn, [&](double value, const Parameter& parameter) {
+    ASSERT_LT(i, known.size());
+    EXPECT_NEAR(value, known[i++], 1e-6) << parameter.name;
+  });
+  EXPECT_EQ(i, known.size());
+}
+
+TEST(ThoraxBodies, DrawsAreWithinTheRanges)
+{
+  for (std::uint64_t seed = 0; seed < 2000; ++seed)
+  {
+    EXPECT_NO_THROW(requireInRange(drawThoraxParameters(seed))) << seed;
+  }
+}
+
+/// Valid, with the volumes that were asked for, its landmarks where the label map's are.
+TEST(ThoraxBodies, DrawsAreValid)
+{
+  const std::string data = SONOVDB_DATA_DIR;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed)
+  {
+    const ThoraxParameters parameters = drawThoraxParameters(seed);
+    LabelVolume volume = makeThoraxPhantom(2.0, parameters);
+    const ThoraxFaults faults = checkThorax(volume, parameters);
+    EXPECT_TRUE(faults.none()) << "seed " << seed << ": " << faults.open << " " << faults.apart << " "
+                               << faults.volumes;
+    const std::array<double, 4> asked{ parameters.leftVentricleMl, parameters.rightVentricleMl, parameters.leftAtriumMl,
+                                       parameters.rightAtriumMl };
+    const std::array<double, 4> counted = chambersMl(volume);
+    for (std::size_t chamber = 0; chamber < 4; ++chamber)
+    {
+      EXPECT_NEAR(counted[chamber] / asked[chamber], 1.0, 0.05) << "seed " << seed << ", chamber " << chamber;
+    }
+    assignTissues(volume, LabelTissueMap::read(data + "/label_tissues.csv"), TissueTable::read(data + "/tissues.csv"),
+                  "soft_tissue");
+    const HeartLandmarks found = findHeartLandmarks(volume);
+    const HeartLandmarks drawn = thoraxLandmarks(ThoraxBody(parameters));
+    EXPECT_LT(glm::distance(found.apexMm, drawn.apexMm), 5.0) << "seed " << seed;
+    EXPECT_LT(glm::distance(found.mitral.centreMm, drawn.mitral.centreMm), 5.0) << "seed " << seed;
+    EXPECT_LT(glm::distance(found.tricuspid->centreMm, drawn.tricuspid->centreMm), 5.0) << "seed " << seed;
+    EXPECT_LT(glm::distance(found.aortic->centreMm, drawn.aortic->centreMm), 5.0) << "seed " << seed;
+  }
+}
+
+/// How far it is through the wall of the left ventricle, voxel by voxel on rays from its axis.
+double meanWallMm(const LabelVolume& volume, const HeartFrame& frame)
+{
+  const Vec3i n = volume.placement.size;
+  constexpr int rays = 72;
+  constexpr double stepMm = 0.1;
+  int inWall = 0;
+  for (int ray = 0; ray < rays; ++ray)
+  {
+    const double turn = ray * 2.0 * 3.14159265358979323846 / rays;
+    for (double r = 0.0; r < 70.0; r += stepMm)
+    {
+      const Vec3d world = frame.toWorld(Vec3d(5.0 + r * std::cos(turn), -0.5 + r * std::sin(turn), 80.0));
+      const Vec3i v(glm::round(volume.placement.indexFromWorld(world)));
+      const int id = volume.voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x];
+      const bool isWall = id == LeftVentricleMyocardium || id == InterventricularSeptum;
+      const bool isCavity = id == LeftVentricleBlood || id == PapillaryMuscleAnterolateral ||
+                            id == PapillaryMusclePosteromedial || id == MitralValve || id == LeftAtriumBlood;
+      inWall += isWall ? 1 : 0;
+      if (!isWall && !isCavity)
+      {
+        break;
+      }
+    }
+  }
+  return inWall * stepMm / rays;
+}
+
+TEST(ThoraxBodies, WallsAreAsThickAsAsked)
+{
+  for (const double wallMm : { 7.0, 10.0, 14.0 })
+  {
+    ThoraxParameters parameters;
+    parameters.wallThicknessMm = wallMm;
+    const LabelVolume volume = makeThoraxPhantom(1.0, parameters);
+    EXPECT_NEAR(meanWallMm(volume, heartFrame(parameters)), wallMm, 1.0);
+  }
+}
+
+TEST(ThoraxBodies, ABadParameterIsOneSentence)
+{
+  const ThoraxParameters defaults;
+  ThoraxParameters::visit(defaults, [&](double, const Parameter& wanted) {
+    for (const double bad :
+         { wanted.range.low - 1.0, wanted.range.high + 1.0, std::numeric_limits<double>::quiet_NaN() })
+    {
+      ThoraxParameters parameters;
+      ThoraxParameters::visit(parameters, [&](double& value, const Parameter& parameter) {
+        value = std::string(parameter.name) == wanted.name ? bad : value;
+      });
+      expectContains(errorOf([&] { makeThoraxPhantom(5.0, parameters); }), std::string(wanted.name) + " is ");
+    }
+  });
+}
+
+TEST(ThoraxBodies, PlantedFaultsAreFound)
+{
+  const ThoraxParameters defaults;
+  const HeartFrame frame = heartFrame(defaults);
+  const LabelVolume whole = makeThoraxPhantom(2.0);
+  EXPECT_TRUE(checkThorax(whole, defaults).none());
+  const auto isHole = [](const Vec3d& q) { return glm::distance(q, Vec3d(31.0, 0.0, 80.0)) < 9.0; };
+  EXPECT_GT(checkThorax(replaced(whole, frame, LeftVentricleMyocardium, LungLeft, isHole), defaults).open, 0);
+  const auto isAcross = [](const Vec3d& q) { return q.z > 60.0 && q.z < 63.0; };
+  const ThoraxFaults divided =
+    checkThorax(replaced(whole, frame, LeftVentricleBlood, LeftVentricleMyocardium, isAcross), defaults);
+  EXPECT_EQ(divided.apart, 1);
+  const auto everywhere = [](const Vec3d&) { return true; };
+  const ThoraxFaults missing =
+    checkThorax(replaced(whole, frame, RightAtriumBlood, RightAtriumWall, everywhere), defaults);
+  EXPECT_EQ(missing.volumes, 1);
+}
+
+} // namespace
