@@ -46,6 +46,7 @@ struct DataSetPatient
   std::string labels;     ///< path of the label map; empty: the bundled thorax
   std::string names;      ///< path of a table of its labels; empty: none
   double spacingMm = 1.0; ///< of the bundled thorax
+  bool isDrawn = false;   ///< each copy of the bundled thorax is another body, see drawThoraxParameters
   std::string licence;
   std::string provenance;
   int copies = 1;             ///< bodies made of it, each stretched by itself along the grid's three axes

@@ -4,6 +4,7 @@
 #include "DataSets/DataSetInfo.h"
 #include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
+#include "Phantoms/DrawThorax.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Probe/AcousticWindow.h"
 #include "Probe/StandardViews.h"
@@ -103,8 +104,8 @@ std::optional<ProbePose> standardPose(const std::vector<StandardView>& views, co
 
 /// Where the probe stands for each of a patient's views. Throws Error where none is obtainable.
 std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSetPatient& patient,
-                                                const ProbeSettings& probe, const Mat3d& stretch,
-                                                const Progress& progress)
+                                                const ThoraxParameters& thorax, const ProbeSettings& probe,
+                                                const Mat3d& stretch, const Progress& progress)
 {
   std::vector<std::optional<ProbePose>> poses;
   std::vector<StandardView> standard;
@@ -118,7 +119,7 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
     }
     else if (view.pose || isBundled)
     {
-      const ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C();
+      const ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C(thorax);
       poses.emplace_back(
         ProbePose{ stretch * pose.positionMm, stretch * pose.axial, stretch * pose.lateral }.orthonormalized());
     }
@@ -144,7 +145,8 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
 /// A patient's labels with tissues, and skin around them; not stretched.
 struct DataSetImager::Patient
 {
-  int number = 0;
+  PlannedBody body; ///< for whom it was made, and for all that do not differ from it but by their stretch
+  ThoraxParameters thorax;
   LabelVolume volume;
   std::vector<std::uint8_t> groups; ///< of each label id
   std::vector<bool> groupIsThere;
@@ -175,20 +177,26 @@ DataSetImager::DataSetImager(std::shared_ptr<const DataSetPlan> plan, Device dev
 
 DataSetImager::~DataSetImager() = default;
 
-void DataSetImager::preparePatient(int number, const Progress& progress)
+bool DataSetImager::runsOnGpu() const
 {
-  if (patient_ && patient_->number == number)
+  return runsOnDevice(plan_->settings(plan_->image(0)).image(plan_->set().pixelMm, device_).tracing);
+}
+
+void DataSetImager::preparePatient(const PlannedBody& body, const Progress& progress)
+{
+  if (patient_ && patient_->body.patient == body.patient && patient_->body.thoraxSeed == body.thoraxSeed)
   {
     return;
   }
   body_ = nullptr;
   patient_ = nullptr;
   const DataSet& set = plan_->set();
-  const DataSetPatient& patient = set.patients[std::size_t(number)];
+  const DataSetPatient& patient = set.patients[std::size_t(body.patient)];
   auto made = std::make_unique<Patient>();
-  made->number = number;
-  made->volume =
-    patient.labels.empty() ? makeThoraxPhantom(patient.spacingMm) : readLabelMap(patient.labels, 0, progress);
+  made->body = body;
+  made->thorax = thoraxOf(body);
+  made->volume = patient.labels.empty() ? makeThoraxPhantom(patient.spacingMm, made->thorax)
+                                        : readLabelMap(patient.labels, 0, progress);
   if (!patient.names.empty())
   {
     readLabelTable(patient.names, made->volume);
@@ -213,7 +221,7 @@ void DataSetImager::preparePatient(int number, const Progress& progress)
 
 void DataSetImager::prepareBody(int number, const Progress& progress)
 {
-  preparePatient(plan_->bodies()[std::size_t(number)].patient, progress);
+  preparePatient(plan_->bodies()[std::size_t(number)], progress);
   if (body_ && body_->number == number)
   {
     return;
@@ -226,7 +234,7 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   auto body = std::make_unique<Body>();
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
-  body->views = findViews(*body->scene, plan_->patientOf(number), set.probe,
+  body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
                           stretchMap(patient_->volume.placement, stretch), progress);
   body_ = std::move(body);
 }

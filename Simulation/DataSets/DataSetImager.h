@@ -42,6 +42,10 @@ public:
   DataSetImager& operator=(const DataSetImager&) = delete;
 
   const DataSetPlan& plan() const { return *plan_; }
+  const std::shared_ptr<const DataSetPlan>& sharedPlan() const { return plan_; }
+  Device device() const { return device_; }
+  /// Throws Error where the device is a GPU that cannot be used.
+  bool runsOnGpu() const;
   /// Throws Error, naming the data set and the image, when there is no such image, its patient cannot be read or no
   /// pose that is drawn for it stands on the skin; Aborted.
   DataSetImage make(std::int64_t index, const Progress& progress = {});
@@ -51,7 +55,7 @@ private:
   struct Body;
   struct Placed;
 
-  void preparePatient(int patient, const Progress& progress);
+  void preparePatient(const PlannedBody& body, const Progress& progress);
   void prepareBody(int body, const Progress& progress);
   void prepareExam(const PlannedImage& image, const Progress& progress);
   Placed place(const PlannedImage& image, const ImageSettings& settings);

@@ -94,6 +94,12 @@ std::string describeImage(const DataSetPlan& plan, const Scene& scene, const Dat
                       { "stretch", vectorOf(body.stretch) },
                       { "licence", patient.licence },
                       { "provenance", patient.provenance } };
+  if (body.thoraxSeed)
+  {
+    const ThoraxParameters thorax = thoraxOf(body);
+    ThoraxParameters::visit(
+      thorax, [&](double value, const Parameter& parameter) { json["patient"]["thorax"][parameter.name] = value; });
+  }
   json["view"] = patient.views[std::size_t(image.view)].name;
   json["pose"] = { { "positionMm", vectorOf(facts.pose.positionMm) },
                    { "axial", vectorOf(facts.pose.axial) },

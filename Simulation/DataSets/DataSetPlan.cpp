@@ -1,5 +1,7 @@
 #include "DataSets/DataSetPlan.h"
 
+#include "Phantoms/DrawThorax.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -17,18 +19,28 @@ std::int64_t atLeastPart(std::int64_t a, std::int64_t b)
 
 } // namespace
 
+ThoraxParameters thoraxOf(const PlannedBody& body)
+{
+  return body.thoraxSeed ? drawThoraxParameters(*body.thoraxSeed) : ThoraxParameters{};
+}
+
 DataSetPlan::DataSetPlan(DataSet set)
   : set_(std::move(set))
   , base_(baseSettings(set_))
 {
   const std::uint32_t stretchKeys[3] = { drawKey("stretch i"), drawKey("stretch j"), drawKey("stretch k") };
+  const std::uint32_t thoraxKey = drawKey("thorax");
   for (std::size_t p = 0; p < set_.patients.size(); ++p)
   {
     const DataSetPatient& patient = set_.patients[p];
     for (int copy = 0; copy < patient.copies; ++copy)
     {
-      PlannedBody body{ int(p), copy, patient.split.value_or(Split::Train), {} };
+      PlannedBody body{ int(p), copy, patient.split.value_or(Split::Train), {}, {} };
       const auto number = std::int64_t(bodies_.size());
+      if (patient.isDrawn)
+      {
+        body.thoraxSeed = drawSeed(set_.seed, DrawScope::Body, number, thoraxKey);
+      }
       for (int axis = 0; axis < 3; ++axis)
       {
         body.stretch[axis] = patient.stretch.at(drawUniform(set_.seed, DrawScope::Body, number, stretchKeys[axis]));

@@ -3,9 +3,11 @@
 #include "DataSets/DataSet.h"
 #include "DataSets/DataSetSettings.h"
 #include "Image/ScanConvert.h"
+#include "Phantoms/ThoraxParameters.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,11 @@ struct PlannedBody
   int copy = 0;
   Split split = Split::Train;
   Vec3d stretch{ 1.0 }; ///< along the grid's axes
+  std::optional<std::uint64_t> thoraxSeed; ///< of drawThoraxParameters; none: the patient is not drawn
 };
+
+/// Of the bundled thorax: the defaults where it is not drawn.
+ThoraxParameters thoraxOf(const PlannedBody& body);
 
 /// One image: what it is of, and how it is made.
 struct PlannedImage

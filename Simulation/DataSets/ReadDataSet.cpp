@@ -172,6 +172,10 @@ DataSetPatient readPatient(StrictObject object)
   {
     object.require("bundled", object.text("bundled") == "thorax", R"(names no bundled anatomy; write "thorax")");
     patient.spacingMm = object.numberOr("spacingMm", between(0.5, 5.0), patient.spacingMm);
+    if (object.has("drawn"))
+    {
+      patient.isDrawn = readValue(object, "drawn", object.take("drawn"), { {}, false, true }) > 0.0;
+    }
   }
   patient.licence = object.text("licence");
   patient.provenance = object.text("provenance");

@@ -1,11 +1,13 @@
 #include "DataSets/WriteDataSet.h"
 
 #include "Core/WholeFile.h"
+#include "DataSets/ImageWorkers.h"
 #include "Image/PngFile.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -219,7 +221,7 @@ void writeImage(const DataSetImage& image, const CaseFiles& files, const fs::pat
 } // namespace
 
 DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, const DataSetShare& share,
-                          const Progress& progress, const std::function<void(const DataSetTally&)>& tell)
+                          const Progress& progress, const std::function<void(const DataSetTally&)>& tell, int workers)
 {
   if (folderName.empty())
   {
@@ -236,24 +238,30 @@ DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, 
   }
   DataSetTally tally;
   tally.total = images.end - images.first;
+  std::atomic<std::int64_t> made{ 0 };
   const auto begin = std::chrono::steady_clock::now();
-  for (std::int64_t index = images.first; index < images.end; ++index)
-  {
+  const auto work = [&](DataSetImager& by, std::int64_t index, const Progress& untilStopped) {
     const CaseFiles files = filesOf(plan, index);
-    const double done = double(tally.done) / double(tally.total);
     if (!fs::exists(folder / files.info))
     {
-      writeImage(imager.make(index, partOf(progress, done, done + 1.0 / double(tally.total))), files, folder);
-      ++tally.made;
+      writeImage(by.make(index, untilStopped), files, folder);
+      ++made;
     }
+  };
+  const auto keepsOn = [&](double part) {
+    return !progress || progress((double(tally.done) + part) / double(tally.total));
+  };
+  const auto hear = [&] {
     ++tally.done;
+    tally.made = made;
     tally.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (tell)
     {
       tell(tally);
     }
-    report(progress, double(tally.done) / double(tally.total));
-  }
+  };
+  const int threads = workers > 0 ? workers : imageWorkers(imager);
+  forImages(imager, workUnits(plan, images, threads), threads, work, hear, keepsOn);
   return tally;
 }
 

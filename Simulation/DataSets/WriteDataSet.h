@@ -26,9 +26,11 @@ struct DataSetTally
 /// with CASE.json, dataset.json and splits_final.json. One that MONAI takes: images, labels and info, and the data list
 /// dataset.json with training, validation and test. Beside them dataset_source.json: the file that declared it all.
 ///
-/// `tell` hears after each image, on the calling thread. Throws Error as DataSetImager, where the folder holds another
+/// `workers` threads make images beside each other, 0: as many as suit the device (imageWorkers). `tell` hears after
+/// each image, on the calling thread. Throws Error as DataSetImager, where the folder holds another
 /// data set, and where a file cannot be written; Aborted.
 DataSetTally writeDataSet(DataSetImager& imager, const std::string& folder, const DataSetShare& share = {},
-                          const Progress& progress = {}, const std::function<void(const DataSetTally&)>& tell = {});
+                          const Progress& progress = {}, const std::function<void(const DataSetTally&)>& tell = {},
+                          int workers = 0);
 
 } // namespace sono

@@ -340,6 +340,24 @@ TEST_F(DataSetFile, PatientsStayInOneSplit)
   }
 }
 
+/// Each copy of the bundled thorax is another body then, and a patient that is in one split.
+TEST_F(DataSetFile, DrawnBodiesDiffer)
+{
+  const DataSetPlan plan(readDataSet(dataFile("datasets/apical_views.json"), SONOVDB_DATA_DIR));
+  std::set<double> ventricles;
+  for (const PlannedBody& body : plan.bodies())
+  {
+    ASSERT_TRUE(body.thoraxSeed);
+    ventricles.insert(thoraxOf(body).leftVentricleMl);
+  }
+  EXPECT_EQ(ventricles.size(), plan.bodies().size());
+  const DataSetPlan still(read(apical()));
+  EXPECT_EQ(thoraxOf(still.bodies()[1]).leftVentricleMl, ThoraxParameters{}.leftVentricleMl);
+  Json wrong = apical();
+  wrong["patients"][0]["drawn"] = 1;
+  expectContains(refusal(wrong), "'patients[0].drawn' is no switch");
+}
+
 TEST_F(DataSetFile, ProcessesShareEachImageOnce)
 {
   Json json = apical();

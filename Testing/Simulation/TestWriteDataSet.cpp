@@ -200,6 +200,28 @@ TEST_F(DataSetFolder, GoesOnWhereItWasCutOff)
   EXPECT_EQ(write("cut").made, 0);
 }
 
+/// Threads share the images: the folder is the same, an error is that of its image, and a stop leaves no half image.
+TEST_F(DataSetFolder, IsTheSameByManyWorkers)
+{
+  write("one");
+  const auto byThree = [&](const std::string& folder, const Progress& progress) {
+    DataSetImager imager(plan(), Device::Cpu);
+    std::int64_t heard = 0;
+    const auto tell = [&](const DataSetTally& tally) { heard = tally.done; };
+    const DataSetTally tally = writeDataSet(imager, (root_ / folder).string(), {}, progress, tell, 3);
+    EXPECT_EQ(heard, tally.total);
+    return tally;
+  };
+  EXPECT_EQ(byThree("three", {}).made, 12);
+  EXPECT_EQ(content("three"), content("one"));
+  EXPECT_THROW(byThree("stopped", [](double done) { return done < 0.2; }), Aborted);
+  EXPECT_LT(content("stopped").size(), content("one").size());
+  EXPECT_EQ(byThree("stopped", {}).total, 12);
+  EXPECT_EQ(content("stopped"), content("one"));
+  json_["patients"][1]["views"][0]["pose"]["positionMm"] = { 0, -500, 0 };
+  expectContains(errorOf([&] { byThree("bad", {}); }), "of patient 'other': none of 32 poses");
+}
+
 TEST_F(DataSetFolder, KeepsDataSetsApart)
 {
   write("out");

@@ -1,0 +1,140 @@
+#include "DataSets/ImageWorkers.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace sono {
+
+namespace {
+
+constexpr int mostWorkers = 8;
+
+/// What the workers share.
+struct Shared
+{
+  std::atomic<std::size_t> nextUnit{ 0 };
+  std::atomic<bool> stop{ false };
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::int64_t made = 0; ///< that the calling thread has not heard of
+  int atWork = 0;
+  std::exception_ptr failure;
+};
+
+} // namespace
+
+int imageWorkers(const DataSetImager& imager)
+{
+  const int cores = int(std::thread::hardware_concurrency());
+  return imager.runsOnGpu() ? std::clamp(cores / 2, 1, mostWorkers) : 1;
+}
+
+std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers)
+{
+  const std::int64_t perExam = plan.set().imagesPerExam;
+  const std::int64_t exams = (images.end - images.first) / perExam;
+  const std::int64_t most = workers > 1 ? std::max<std::int64_t>(1, exams / (4 * workers)) * perExam : exams * perExam;
+  std::vector<PlannedRange> units;
+  for (std::int64_t image = images.first; image < images.end; image += perExam)
+  {
+    const bool goesOn = !units.empty() && units.back().end - units.back().first < most &&
+                        (workers == 1 || plan.bodyOf(image / perExam) == plan.bodyOf(image / perExam - 1));
+    if (!goesOn)
+    {
+      units.push_back({ image, image });
+    }
+    units.back().end = image + perExam;
+  }
+  return units;
+}
+
+void forImages(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers,
+               const std::function<void(DataSetImager&, std::int64_t, const Progress&)>& work,
+               const std::function<void()>& hear, const Progress& keepsOn)
+{
+  if (workers == 1)
+  {
+    for (const PlannedRange& unit : units)
+    {
+      for (std::int64_t image = unit.first; image < unit.end; ++image)
+      {
+        work(imager, image, keepsOn);
+        hear();
+        report(keepsOn, 0.0);
+      }
+    }
+    return;
+  }
+  Shared shared;
+  const Progress untilStopped = [&shared](double) { return !shared.stop; };
+  const auto run = [&] {
+    try
+    {
+      DataSetImager own(imager.sharedPlan(), imager.device());
+      for (std::size_t unit = shared.nextUnit++; unit < units.size(); unit = shared.nextUnit++)
+      {
+        for (std::int64_t image = units[unit].first; image < units[unit].end; ++image)
+        {
+          work(own, image, untilStopped);
+          const std::lock_guard<std::mutex> lock(shared.mutex);
+          ++shared.made;
+          shared.changed.notify_one();
+        }
+      }
+    }
+    catch (...)
+    {
+      const std::lock_guard<std::mutex> lock(shared.mutex);
+      shared.failure = shared.failure || shared.stop ? shared.failure : std::current_exception();
+      shared.stop = true;
+    }
+    const std::lock_guard<std::mutex> lock(shared.mutex);
+    --shared.atWork;
+    shared.changed.notify_one();
+  };
+  std::vector<std::thread> threads;
+  shared.atWork = workers;
+  for (int n = 0; n < workers; ++n)
+  {
+    threads.emplace_back(run);
+  }
+  bool aborted = false;
+  std::unique_lock<std::mutex> lock(shared.mutex);
+  while (shared.atWork > 0 || shared.made > 0)
+  {
+    shared.changed.wait_for(lock, std::chrono::milliseconds(50));
+    const std::int64_t made = std::exchange(shared.made, 0);
+    lock.unlock();
+    for (std::int64_t n = 0; n < made; ++n)
+    {
+      hear();
+    }
+    if (!aborted && !keepsOn(0.0))
+    {
+      aborted = true;
+      shared.stop = true;
+    }
+    lock.lock();
+  }
+  lock.unlock();
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  if (aborted)
+  {
+    throw Aborted();
+  }
+  if (shared.failure)
+  {
+    std::rethrow_exception(shared.failure);
+  }
+}
+
+} // namespace sono
