@@ -19,7 +19,7 @@ struct PlannedBody
   int patient = 0; ///< its number in the file
   int copy = 0;
   Split split = Split::Train;
-  Vec3d stretch{ 1.0 }; ///< along the grid's axes
+  Vec3d stretch{ 1.0 };                    ///< along the grid's axes
   std::optional<std::uint64_t> thoraxSeed; ///< of drawThoraxParameters; none: the patient is not drawn
 };
 

@@ -12,14 +12,14 @@ namespace sono {
 /// works on one while cores prepare and write others.
 int imageWorkers(const DataSetImager& imager);
 
-/// Images that are made one after the other by one worker: those of a body, or a part of them, so that each worker finds
-/// work. Of `images`, whole exams.
+/// Images that are made one after the other by one worker: those of a body, or a part of them, so that each worker
+/// finds work. Of `images`, whole exams.
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers);
 
 /// Runs work(imager, image, progress) for the images of all units, in their order on the calling thread by `imager`, or
-/// each unit on one of several threads by an imager of its own. The calling thread hears of each image that is done, and
-/// is asked now and then, with the part of an image that is done where one is made at a time, whether to go on. Throws
-/// what a work throws, the first of several, when all have stopped; Aborted.
+/// each unit on one of several threads by an imager of its own. The calling thread hears of each image that is done,
+/// and is asked now and then, with the part of an image that is done where one is made at a time, whether to go on.
+/// Throws what a work throws, the first of several, when all have stopped; Aborted.
 void forImages(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers,
                const std::function<void(DataSetImager&, std::int64_t, const Progress&)>& work,
                const std::function<void()>& hear, const Progress& keepsOn);
