@@ -4,6 +4,7 @@
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
 #   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
+#   run-gpu.sh dataset FILE FOLDER [PART PARTS]  there: writes a data set (the same pack)
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh sanitize    there: the checks of compute-sanitizer on small scenes
 set -euo pipefail
@@ -47,11 +48,11 @@ pack_libraries()
 pack_filters()
 {
   local build="$root/build"
-  "$root/Testing/build-preset.sh" release FilterBenchmark
+  "$root/Testing/build-preset.sh" release FilterBenchmark DataSetBenchmark
   local work
   work="$(mktemp -d)"
   mkdir -p "$work/lib" "$work/share"
-  cp "$build/bin/FilterBenchmark" "$root"/Data/*.csv "$work"
+  cp "$build/bin/FilterBenchmark" "$build/bin/DataSetBenchmark" "$root"/Data/*.csv "$work"
   cp -rL "$build/share/sonovdb" "$work/share"
   cp "$build"/lib/libvtkSonoFilters.so* "$work/lib"
   libraries_of "$build/bin/FilterBenchmark" "$work/lib"
@@ -97,6 +98,10 @@ case "${1:-}" in
     unpack filters
     SONOVDB_DATA_DIR="$unpacked/filters" LD_LIBRARY_PATH="$unpacked/filters/lib" "$unpacked/filters/FilterBenchmark"
     ;;
+  dataset)
+    unpack filters
+    LD_LIBRARY_PATH="$unpacked/filters/lib" "$unpacked/filters/DataSetBenchmark" "${@:2}"
+    ;;
   study)
     unpack programs libraries
     with_libraries "$unpacked/programs/study_curves" "${2:-$pack/study}" error_gpu report
@@ -109,7 +114,7 @@ case "${1:-}" in
     done
     ;;
   *)
-    sed -n '2,8s/^# *//p' "$0" >&2
+    sed -n '2,9s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac

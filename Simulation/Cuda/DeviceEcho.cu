@@ -126,8 +126,6 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
       throw Error("the sampling is too fine for the GPU (" + std::to_string(1000.0 * sampleMm_) +
                   " um): lower the sampling frequency, or choose the CPU");
     }
-    check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
-          "preparing to sum scatterers");
     kernel<<<dim3(count, chunks(), levels), blockThreads, bytes, stream>>>(launch);
   });
 }
@@ -235,8 +233,6 @@ void DeviceEcho::run(int first, int count, const TracedOnDevice& traced, bool wa
     throw Error("the pulse is too long for the GPU (" + std::to_string(2 * half_ + 1) +
                 " samples): raise the bandwidth, lower the sampling frequency, or choose the CPU");
   }
-  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
-        "preparing to convolve a pulse of that length");
   kernel<<<dim3(count, (sampleCount_ + tileSamples - 1) / tileSamples), finishThreads, bytes, stream>>>(launch);
   nestedSum_.end();
   surfaceSum_.end();

@@ -151,7 +151,7 @@ private:
   float nestedScale_ = 1.0f;
 
   bool surfaces_ = false;
-  std::uint64_t piecesSceneId_ = 0;
+  std::uint64_t piecesId_ = 0;
   std::vector<bool> pieceBlocks_;    ///< which of the scene's the device has
   std::vector<SurfacePiece> pieces_; ///< of those, as they came
   std::vector<SurfaceGroup> pieceGroups_;

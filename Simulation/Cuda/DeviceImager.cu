@@ -2,32 +2,19 @@
 
 #include "Core/Policy.h"
 #include "Cuda/DeviceLabels.cuh"
+#include "Cuda/DevicePieces.cuh"
 #include "Cuda/DeviceResults.cuh"
+#include "Cuda/OwnImager.h"
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <map>
 #include <mutex>
 
 namespace sono {
 
 namespace {
-
-/// Works on the first device, whichever the caller's thread works on.
-class FirstDevice
-{
-public:
-  FirstDevice()
-  {
-    check(cudaGetDevice(&before_), "choosing it");
-    check(cudaSetDevice(0), "choosing it");
-  }
-  ~FirstDevice() { cudaSetDevice(before_); }
-  FirstDevice(const FirstDevice&) = delete;
-  FirstDevice& operator=(const FirstDevice&) = delete;
-
-private:
-  int before_ = 0;
-};
 
 /// The device's time between two moments of a stream.
 class Stopwatch
@@ -108,12 +95,14 @@ public:
 
 struct DeviceImager::Work
 {
+  DeviceLane* lane = nullptr;
   std::mutex mutex;
   Traffic traffic;
   std::unique_ptr<DeviceTracer> tracer = std::make_unique<DeviceTracer>();
   std::unique_ptr<DeviceEcho> echo = std::make_unique<DeviceEcho>();
   std::unique_ptr<DeviceDisplay> display = std::make_unique<DeviceDisplay>();
   std::unique_ptr<DeviceLabels> labels = std::make_unique<DeviceLabels>();
+  std::unique_ptr<DevicePieces> pieces = std::make_unique<DevicePieces>();
   // The jobs whose numbers are on the device.
   std::shared_ptr<const TraceJob> traceJob;
   std::shared_ptr<const EchoJob> echoJob;
@@ -135,6 +124,7 @@ struct DeviceImager::Work
     echo = std::make_unique<DeviceEcho>();
     display = std::make_unique<DeviceDisplay>();
     labels = std::make_unique<DeviceLabels>();
+    pieces = std::make_unique<DevicePieces>();
     cudaStreamSynchronize(deviceStream());
     trimDeviceMemory();
   }
@@ -168,6 +158,8 @@ namespace {
 
 DeviceStatus askForStatus()
 {
+  // Streams of several lanes share fewer ways to the device otherwise, and wait for each other there.
+  setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0)
@@ -177,20 +169,49 @@ DeviceStatus askForStatus()
                       ? "no NVIDIA GPU with a driver for CUDA " + std::to_string(CUDART_VERSION / 1000) + " was found"
                       : std::string("the GPU does not answer (") + cudaGetErrorString(error) + ")" };
   }
-  cudaDeviceProp properties{};
-  if (cudaGetDeviceProperties(&properties, 0) != cudaSuccess)
+  DeviceStatus status;
+  for (int device = 0; device < count; ++device)
   {
-    cudaGetLastError();
-    return { false, "the GPU does not say what it is" };
+    cudaDeviceProp properties{};
+    if (cudaGetDeviceProperties(&properties, device) != cudaSuccess)
+    {
+      cudaGetLastError();
+      status.what = status.what.empty() ? "the GPU does not say what it is" : status.what;
+    }
+    else if (properties.major * 10 + properties.minor < 75)
+    {
+      const std::string old = std::string("the ") + properties.name + " is older than CUDA " +
+                              std::to_string(CUDART_VERSION / 1000) + " serves";
+      status.what = status.what.empty() ? old : status.what;
+    }
+    else
+    {
+      if (!status.usable)
+      {
+        status.usable = true;
+        status.what = std::string(properties.name) + ", " + std::to_string(properties.totalGlobalMem >> 20) + " MiB";
+        status.memoryBytes = properties.totalGlobalMem;
+      }
+      status.devices.push_back(device);
+    }
   }
-  if (properties.major * 10 + properties.minor < 75)
-  {
-    return { false, std::string("the ") + properties.name + " is older than CUDA " +
-                      std::to_string(CUDART_VERSION / 1000) + " serves" };
-  }
-  return { true, std::string(properties.name) + ", " + std::to_string(properties.totalGlobalMem >> 20) + " MiB",
-           properties.totalGlobalMem };
+  return status;
 }
+
+/// Imagers of threads that have ended, by device.
+struct Idle
+{
+  std::mutex mutex;
+  std::multimap<int, DeviceImager*> imagers;
+};
+
+Idle& idle()
+{
+  static auto* const made = new Idle;
+  return *made;
+}
+
+thread_local DeviceImager* own = nullptr;
 
 } // namespace
 
@@ -200,32 +221,71 @@ const DeviceStatus& cudaStatus()
   return status;
 }
 
-DeviceImager::DeviceImager()
+DeviceImager::DeviceImager(int device)
+{
+  DeviceLane* lane = openLane(device);
+  const OnLane onLane(lane);
+  work_ = std::make_unique<Work>();
+  work_->lane = lane;
+  check(cudaEventCreateWithFlags(&work_->converted, cudaEventDisableTiming), "creating an event");
+}
+
+DeviceImager& DeviceImager::instance()
 {
   const DeviceStatus& status = cudaStatus();
   if (!status.usable)
   {
     throw Error("the GPU cannot be used: " + status.what + "; choose the CPU");
   }
-  const FirstDevice device;
-  work_ = std::make_unique<Work>();
-  check(cudaEventCreateWithFlags(&work_->converted, cudaEventDisableTiming), "creating an event");
+  // Never destroyed: at the end of a process the driver may go first.
+  static auto* const first = new DeviceImager(status.devices.front());
+  return own ? *own : *first;
 }
 
-DeviceImager::~DeviceImager() = default;
-
-DeviceImager& DeviceImager::instance()
+OwnImager::OwnImager(int number)
 {
-  // Never destroyed: at the end of a process the driver may go first.
-  static auto* imager = new DeviceImager;
-  return *imager;
+  const DeviceStatus& status = cudaStatus();
+  if (!status.usable)
+  {
+    return;
+  }
+  device_ = status.devices[std::size_t(number) % status.devices.size()];
+  {
+    const std::lock_guard<std::mutex> lock(idle().mutex);
+    const auto found = idle().imagers.find(device_);
+    if (found != idle().imagers.end())
+    {
+      imager_ = found->second;
+      idle().imagers.erase(found);
+    }
+  }
+  imager_ = imager_ ? imager_ : new DeviceImager(device_);
+  own = imager_;
+}
+
+OwnImager::~OwnImager()
+{
+  if (imager_)
+  {
+    own = nullptr;
+    imager_->forget();
+    const std::lock_guard<std::mutex> lock(idle().mutex);
+    idle().imagers.emplace(device_, imager_);
+  }
+}
+
+void DeviceImager::forget()
+{
+  const std::lock_guard<std::mutex> lock(work_->mutex);
+  const OnLane lane(work_->lane);
+  work_->forget();
 }
 
 template<class Do>
 auto DeviceImager::guarded(const Do& work)
 {
   const std::lock_guard<std::mutex> lock(work_->mutex);
-  const FirstDevice device;
+  const OnLane lane(work_->lane);
   try
   {
     return work(*work_, deviceStream());
@@ -345,6 +405,11 @@ std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob& job,
   });
 }
 
+std::vector<SurfacePiece> DeviceImager::fitPieces(const VoxelJob& voxels, const std::vector<SurfaceFace>& faces)
+{
+  return guarded([&](Work& w, cudaStream_t stream) { return w.pieces->fit(voxels, faces, stream, w.traffic); });
+}
+
 FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
@@ -367,6 +432,17 @@ FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
     download(arrays.segments.data(), 1, &out.segments, stream, w.traffic);
     check(cudaStreamSynchronize(stream), "computing");
     return out;
+  });
+}
+
+SharedSpan<float> DeviceImager::fetchIntensity(const DeviceTraced& traced)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const DeviceArray<float>& intensity = traced.arrays.bins[intensityArray];
+    const std::shared_ptr<void> memory = pinnedMemory(intensity.size() * sizeof(float));
+    download(intensity.data(), intensity.size(), static_cast<float*>(memory.get()), stream, w.traffic);
+    check(cudaStreamSynchronize(stream), "computing");
+    return pinnedSpan<float>(memory, intensity.size());
   });
 }
 

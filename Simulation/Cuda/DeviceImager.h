@@ -59,12 +59,13 @@ struct DeviceTimes
 struct DeviceStatus
 {
   bool usable = false;
-  std::string what; ///< the GPU's name and memory, or one clause that says why there is none
+  std::string what; ///< the first GPU's name and memory, or one clause that says why there is none
   std::uint64_t memoryBytes = 0;
+  std::vector<int> devices; ///< those that can be used, by CUDA's numbers
 };
 const DeviceStatus& cudaStatus();
 
-/// Runs the stages on the first CUDA device. A stage returns when its work is asked for; whoever fetches waits for it.
+/// Runs the stages on a CUDA device. A stage returns when its work is asked for; whoever fetches waits for it.
 /// What a scene does not change (voxels, boundary records, fields), and the tables of a job that was given before, are
 /// on the device already. One caller at a time; others wait. The result does not depend on the order in which threads
 /// run, to the bit. All throw Error naming the bytes when the device has no room, and the failure when it was lost; the
@@ -72,9 +73,9 @@ const DeviceStatus& cudaStatus();
 class DeviceImager
 {
 public:
-  /// The process's imager. Throws Error when there is no usable device.
+  /// The thread's imager: its own while an OwnImager lives, else the process's, on the first device. Throws Error when
+  /// there is no usable device.
   static DeviceImager& instance();
-  ~DeviceImager();
 
   /// Throws Aborted when asked to stop.
   std::shared_ptr<const DeviceTraced> trace(const std::shared_ptr<const TraceJob>& job, LineRange lines,
@@ -89,7 +90,12 @@ public:
   std::shared_ptr<const DeviceLabelSlice> slice(const LabelJob& job, const DevicePicture& picture,
                                                 const DeviceTraced* traced);
 
+  /// The smooth pieces of faces between these voxels, see SurfacePieces::Fit.
+  std::vector<SurfacePiece> fitPieces(const VoxelJob& voxels, const std::vector<SurfaceFace>& faces);
+
   FetchedTrace fetch(const DeviceTraced& traced);
+  /// Of that the intensity alone, in pinned memory.
+  SharedSpan<float> fetchIntensity(const DeviceTraced& traced);
   std::vector<std::complex<float>> fetchIq(const DeviceRf& rf);
   /// Grey levels in beam space, and the reference amplitude of each image.
   std::vector<float> fetch(const DeviceGrey& grey, std::vector<double>& reference);
@@ -111,7 +117,10 @@ public:
   DeviceTimes lastTimes();
 
 private:
-  DeviceImager();
+  friend class OwnImager;
+  explicit DeviceImager(int device);
+  /// Gives back what is kept on the device.
+  void forget();
   struct Work;
   template<class Do>
   auto guarded(const Do& work);

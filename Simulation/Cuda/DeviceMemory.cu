@@ -19,10 +19,16 @@ cudaStream_t openStream()
   return stream;
 }
 
-cudaMemPool_t memoryPool()
+/// Of a lane alone: one that takes over what another has freed would wait for it.
+cudaMemPool_t openPool(int device)
 {
+  cudaMemPoolProps properties{};
+  properties.allocType = cudaMemAllocationTypePinned;
+  properties.location = { cudaMemLocationTypeDevice, device };
   cudaMemPool_t pool = nullptr;
-  check(cudaDeviceGetDefaultMemPool(&pool, 0), "asking for its memory");
+  check(cudaMemPoolCreate(&pool, &properties), "setting up its memory");
+  std::uint64_t kept = keptDeviceBytes;
+  check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept), "setting up its memory");
   return pool;
 }
 
@@ -114,12 +120,6 @@ private:
 };
 
 // Never destroyed: at the end of a process the driver may go first.
-UploadRing& uploadRing()
-{
-  static auto* const ring = new UploadRing;
-  return *ring;
-}
-
 PinnedPool& pinnedPool()
 {
   static auto* const pool = new PinnedPool;
@@ -128,30 +128,71 @@ PinnedPool& pinnedPool()
 
 } // namespace
 
+struct DeviceLane
+{
+  explicit DeviceLane(int number)
+    : device(number)
+  {
+    int before = 0;
+    check(cudaGetDevice(&before), "choosing it");
+    check(cudaSetDevice(device), "choosing it");
+    pool = openPool(device);
+    compute = openStream();
+    beside = openStream();
+    copy = openStream();
+    check(cudaEventCreateWithFlags(&earlier, cudaEventDisableTiming), "creating an event");
+    check(cudaSetDevice(before), "choosing it");
+  }
+
+  int device;
+  cudaMemPool_t pool = nullptr;
+  cudaStream_t compute = nullptr;
+  cudaStream_t beside = nullptr;
+  cudaStream_t copy = nullptr;
+  cudaEvent_t earlier = nullptr;
+  UploadRing ring;
+};
+
+namespace {
+
+thread_local DeviceLane* currentLane = nullptr;
+
+} // namespace
+
+DeviceLane* openLane(int device)
+{
+  return new DeviceLane(device);
+}
+
+OnLane::OnLane(DeviceLane* lane)
+  : laneBefore_(currentLane)
+{
+  check(cudaGetDevice(&deviceBefore_), "choosing it");
+  check(cudaSetDevice(lane->device), "choosing it");
+  currentLane = lane;
+}
+
+OnLane::~OnLane()
+{
+  currentLane = laneBefore_;
+  cudaSetDevice(deviceBefore_);
+}
+
 cudaStream_t deviceStream()
 {
-  static const cudaStream_t stream = [] {
-    std::uint64_t kept = keptDeviceBytes;
-    check(cudaMemPoolSetAttribute(memoryPool(), cudaMemPoolAttrReleaseThreshold, &kept), "setting up its memory");
-    return openStream();
-  }();
-  return stream;
+  return currentLane->compute;
 }
 
 cudaStream_t besideStream()
 {
-  static const cudaStream_t stream = openStream();
-  return stream;
+  return currentLane->beside;
 }
 
 void follow(cudaStream_t later, cudaStream_t earlier)
 {
-  static cudaEvent_t event = nullptr; // one caller at a time, as all of the imager
-  if (event || cudaEventCreateWithFlags(&event, cudaEventDisableTiming) == cudaSuccess)
-  {
-    cudaEventRecord(event, earlier);
-    cudaStreamWaitEvent(later, event);
-  }
+  // One caller at a time, as all of an imager.
+  cudaEventRecord(currentLane->earlier, earlier);
+  cudaStreamWaitEvent(later, currentLane->earlier);
 }
 
 Beside::Beside(cudaStream_t stream)
@@ -167,20 +208,20 @@ Beside::~Beside()
 
 cudaStream_t copyStream()
 {
-  static const cudaStream_t stream = openStream();
-  return stream;
+  return currentLane->copy;
 }
 
-void* allocateOnDevice(std::size_t bytes)
+DeviceBlock allocateOnDevice(std::size_t bytes)
 {
+  DeviceLane& lane = *currentLane;
   void* memory = nullptr;
-  cudaError_t error = cudaMallocAsync(&memory, bytes, deviceStream());
+  cudaError_t error = cudaMallocFromPoolAsync(&memory, bytes, lane.pool, lane.compute);
   if (error == cudaErrorMemoryAllocation)
   {
     cudaGetLastError();
     cudaStreamSynchronize(deviceStream());
     trimDeviceMemory();
-    error = cudaMallocAsync(&memory, bytes, deviceStream());
+    error = cudaMallocFromPoolAsync(&memory, bytes, lane.pool, lane.compute);
   }
   if (error == cudaErrorMemoryAllocation)
   {
@@ -193,27 +234,28 @@ void* allocateOnDevice(std::size_t bytes)
                 " are free): close what else uses it, take fewer lines or poses, or choose the CPU");
   }
   check(error, "allocating memory");
-  return memory;
+  return { memory, &lane };
 }
 
-void freeOnDevice(void* memory)
+void freeOnDevice(const DeviceBlock& block)
 {
-  if (memory)
+  if (block.memory)
   {
-    cudaFreeAsync(memory, deviceStream());
+    const OnLane lane(block.lane);
+    cudaFreeAsync(block.memory, deviceStream());
   }
 }
 
 void trimDeviceMemory()
 {
-  cudaMemPoolTrimTo(memoryPool(), 0);
+  cudaMemPoolTrimTo(currentLane->pool, 0);
 }
 
 void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t stream)
 {
   if (bytes <= UploadRing::partBytes)
   {
-    const void* staged = uploadRing().stage(from, bytes, stream);
+    const void* staged = currentLane->ring.stage(from, bytes, stream);
     check(cudaMemcpyAsync(to, staged, bytes, cudaMemcpyHostToDevice, stream), "uploading");
     return;
   }

@@ -32,29 +32,52 @@ struct Traffic
   std::uint64_t down = 0;
 };
 
-/// Of a block of this kernel, bytes of dynamic shared memory. Asked once a kernel.
+/// Of a block of this kernel, the most bytes of dynamic shared memory, which it may then take. Asked once a kernel and
+/// device.
 template<class Kernel>
 std::size_t sharedMemoryFor(Kernel kernel)
 {
   static std::mutex mutex;
-  static std::map<Kernel, std::size_t> known;
+  static std::map<std::pair<Kernel, int>, std::size_t> known;
+  int device = 0;
+  check(cudaGetDevice(&device), "asking for its limits");
   const std::lock_guard<std::mutex> lock(mutex);
-  const auto found = known.find(kernel);
+  const auto found = known.find({ kernel, device });
   if (found != known.end())
   {
     return found->second;
   }
-  int device = 0;
   int most = 0;
   cudaFuncAttributes attributes{};
-  check(cudaGetDevice(&device), "asking for its limits");
   check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "asking for its limits");
   check(cudaFuncGetAttributes(&attributes, kernel), "asking for its limits");
-  return known[kernel] = std::size_t(most) - attributes.sharedSizeBytes;
+  const std::size_t bytes = std::size_t(most) - attributes.sharedSizeBytes;
+  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
+        "asking for shared memory");
+  return known[{ kernel, device }] = bytes;
 }
 
-/// The stream on which everything is computed, allocated and freed, in the order of the calls; one for what may be
-/// computed beside it (see Beside); and one for copies to the host.
+/// Streams, memory and uploads of a device, for one caller at a time. What is asked for in one lane waits for nothing
+/// in another. A lane lives as long as the process.
+struct DeviceLane;
+DeviceLane* openLane(int device);
+
+/// While it lives, the thread works in a lane, and with its device.
+class OnLane
+{
+public:
+  explicit OnLane(DeviceLane* lane);
+  ~OnLane();
+  OnLane(const OnLane&) = delete;
+  OnLane& operator=(const OnLane&) = delete;
+
+private:
+  DeviceLane* laneBefore_;
+  int deviceBefore_ = 0;
+};
+
+/// Of the thread's lane: the stream on which everything is computed, allocated and freed, in the order of the calls;
+/// one for what may be computed beside it (see Beside); and one for copies to the host.
 cudaStream_t deviceStream();
 cudaStream_t besideStream();
 cudaStream_t copyStream();
@@ -77,11 +100,18 @@ private:
   cudaStream_t stream_;
 };
 
-/// Memory for what the device does from now on; free means when all that was asked for before is done. From a pool, so
-/// that both cost little. Throws Error naming the bytes when there is no room.
-void* allocateOnDevice(std::size_t bytes);
-void freeOnDevice(void* memory);
-/// Gives back what the pool keeps.
+/// Memory of a lane.
+struct DeviceBlock
+{
+  void* memory = nullptr;
+  DeviceLane* lane = nullptr;
+};
+
+/// Memory for what the thread's lane does from now on; free means when all that was asked for before is done in its
+/// own. From a pool, so that both cost little. Throws Error naming the bytes when there is no room.
+DeviceBlock allocateOnDevice(std::size_t bytes);
+void freeOnDevice(const DeviceBlock& block);
+/// Gives back what the lane's pool keeps.
 void trimDeviceMemory();
 
 /// Uploads without waiting, unless it is much; `from` may go afterwards.
@@ -97,27 +127,27 @@ class DeviceArray
 public:
   DeviceArray() = default;
   DeviceArray(DeviceArray&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr))
+    : block_(std::exchange(other.block_, {}))
     , size_(std::exchange(other.size_, 0))
     , capacity_(std::exchange(other.capacity_, 0))
   {
   }
   DeviceArray& operator=(DeviceArray&& other) noexcept
   {
-    std::swap(data_, other.data_);
+    std::swap(block_, other.block_);
     std::swap(size_, other.size_);
     std::swap(capacity_, other.capacity_);
     return *this;
   }
   ~DeviceArray() { release(); }
 
-  T* data() const { return data_; }
+  T* data() const { return static_cast<T*>(block_.memory); }
   std::size_t size() const { return size_; }
 
   void release()
   {
-    freeOnDevice(data_);
-    data_ = nullptr;
+    freeOnDevice(block_);
+    block_ = {};
     capacity_ = size_ = 0;
   }
 
@@ -127,7 +157,7 @@ public:
     if (count > capacity_)
     {
       release();
-      data_ = static_cast<T*>(allocateOnDevice(count * sizeof(T)));
+      block_ = allocateOnDevice(count * sizeof(T));
       capacity_ = count;
     }
     size_ = count;
@@ -138,7 +168,7 @@ public:
     resize(count);
     if (count > 0)
     {
-      uploadBytes(data_, from, count * sizeof(T), stream);
+      uploadBytes(data(), from, count * sizeof(T), stream);
       traffic.up += count * sizeof(T);
     }
   }
@@ -158,7 +188,7 @@ public:
     size_ = from.size();
     if (from.size() > kept)
     {
-      uploadBytes(data_ + kept, from.data() + kept, (from.size() - kept) * sizeof(T), stream);
+      uploadBytes(data() + kept, from.data() + kept, (from.size() - kept) * sizeof(T), stream);
       traffic.up += (from.size() - kept) * sizeof(T);
     }
   }
@@ -167,12 +197,12 @@ public:
   {
     if (size_ > 0)
     {
-      check(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "clearing memory");
+      check(cudaMemsetAsync(data(), 0, size_ * sizeof(T), stream), "clearing memory");
     }
   }
 
 private:
-  T* data_ = nullptr;
+  DeviceBlock block_;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };

@@ -61,7 +61,7 @@ void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared,
                       : manyPaths ? tracePaths<true, true, blocksOfMany, Targets>
                       : few       ? tracePaths<true, false, blocksOfFew, Targets>
                                   : tracePaths<true, false, blocksOfMany, Targets>;
-  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)), "preparing to trace");
+  sharedMemoryFor(kernel);
   if (!launch.view.startsApart)
   {
     startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);

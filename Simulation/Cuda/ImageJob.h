@@ -141,9 +141,8 @@ struct TargetPointJob
 /// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
 struct SurfaceJob
 {
-  const SurfacePieces* pieces = nullptr; ///< belong to the scene, which the job must not outlive
-  std::vector<int> blocks;               ///< of theirs, that a beam may see
-  std::uint64_t sceneId = 0;             ///< the pieces are kept on the device while it is the same
+  const SurfacePieces* pieces = nullptr; ///< belong to the scene, which the job must not outlive; kept on the device
+  std::vector<int> blocks;               ///< of theirs, that a beam may see; made
   float longestStepMm = 0.0f;            ///< between voxels
   PieceNets nets{};
   std::uint64_t seed = 1;

@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/SoundSpeed.h"
+#include "Cuda/DeviceImager.h"
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
 #include "Image/LabelSlice.h"
@@ -93,7 +94,7 @@ SightJob makeSight(const FieldSight& sight)
 
 VoxelJob makeVoxels(const Scene& scene)
 {
-  return { &scene.tissueVoxels(), &scene.stillDetail(), scene.id(), scene.placement().size,
+  return { &scene.tissueVoxels(), &scene.stillDetail(), scene.anatomyId(), scene.placement().size,
            Vec3f(scene.placement().spacingMm) };
 }
 
@@ -150,15 +151,14 @@ float widestGapMm(const std::vector<BeamReach>& beams)
   return widest;
 }
 
-/// The blocks of pieces that some beam may see; their pieces are made where they are not there yet. Blocks are much
-/// larger than what lies between neighbouring lines: some of the lines tell.
-std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sceneBeams)
+/// The blocks of pieces that some beam may see. Blocks are much larger than what lies between neighbouring lines: some
+/// of the lines tell.
+std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sceneBeams, const SurfacePieces& pieces)
 {
   constexpr int groupLines = 8;
   constexpr int every = 4;
   constexpr float largestGapMm = 10.0f;
   const SurfaceEchoes& surfaces = *setup.surfaces;
-  const SurfacePieces& pieces = surfaces.pieces();
   const int lineCount = int(setup.lines.size());
   const auto beamsOf = [&](int step) {
     std::vector<BeamReach> beams;
@@ -210,7 +210,6 @@ std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sce
       blocks.push_back(int(b));
     }
   }
-  parallelFor(int(blocks.size()), {}, [&](int b) { pieces.makeBlock(blocks[std::size_t(b)]); });
   return blocks;
 }
 
@@ -243,10 +242,13 @@ TargetPointJob makeTargetPoints(const TargetPieces& targets)
 SurfaceJob makeSurfaces(const EchoSetup& setup, const std::vector<Beam>& sceneBeams)
 {
   const SurfaceEchoes& surfaces = *setup.surfaces;
+  const Scene& scene = *setup.sources.scene;
   SurfaceJob job;
-  job.pieces = &surfaces.pieces();
-  job.blocks = seenBlocks(setup, sceneBeams);
-  job.sceneId = setup.sources.scene->id();
+  job.pieces = &scene.surfacePieces(true);
+  job.blocks = seenBlocks(setup, sceneBeams, *job.pieces);
+  job.pieces->makeBlocks(job.blocks, [&](const std::vector<SurfaceFace>& faces) {
+    return DeviceImager::instance().fitPieces(makeVoxels(scene), faces);
+  });
   job.longestStepMm = surfaces.longestStepMm();
   job.nets = surfaces.nets();
   job.seed = setup.settings.seed;
@@ -395,7 +397,7 @@ LabelJob makeLabelJob(const Scene& scene, const ProbePose* poses, int poseCount,
 {
   LabelJob job;
   job.voxels = SharedVector<std::uint16_t>(std::shared_ptr<void>(), &scene.volume().voxels);
-  job.sceneId = scene.id();
+  job.sceneId = scene.anatomyId();
   job.size = scene.placement().size;
   for (int i = 0; i < poseCount; ++i)
   {

@@ -244,7 +244,7 @@ void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t en
 void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic)
 {
   const SurfacePieces& scene = *job.pieces;
-  if (piecesSceneId_ != job.sceneId)
+  if (piecesId_ != scene.id())
   {
     pieces_.clear();
     pieceGroups_.clear();
@@ -252,8 +252,8 @@ void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffi
   }
   const std::size_t kept = pieces_.size();
   const std::size_t keptGroups = pieceGroups_.size();
-  const bool isFirst = piecesSceneId_ != job.sceneId;
-  piecesSceneId_ = 0; // stays so when the upload fails
+  const bool isFirst = piecesId_ != scene.id();
+  piecesId_ = 0; // stays so when the upload fails
   const auto ballOf = [&](const SurfacePiece& piece) {
     return std::pair<Vec3f, float>(piece.positionMm, pieceBounds(piece, job.longestStepMm).radiusMm);
   };
@@ -274,7 +274,7 @@ void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffi
     devicePieces_.extend(pieces_, kept, stream, traffic);
     devicePieceGroups_.extend(pieceGroups_, keptGroups, stream, traffic);
   }
-  piecesSceneId_ = job.sceneId;
+  piecesId_ = scene.id();
 }
 
 void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffic& traffic)

@@ -1,5 +1,7 @@
 #include "Cuda/DeviceImager.h"
 
+#include "Cuda/OwnImager.h"
+
 // Stands in for the GPU where SonoVDB was built without nvcc: there is no imager, so nobody can ask it for anything.
 
 namespace sono {
@@ -18,13 +20,13 @@ const DeviceStatus& cudaStatus()
   return status;
 }
 
-DeviceImager::DeviceImager() = default;
-DeviceImager::~DeviceImager() = default;
-
 DeviceImager& DeviceImager::instance()
 {
   throw Error("the GPU cannot be used: " + cudaStatus().what + "; choose the CPU");
 }
+
+OwnImager::OwnImager(int) {}
+OwnImager::~OwnImager() = default;
 
 std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<const TraceJob>&, LineRange,
                                                         const Progress&)
@@ -51,6 +53,16 @@ std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan&, std
 std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob&, const DevicePicture&, const DeviceTraced*)
 {
   return nullptr;
+}
+
+std::vector<SurfacePiece> DeviceImager::fitPieces(const VoxelJob&, const std::vector<SurfaceFace>&)
+{
+  return {};
+}
+
+SharedSpan<float> DeviceImager::fetchIntensity(const DeviceTraced&)
+{
+  return {};
 }
 
 FetchedTrace DeviceImager::fetch(const DeviceTraced&)

@@ -10,6 +10,7 @@
 #include "Probe/StandardViews.h"
 #include "Simulator.h"
 #include "Trace/ProbeContact.h"
+#include "Trace/TraceSetup.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,6 +141,28 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
   return poses;
 }
 
+/// Images of a body share what is prepared of what its views, held and set otherwise, may reach. Whoever reaches
+/// further prepares it anew, so that no image depends on others.
+void shareRegion(Scene& scene, const DataSetPlan& plan, const std::vector<std::optional<ProbePose>>& views)
+{
+  constexpr double marginMm = 15.0; // for a probe that is held elsewhere on the skin
+  const ImageSettings deepest = plan.deepest().image(plan.set().pixelMm, Device::Cpu);
+  const Vec3i margin(glm::ceil(marginMm / scene.placement().spacingMm));
+  std::optional<VoxelBox> all;
+  for (const std::optional<ProbePose>& view : views)
+  {
+    if (view)
+    {
+      const VoxelBox box = fanBox(scene, makeScanLines(deepest.geometry, *view), deepest.tracing);
+      all = all ? VoxelBox{ glm::min(all->first, box.first), glm::max(all->last, box.last) } : box;
+    }
+  }
+  if (all)
+  {
+    scene.shareRegion({ all->first - margin, all->last + margin });
+  }
+}
+
 } // namespace
 
 /// A patient's labels with tissues, and skin around them; not stretched.
@@ -236,6 +259,7 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
   body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
                           stretchMap(patient_->volume.placement, stretch), progress);
+  shareRegion(*body->scene, *plan_, body->views);
   body_ = std::move(body);
 }
 
@@ -310,7 +334,6 @@ DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progres
   facts.settings = plan_->settings(image);
   ImageInput input;
   input.settings = facts.settings.image(plan_->set().pixelMm, device_);
-  input.settings.tracing.interactive = true; // images of a body share what is prepared of its scene
   const Placed placed = place(image, input.settings);
   input.pose = facts.pose = placed.pose;
   facts.image.view = placed.view;

@@ -186,6 +186,16 @@ DataSetSettings DataSetPlan::settings(const PlannedImage& image) const
   return settings;
 }
 
+DataSetSettings DataSetPlan::deepest() const
+{
+  DataSetSettings settings = base_;
+  for (const DrawnParameter& parameter : set_.parameters)
+  {
+    settings.set(parameter.group, parameter.name, parameter.draw.most());
+  }
+  return settings;
+}
+
 PlaneImage DataSetPlan::layout(const PlannedImage& image) const
 {
   return planeImageLayout(settings(image).probe.geometry, set_.pixelMm);

@@ -77,6 +77,8 @@ public:
   PoseJitter jitter(std::int64_t index, int attempt) const;
   /// The settings of an image.
   DataSetSettings settings(const PlannedImage& image) const;
+  /// Each parameter as large as it may be drawn.
+  DataSetSettings deepest() const;
   /// Size and place of the picture.
   PlaneImage layout(const PlannedImage& image) const;
   /// The data set's tissues as an exam has them.

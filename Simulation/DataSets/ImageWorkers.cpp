@@ -1,5 +1,8 @@
 #include "DataSets/ImageWorkers.h"
 
+#include "Cuda/DeviceImager.h"
+#include "Cuda/OwnImager.h"
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,7 +16,7 @@ namespace sono {
 
 namespace {
 
-constexpr int mostWorkers = 8;
+constexpr int mostWorkersOfDevice = 8;
 
 /// What the workers share.
 struct Shared
@@ -31,8 +34,12 @@ struct Shared
 
 int imageWorkers(const DataSetImager& imager)
 {
+  if (!imager.runsOnGpu())
+  {
+    return 1;
+  }
   const int cores = int(std::thread::hardware_concurrency());
-  return imager.runsOnGpu() ? std::clamp(cores / 2, 1, mostWorkers) : 1;
+  return std::clamp(cores / 2, 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
 }
 
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers)
@@ -73,9 +80,10 @@ void forImages(DataSetImager& imager, const std::vector<PlannedRange>& units, in
   }
   Shared shared;
   const Progress untilStopped = [&shared](double) { return !shared.stop; };
-  const auto run = [&] {
+  const auto run = [&](int number) {
     try
     {
+      const OwnImager onDevice(number);
       DataSetImager own(imager.sharedPlan(), imager.device());
       for (std::size_t unit = shared.nextUnit++; unit < units.size(); unit = shared.nextUnit++)
       {
@@ -102,7 +110,7 @@ void forImages(DataSetImager& imager, const std::vector<PlannedRange>& units, in
   shared.atWork = workers;
   for (int n = 0; n < workers; ++n)
   {
-    threads.emplace_back(run);
+    threads.emplace_back(run, n);
   }
   bool aborted = false;
   std::unique_lock<std::mutex> lock(shared.mutex);

@@ -224,7 +224,7 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
       }
       out.finestReach = std::max(out.finestReach, out.coherentReach);
       const double steepest = std::max(out.reach, out.finestReach) + surfaceTangentSlack;
-      out.roughCosine = float(std::cos(std::min(0.5 * pi, std::atan(steepest) + SurfacePieces::roughNormalRad)));
+      out.roughCosine = float(std::cos(std::min(0.5 * pi, std::atan(steepest) + roughNormalRad)));
     }
   }
 }

@@ -98,6 +98,7 @@ struct Scene::Making
 Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail,
              std::shared_ptr<const TissueMotion> motion)
   : id_(nextId())
+  , anatomyId_(id_)
   , volume_(std::move(volume))
   , detail_(std::move(detail))
   , motion_(std::move(motion))
@@ -265,12 +266,13 @@ const SurfaceField& Scene::surfaceAt(std::size_t label, const Progress& progress
     [&](std::unique_ptr<SurfaceField> made) { surface = std::move(made); });
 }
 
-const SurfacePieces& Scene::surfacePieces() const
+const SurfacePieces& Scene::surfacePieces(bool ofDevice) const
 {
+  std::unique_ptr<SurfacePieces>& pieces = ofDevice ? devicePieces_ : pieces_;
   return *findOrMake(
-    &pieces_, [&] { return pieces_.get(); },
+    &pieces, [&] { return pieces.get(); },
     [&] { return std::make_unique<SurfacePieces>(tissueVoxels_.data(), placement().size, placement().spacingMm); },
-    [&](std::unique_ptr<SurfacePieces> made) { pieces_ = std::move(made); });
+    [&](std::unique_ptr<SurfacePieces> made) { pieces = std::move(made); });
 }
 
 void Scene::buildAll(const Progress& progress) const
@@ -322,6 +324,7 @@ void Scene::setTissues(const TissueTable& table)
   if (!sameFibres)
   {
     fibres_ = nullptr;
+    anatomyId_ = id_;
   }
 }
 
@@ -354,9 +357,17 @@ VoxelBox Scene::clipped(const VoxelBox& box) const
   return inside;
 }
 
+void Scene::shareRegion(const VoxelBox& box)
+{
+  sharedBox_ = clipped(box);
+}
+
 std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box, const Progress& progress) const
 {
-  const VoxelBox wanted = clipped(box);
+  const VoxelBox inside = clipped(box);
+  const bool isShared = glm::all(glm::lessThanEqual(sharedBox_.first, inside.first)) &&
+                        glm::all(glm::lessThanEqual(inside.last, sharedBox_.last));
+  const VoxelBox wanted = isShared ? sharedBox_ : inside;
   return findOrMake(
     &region_, [&] { return region_ && region_->region().box == wanted ? region_ : nullptr; },
     [&]() -> SharedRegion {

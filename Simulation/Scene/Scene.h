@@ -45,6 +45,8 @@ public:
 
   /// Of this scene alone, in this process.
   std::uint64_t id() const { return id_; }
+  /// The same of its voxels and fibres, whatever the numbers of its tissues.
+  std::uint64_t anatomyId() const { return anatomyId_; }
   const LabelVolume& volume() const { return volume_; }
   const GridPlacement& placement() const { return volume_.placement; }
   /// The tissues in use, in the order of the 8-bit tissue indices.
@@ -83,8 +85,13 @@ public:
   /// The fibres of the tissues that have a fibreAnisotropyDb, built on first need; null where none has. Blood is the
   /// tissue of that name.
   const FibreField* fibres() const;
-  /// The boundaries as smooth pieces, made where they are asked for and kept.
-  const SurfacePieces& surfacePieces() const;
+  /// The boundaries as smooth pieces, made where they are asked for and kept; those of a device apart, since it may
+  /// have rounded them otherwise.
+  const SurfacePieces& surfacePieces(bool ofDevice = false) const;
+
+  /// From now on whoever wants a box within this one gets the tracer's cache of this one, so that poses share it. Nobody
+  /// else may use the scene meanwhile. Throws Error where the box is beside the volume.
+  void shareRegion(const VoxelBox& box);
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
@@ -112,6 +119,7 @@ private:
   const SurfaceField& surfaceAt(std::size_t label, const Progress& progress) const;
 
   std::uint64_t id_;
+  std::uint64_t anatomyId_;
   LabelVolume volume_;
   std::vector<Tissue> tissues_;
   std::vector<std::uint8_t> tissueOfLabel_;
@@ -122,6 +130,7 @@ private:
   std::vector<std::uint8_t> stillDetail_; // only of a scene with motion
   const std::uint8_t* stillCodes_ = nullptr;
   int outsideIndex_ = -1;
+  VoxelBox sharedBox_{}; // empty: none
 
   mutable std::mutex mutex_; // for what follows; not held while any of it is made
   mutable std::condition_variable made_;
@@ -131,6 +140,7 @@ private:
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable std::unique_ptr<FibreField> fibres_;
   mutable std::unique_ptr<SurfacePieces> pieces_;
+  mutable std::unique_ptr<SurfacePieces> devicePieces_;
   mutable SharedRegion region_;
   mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest
 };

@@ -1,35 +1,15 @@
 #pragma once
 
+#include "Scene/Lanes.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
-#include <vector>
 
 // Fits of planes, balls and quadratics to a staircase's heights, voxels (StepMap): by least squares, and then
 // into the middle of what the rounding of the steps allows.
 
 namespace sono::stepfit {
-
-using Floats = float __attribute__((vector_size(32)));
-constexpr int lanes = 8;
-constexpr Floats ramp = { 0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f };
-
-inline void load(const float* from, Floats& to)
-{
-  std::memcpy(&to, from, sizeof to);
-}
-
-inline double sumOf(const Floats& v)
-{
-  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
-}
-
-inline float largestOf(const Floats& v)
-{
-  return std::max(std::max(std::max(v[0], v[1]), std::max(v[2], v[3])),
-                  std::max(std::max(v[4], v[5]), std::max(v[6], v[7])));
-}
+inline namespace SONO_LANES_NAMESPACE {
 
 /// Sums of weight x^n, and of weight height x^n.
 struct RowSums
@@ -39,10 +19,11 @@ struct RowSums
 
   /// Of `count` places from `first` on, a step of 1 apart: weights, and products of weight and height. The arrays go on
   /// to a multiple of `lanes` with weights of 0.
-  RowSums(float first, int count, const float* weight, const float* weighted)
+  SONO_LANES RowSums(float first, int count, const float* weight, const float* weighted)
   {
     Floats s[8] = {};
-    Floats at = ramp + first;
+    Floats at;
+    countFrom(first, at);
     for (int n = 0; n < count; n += lanes, at += float(lanes))
     {
       Floats w;
@@ -67,34 +48,11 @@ struct RowSums
   }
 };
 
-/// Weights of a window's columns, (2 R + 1)^2: round, and falling to the rim, so that what enters a window comes
-/// gently. Not faster: the steps that tell a slope best are the outer ones.
-struct Window
-{
-  std::vector<float> weight;
-  std::vector<float> strictness; ///< what of a column's excess counts
-  float total = 0.0f;            ///< of the weights
-
-  explicit Window(int radius)
-  {
-    for (int j = -radius; j <= radius; ++j)
-    {
-      for (int i = -radius; i <= radius; ++i)
-      {
-        const double q = std::max(0.0, 1.0 - double(i * i + j * j) / ((radius + 1.0) * (radius + 1.0)));
-        weight.push_back(float(q));
-        total += weight.back();
-        strictness.push_back(float(std::min(1.0, 2.0 * q * q)));
-      }
-    }
-  }
-};
-
 /// c0 + c1 i + c2 j + c3 i^2 + c4 j^2 + c5 i j, voxels.
 struct Quadratic
 {
   float c0, c1, c2, c3, c4, c5;
-  float at(float i, float j) const { return c0 + c1 * i + c2 * j + c3 * i * i + c4 * j * j + c5 * i * j; }
+  SONO_LANES float at(float i, float j) const { return c0 + c1 * i + c2 * j + c3 * i * i + c4 * j * j + c5 * i * j; }
 };
 
 constexpr int terms = 6;
@@ -104,7 +62,7 @@ class NormalEquations
 {
 public:
   /// A row of data at this y: sums of weight x^n, n = 0 to 4, and of weight height x^n, n = 0 to 2.
-  void addRow(double y, const double* x, const double* height)
+  SONO_LANES void addRow(double y, const double* x, const double* height)
   {
     const double y2 = y * y;
     const double m[15] = { x[0],      x[1],     y * x[0],  x[2],          y * x[1],
@@ -122,7 +80,7 @@ public:
   }
 
   /// Data on the line (x, y) = (a, b) t: sums of weight t^n, n = 0 to 4, and of weight height t^n, n = 0 to 2.
-  void addLine(double a, double b, const double* t, const double* height)
+  SONO_LANES void addLine(double a, double b, const double* t, const double* height)
   {
     const double ofA[5] = { 1.0, a, a * a, a * a * a, a * a * a * a };
     const double ofB[5] = { 1.0, b, b * b, b * b * b, b * b * b * b };
@@ -142,7 +100,7 @@ public:
   }
 
   /// In the first `count` terms, 3 or 6; false where the data do not tell them.
-  bool solve(int count, Quadratic& out) const
+  SONO_LANES bool solve(int count, Quadratic& out) const
   {
     // Products of the terms 1, x, y, x^2, x y, y^2 by the moments above.
     static constexpr int product[terms][terms] = { { 0, 1, 2, 3, 4, 5 },    { 1, 3, 4, 6, 7, 8 },
@@ -150,18 +108,23 @@ public:
                                                    { 4, 7, 8, 11, 12, 13 }, { 5, 8, 9, 12, 13, 14 } };
     double a[terms][terms];
     double b[terms];
+    double moment[15];
+    for (int i = 0; i < 15; ++i)
+    {
+      moment[i] = wholeSum(moment_[i]);
+    }
     for (int r = 0; r < count; ++r)
     {
       for (int c = 0; c < count; ++c)
       {
-        a[r][c] = moment_[product[r][c]];
+        a[r][c] = moment[product[r][c]];
       }
-      b[r] = right_[r];
+      b[r] = wholeSum(right_[r]);
     }
     // Positive definite: no pivoting.
     for (int r = 0; r < count; ++r)
     {
-      if (!(a[r][r] > 1e-9 * moment_[product[r][r]]))
+      if (!(a[r][r] > 1e-9 * moment[product[r][r]]))
       {
         return false;
       }
@@ -204,14 +167,14 @@ struct Shape
   Quadratic q;
   float bulge = 0.0f;
 
-  float at(float i, float j) const
+  SONO_LANES float at(float i, float j) const
   {
     const float k = q.at(i, j);
     return 2.0f * k / (1.0f + std::sqrt(1.0f - 4.0f * bulge * k));
   }
 
   /// Height, slopes and curvatures in the middle.
-  Quadratic osculating() const
+  SONO_LANES Quadratic osculating() const
   {
     const float z = at(0.0f, 0.0f);
     const float steepening = 1.0f / (1.0f - 2.0f * bulge * z);
@@ -230,7 +193,7 @@ struct Shape
 class BallEquations
 {
 public:
-  BallEquations(double u, double v)
+  SONO_LANES BallEquations(double u, double v)
     : u_(u)
     , v_(v)
   {
@@ -238,10 +201,12 @@ public:
 
   /// Data at one y: `count` places x from `first` on, a step of 1 apart: the heights of z^2, weights, and products of
   /// weight and the height to fit. The arrays go on to a multiple of `lanes` with weights of 0.
-  void addRow(float first, float y, int count, const float* height, const float* weight, const float* weighted)
+  SONO_LANES void addRow(float first, float y, int count, const float* height, const float* weight,
+                         const float* weighted)
   {
     Floats s[9] = {}; // sums of w, w x, w x^2, w q, w x q, w q^2, w h, w x h, w q h with q = x^2 + h^2
-    Floats x = ramp + first;
+    Floats x;
+    countFrom(first, x);
     const float u2 = float(u_ * u_);
     for (int n = 0; n < count; n += lanes, x += float(lanes))
     {
@@ -272,9 +237,16 @@ public:
     addSums(t, y * v_);
   }
 
-  bool solve(Shape& out)
+  SONO_LANES bool solve(Shape& out)
   {
-    double(&a)[4][5] = a_;
+    double a[4][5];
+    for (int r = 0; r < 4; ++r)
+    {
+      for (int c = r; c < 5; ++c)
+      {
+        a[r][c] = wholeSum(a_[r][c]);
+      }
+    }
     for (int r = 0; r < 4; ++r)
     {
       if (!(a[r][r] > 1e-9))
@@ -307,7 +279,7 @@ public:
 
 private:
   /// Of one y; x in columns.
-  void addSums(const double* t, double y)
+  SONO_LANES void addSums(const double* t, double y)
   {
     const double y2 = y * y;
     a_[0][0] += t[0];
@@ -336,16 +308,15 @@ private:
 /// plane is a wave as long as a window; the barrier -log(1 - e^2), e the distance over half a voxel, does not. Beyond
 /// `wall` it goes on as a parabola, so that a shape may start outside. A ball is linear in its terms by the height of
 /// the step in place of its own.
-inline void pull(const Shape& shape, int radius, int j, const float* height, const float* weight, float* stiffness,
-                 float* force)
+SONO_LANES inline void pull(const Shape& shape, int radius, int j, const float* height, const float* weight,
+                            float* stiffness, float* force)
 {
   constexpr float wall = 0.95f;
   const float k0 = shape.q.at(0.0f, float(j));
   const float k1 = shape.q.c1 + shape.q.c5 * float(j);
   const float k2 = shape.q.c3;
   const float bulge = shape.bulge;
-  for (int n = 0; n < 2 * radius + 1; ++n)
-  {
+  forEach(2 * radius + 1, [=](int n) {
     const float i = float(n - radius);
     const float h = height[n];
     const float perHalf = 1.0f / std::max(0.1f, 0.5f - bulge * h);
@@ -356,25 +327,26 @@ inline void pull(const Shape& shape, int radius, int j, const float* height, con
     const float first = 2.0f * within * perRoom + second * (std::fabs(e) - within);
     stiffness[n] = weight[n] * second * perHalf * perHalf;
     force[n] = weight[n] * std::copysign(first, e) * perHalf;
-  }
+  });
 }
 
-inline float smoothStep(float from, float to, float at)
+SONO_LANES inline float smoothStep(float from, float to, float at)
 {
   const float x = std::min(1.0f, std::max(0.0f, (at - from) / (to - from)));
   return x * x * (3.0f - 2.0f * x);
 }
 
-inline Quadratic mix(const Quadratic& a, const Quadratic& b, float share)
+SONO_LANES inline Quadratic mix(const Quadratic& a, const Quadratic& b, float share)
 {
   const auto m = [share](float x, float y) { return x + share * (y - x); };
   return { m(a.c0, b.c0), m(a.c1, b.c1), m(a.c2, b.c2), m(a.c3, b.c3), m(a.c4, b.c4), m(a.c5, b.c5) };
 }
 
-inline void add(Quadratic& sum, const Quadratic& a, float share)
+SONO_LANES inline void add(Quadratic& sum, const Quadratic& a, float share)
 {
   sum = { sum.c0 + share * a.c0, sum.c1 + share * a.c1, sum.c2 + share * a.c2,
           sum.c3 + share * a.c3, sum.c4 + share * a.c4, sum.c5 + share * a.c5 };
 }
 
+} // namespace SONO_LANES_NAMESPACE
 } // namespace sono::stepfit

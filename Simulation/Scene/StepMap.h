@@ -2,22 +2,28 @@
 
 #include "Kernel/Vec.h"
 #include "Scene/StepFit.h"
+#include "Scene/StepWindows.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 // The staircase of voxels around a face, and the smoothest surface that it allows (SurfacePieces).
 
 namespace sono::stepfit {
+inline namespace SONO_LANES_NAMESPACE {
 
-constexpr int widest = 40;     // voxels to each side of a column
 constexpr int widestBent = 24; // the terraces of a slope of a degree are wider, those of what is bent are not
 constexpr int allColumns = 2 * widest + 1;
-constexpr std::array<int, 8> windows{ 2, 3, 5, 8, 12, 17, 24, widest };
+constexpr std::size_t windowCount = 8;
+/// Voxels to each side.
+SONO_LANES inline int windowRadius(std::size_t window)
+{
+  constexpr int radii[windowCount] = { 2, 3, 5, 8, 12, 17, 24, widest };
+  return radii[window];
+}
 /// Voxels that a column's step may lie further from a fit than half a voxel, a step's rounding: up to the first a
 /// window counts fully, from the second on not at all.
 constexpr float freeExcess = 0.05f;
@@ -33,39 +39,28 @@ constexpr float enoughSeen = 0.75f;
 constexpr std::int16_t unknown = -32768; // step of a column outside of the volume
 constexpr int mostStep = 2;              // voxels from a column's step to its neighbour's
 
-inline const Window& windowOf(int radius)
-{
-  static const std::vector<Window> all = [] {
-    std::vector<Window> made;
-    for (int r = 0; r <= widest; ++r)
-    {
-      made.emplace_back(r);
-    }
-    return made;
-  }();
-  return all[std::size_t(radius)];
-}
-
 /// Steps of the columns around a face, relative to its own: how many voxels along the axis they lie further.
 class StepMap
 {
 public:
-  StepMap(const std::uint8_t* tissues, const Vec3i& size)
+  /// `windows` by radius.
+  SONO_LANES StepMap(const std::uint8_t* tissues, const Vec3i& size, const Window* windows)
     : tissues_(tissues)
     , size_(size)
+    , window_(windows)
     , pitch_{ 1, size.x, std::ptrdiff_t(size.x) * size.y }
   {
   }
 
-  std::uint8_t at(const Vec3i& v) const { return tissues_[v.x + pitch_[1] * v.y + pitch_[2] * v.z]; }
-  bool contains(const Vec3i& v) const
+  SONO_LANES std::uint8_t at(const Vec3i& v) const { return tissues_[v.x + pitch_[1] * v.y + pitch_[2] * v.z]; }
+  SONO_LANES bool contains(const Vec3i& v) const
   {
     return unsigned(v.x) < unsigned(size_.x) && unsigned(v.y) < unsigned(size_.y) && unsigned(v.z) < unsigned(size_.z);
   }
 
   /// Fills the rings [first, last] around the face above `voxel`, those before them being filled: a column is known
   /// where it has a step from the same tissue to the same other one, near that of its neighbour further in.
-  void gather(const Vec3i& voxel, int axis, int first, int last)
+  SONO_LANES void gather(const Vec3i& voxel, int axis, int first, int last)
   {
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
@@ -100,8 +95,8 @@ public:
           }
         }
       };
-      for (int n = -r; n <= r; ++n)
-      {
+      forEach(2 * r + 1, [&](int place) {
+        const int n = place - r;
         find(n, -r);
         find(n, r);
         if (n > -r && n < r)
@@ -109,25 +104,25 @@ public:
           find(-r, n);
           find(r, n);
         }
-      }
+      });
     }
   }
 
   /// The smoothest surface that the labels allow; false where they show none.
-  bool smoothest(const Vec3i& voxel, int axis, const Vec3f& spacing, Quadratic& out)
+  SONO_LANES bool smoothest(const Vec3i& voxel, int axis, const Vec3f& spacing, Quadratic& out)
   {
     step(0, 0) = 0;
     const float u = spacing[(axis + 1) % 3] / spacing[axis];
     const float v = spacing[(axis + 2) % 3] / spacing[axis];
-    std::array<float, windows.size()> seen{};
-    std::array<Start, windows.size()> starts{};
+    std::array<float, windowCount> seen{};
+    std::array<Start, windowCount> starts{};
     std::size_t count = 0;
     int gathered = 0;
     int misses = 0;
     bool isFlat = true;
-    for (; count < windows.size() && misses < 2 && (isFlat || windows[count] <= widestBent); ++count)
+    for (; count < windowCount && misses < 2 && (isFlat || windowRadius(count) <= widestBent); ++count)
     {
-      const int radius = windows[count];
+      const int radius = windowRadius(count);
       gather(voxel, axis, gathered + 1, radius);
       gathered = radius;
       seen[count] = smoothStep(fewestSeen, enoughSeen, knownShare(radius));
@@ -150,7 +145,7 @@ public:
       if (w == 0 || starts[w].kind != Kind::None)
       {
         Quadratic fit;
-        const float agreement = settle(windows[w], u, v, starts[w], fit);
+        const float agreement = settle(windowRadius(w), u, v, starts[w], fit);
         const float share = w == 0 ? left : left * seen[w] * agreement;
         if (share > 0.0f)
         {
@@ -164,7 +159,7 @@ public:
 
   /// From the mean place of the tissue below to that of the one above, in the 5 x 5 x 4 voxels around a face; in
   /// voxels, any length.
-  Vec3f coarseNormal(const Vec3i& voxel, int axis) const
+  SONO_LANES Vec3f coarseNormal(const Vec3i& voxel, int axis) const
   {
     Vec3i low = voxel - 2;
     Vec3i high = voxel + 2;
@@ -195,21 +190,20 @@ public:
 
 private:
   /// Of a window's weight.
-  float knownShare(int radius) const
+  SONO_LANES float knownShare(int radius)
   {
     Floats known{};
-    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      loadRow(radius, j, row);
+      loadRow(radius, j);
       for (int n = 0; n < 2 * radius + 1; n += lanes)
       {
         Floats w;
-        load(row.weight + n, w);
+        load(row_.weight + n, w);
         known += w;
       }
     }
-    return float(sumOf(known)) / windowOf(radius).total;
+    return float(wholeSum(sumOf(known))) / window_[radius].total;
   }
 
   enum class Kind
@@ -230,7 +224,7 @@ private:
   };
 
   /// False where there are too few data.
-  bool leastSquares(int radius, float u, float v, Start& start) const
+  SONO_LANES bool leastSquares(int radius, float u, float v, Start& start)
   {
     const NormalEquations equations = equationsOf(radius);
     Shape plane{};
@@ -259,10 +253,13 @@ private:
     return true;
   }
 
-  bool isNear(const Shape& shape, int radius) const { return excess(shape, radius, hopelessExcess) < hopelessExcess; }
+  SONO_LANES bool isNear(const Shape& shape, int radius)
+  {
+    return excess(shape, radius, hopelessExcess) < hopelessExcess;
+  }
 
   /// The smoothest of plane, ball and quadratic, each in front of the next as far as it agrees; how well they do.
-  float settle(int radius, float u, float v, const Start& start, Quadratic& out) const
+  SONO_LANES float settle(int radius, float u, float v, const Start& start, Quadratic& out)
   {
     Shape shape = start.shape;
     out = shape.q;
@@ -300,7 +297,7 @@ private:
   /// Moves a shape from the least squares' place into the middle of what the steps allow, round by round, and tells how
   /// well it agrees.
   template<class F>
-  float settled(int radius, const Shape& shape, const F& round) const
+  SONO_LANES float settled(int radius, const Shape& shape, const F& round)
   {
     for (int n = 0; n < rounds && round() > settledStep; ++n)
     {
@@ -315,35 +312,36 @@ private:
     float weight[allColumns + lanes];
     float stiffness[allColumns + lanes];
     float force[allColumns + lanes];
+    float excess[allColumns + lanes];
   };
 
-  void loadRow(int radius, int j, Row& row) const
+  SONO_LANES void loadRow(int radius, int j)
   {
     const int pitch = 2 * radius + 1;
     const std::int16_t* steps = stepsOf(radius, j);
-    const float* weight = windowOf(radius).weight.data() + pitch * (j + radius);
-    for (int n = 0; n < pitch; ++n)
-    {
+    const float* weight = window_[radius].weight + pitch * (j + radius);
+    float* heights = row_.height;
+    float* weights = row_.weight;
+    forEach(pitch, [=](int n) {
       const bool isKnown = steps[n] != unknown;
-      row.height[n] = isKnown ? float(steps[n]) : 0.0f;
-      row.weight[n] = isKnown ? weight[n] : 0.0f;
-    }
-    for (int n = pitch; n < pitch + lanes; ++n)
-    {
-      row.height[n] = row.weight[n] = row.stiffness[n] = row.force[n] = 0.0f;
-    }
+      heights[n] = isKnown ? float(steps[n]) : 0.0f;
+      weights[n] = isKnown ? weight[n] : 0.0f;
+    });
+    forEach(lanes, [&](int n) {
+      const int at = pitch + n;
+      row_.height[at] = row_.weight[at] = row_.stiffness[at] = row_.force[at] = 0.0f;
+    });
   }
 
   /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
-  float settleQuadratic(int radius, int count, Shape& shape) const
+  SONO_LANES float settleQuadratic(int radius, int count, Shape& shape)
   {
     NormalEquations equations;
-    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      loadRow(radius, j, row);
-      pull(shape, radius, j, row.height, row.weight, row.stiffness, row.force);
-      const RowSums sums(-radius, 2 * radius + 1, row.stiffness, row.force);
+      loadRow(radius, j);
+      pull(shape, radius, j, row_.height, row_.weight, row_.stiffness, row_.force);
+      const RowSums sums(-radius, 2 * radius + 1, row_.stiffness, row_.force);
       equations.addRow(j, sums.x, sums.height);
     }
     Quadratic d{};
@@ -355,35 +353,33 @@ private:
     return stepOf(d, radius);
   }
 
-  static float stepOf(const Quadratic& d, int radius)
+  SONO_LANES static float stepOf(const Quadratic& d, int radius)
   {
     const float r = float(radius);
     return std::fabs(d.c0) + r * (std::fabs(d.c1) + std::fabs(d.c2)) +
            r * r * (std::fabs(d.c3) + std::fabs(d.c4) + std::fabs(d.c5));
   }
 
-  bool fitBall(int radius, float u, float v, Shape& ball) const
+  SONO_LANES bool fitBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
-    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      loadRow(radius, j, row);
-      weigh(row, 2 * radius + 1);
-      equations.addRow(-radius, j, 2 * radius + 1, row.height, row.weight, row.force);
+      loadRow(radius, j);
+      weigh(2 * radius + 1);
+      equations.addRow(-radius, j, 2 * radius + 1, row_.height, row_.weight, row_.force);
     }
     return equations.solve(ball);
   }
 
-  float settleBall(int radius, float u, float v, Shape& ball) const
+  SONO_LANES float settleBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
-    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      loadRow(radius, j, row);
-      pull(ball, radius, j, row.height, row.weight, row.stiffness, row.force);
-      equations.addRow(-radius, j, 2 * radius + 1, row.height, row.stiffness, row.force);
+      loadRow(radius, j);
+      pull(ball, radius, j, row_.height, row_.weight, row_.stiffness, row_.force);
+      equations.addRow(-radius, j, 2 * radius + 1, row_.height, row_.stiffness, row_.force);
     }
     Shape d{};
     if (!equations.solve(d))
@@ -396,56 +392,53 @@ private:
   }
 
   /// Least squares of the steps alone.
-  NormalEquations equationsOf(int radius) const
+  SONO_LANES NormalEquations equationsOf(int radius)
   {
     NormalEquations equations;
-    Row row;
     for (int j = -radius; j <= radius; ++j)
     {
-      loadRow(radius, j, row);
-      weigh(row, 2 * radius + 1);
-      const RowSums sums(-radius, 2 * radius + 1, row.weight, row.force);
+      loadRow(radius, j);
+      weigh(2 * radius + 1);
+      const RowSums sums(-radius, 2 * radius + 1, row_.weight, row_.force);
       equations.addRow(j, sums.x, sums.height);
     }
     return equations;
   }
 
-  static void weigh(Row& row, int count)
+  SONO_LANES void weigh(int count)
   {
-    for (int n = 0; n < count; ++n)
-    {
-      row.force[n] = row.weight[n] * row.height[n];
-    }
+    forEach(count, [this](int n) { row_.force[n] = row_.weight[n] * row_.height[n]; });
   }
 
   /// 1 where no column's step lies further from the fit than its rounding, less to 0 where one does; smoothly.
-  float agrees(const Shape& shape, int radius) const
+  SONO_LANES float agrees(const Shape& shape, int radius)
   {
     return 1.0f - smoothStep(freeExcess, mostExcess, excess(shape, radius, mostExcess));
   }
 
   /// The largest distance from the fit beyond a step's rounding, voxels; not much more is looked at than `enough`.
-  float excess(const Shape& shape, int radius, float enough) const
+  SONO_LANES float excess(const Shape& shape, int radius, float enough)
   {
     const int pitch = 2 * radius + 1;
     Floats largest{};
     for (int n = 0; n < pitch; ++n)
     {
       const int j = (n & 1) ? -(n + 1) / 2 : n / 2; // the middle first, where most misfits show
-      const float* strictness = windowOf(radius).strictness.data() + pitch * (j + radius);
+      const float* strictness = window_[radius].strictness + pitch * (j + radius);
       const std::int16_t* steps = stepsOf(radius, j);
       const float k0 = shape.q.at(0.0f, float(j));
       const float k1 = shape.q.c1 + shape.q.c5 * float(j);
-      float row[allColumns + lanes];
-      for (int m = 0; m < pitch; ++m)
-      {
+      const float k2 = shape.q.c3;
+      const float bulge = shape.bulge;
+      float* row = row_.excess;
+      forEach(pitch, [=](int m) {
         const float i = float(m - radius);
-        const float k = k0 + i * (k1 + i * shape.q.c3);
-        const float z = 2.0f * k / (1.0f + std::sqrt(std::max(0.0f, 1.0f - 4.0f * shape.bulge * k)));
+        const float k = k0 + i * (k1 + i * k2);
+        const float z = 2.0f * k / (1.0f + std::sqrt(std::max(0.0f, 1.0f - 4.0f * bulge * k)));
         const float e = (std::fabs(float(steps[m]) - z) - 0.5f) * strictness[m];
         row[m] = steps[m] == unknown ? 0.0f : e;
-      }
-      std::fill(row + pitch, row + pitch + lanes, 0.0f);
+      });
+      forEach(lanes, [=](int m) { row[pitch + m] = 0.0f; });
       for (int m = 0; m < pitch; m += lanes)
       {
         Floats e;
@@ -460,15 +453,18 @@ private:
     return largestOf(largest);
   }
 
-  static std::size_t indexOf(int i, int j) { return std::size_t(i + widest + allColumns * (j + widest)); }
-  std::int16_t& step(int i, int j) { return steps_[indexOf(i, j)]; }
+  SONO_LANES static std::size_t indexOf(int i, int j) { return std::size_t(i + widest + allColumns * (j + widest)); }
+  SONO_LANES std::int16_t& step(int i, int j) { return steps_[indexOf(i, j)]; }
   /// Of a window's row, from its first column on.
-  const std::int16_t* stepsOf(int radius, int j) const { return &steps_[indexOf(-radius, j)]; }
+  SONO_LANES const std::int16_t* stepsOf(int radius, int j) const { return &steps_[indexOf(-radius, j)]; }
 
   const std::uint8_t* tissues_;
   Vec3i size_;
+  const Window* window_; ///< by radius
   std::ptrdiff_t pitch_[3];
+  Row row_;                                                              ///< that is looked at
   std::array<std::int16_t, std::size_t(allColumns) * allColumns> steps_; // what is not gathered is not read
 };
 
+} // namespace SONO_LANES_NAMESPACE
 } // namespace sono::stepfit

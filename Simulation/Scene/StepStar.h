@@ -270,7 +270,8 @@ private:
       const Row& row = rows_[line];
       const Quadratic k = along(q, line);
       Floats most{};
-      Floats t = ramp - float(row.reach);
+      Floats t;
+      countFrom(-float(row.reach), t);
       for (int n = 0; n < row.count(); n += lanes, t += float(lanes))
       {
         Floats h;

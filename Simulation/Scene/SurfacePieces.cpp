@@ -1,11 +1,12 @@
 #include "Scene/SurfacePieces.h"
 
+#include "Core/ParallelFor.h"
 #include "Core/Simd.h"
-#include "Scene/StepMap.h"
+#include "Scene/FitPiece.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <iterator>
+#include <numeric>
 
 namespace sono {
 
@@ -13,65 +14,27 @@ namespace {
 
 using namespace stepfit;
 
-constexpr float leastFacing = 0.5f;   // of a normal along the column: some axis has 0.577
-constexpr float certainlyNot = 0.25f; // the same of a coarse normal
+constexpr float certainlyNot = 0.25f; // facing of a coarse normal along the column: of the piece's less than 0.5
 const SurfacePiece noPiece{};         // stands where columns of another axis do
 
-/// How much of a surface the columns along an axis stand for. Each axis' columns cover all of it, evenly but for a
-/// stretch by 1 / facing; those that see it best share it, with smooth weights.
-float shareOf(const Vec3f& normal, int axis)
+SONO_SIMD_CLONES __attribute__((flatten)) SurfacePiece fitByVectors(const std::uint8_t* tissues, const Vec3i& size,
+                                                                    const Vec3f& spacing, const SurfaceFace& face)
 {
-  const auto part = [](float facing) {
-    const float q = std::max(0.0f, std::fabs(facing) - leastFacing);
-    return q * q;
-  };
-  return part(normal[axis]) / (part(normal.x) + part(normal.y) + part(normal.z));
+  StepMap map(tissues, size, hostWindows());
+  return fitPiece(map, spacing, face);
 }
 
-/// False where another axis' columns stand for all of the surface.
-SONO_SIMD_CLONES __attribute__((flatten)) bool makePiece(const std::uint8_t* tissues, const Vec3i& size,
-                                                         const Vec3f& spacing, const SurfacePieces::Face& face,
-                                                         SurfacePiece& piece)
+std::uint64_t nextId()
 {
-  StepMap map(tissues, size);
-  const Vec3i& voxel = face.voxel;
-  const int axis = face.axis;
-  const int u = (axis + 1) % 3;
-  const int v = (axis + 2) % 3;
-  Quadratic q{};
-  if (!map.smoothest(voxel, axis, spacing, q) && face.roughNormal != Vec3f(0.0f))
-  {
-    // In voxels.
-    q.c1 = -face.roughNormal[u] * spacing[u] / (face.roughNormal[axis] * spacing[axis]);
-    q.c2 = -face.roughNormal[v] * spacing[v] / (face.roughNormal[axis] * spacing[axis]);
-  }
-  Vec3f normal(0.0f); // in voxels, where columns are what covers the surface
-  normal[axis] = 1.0f;
-  normal[u] = -q.c1;
-  normal[v] = -q.c2;
-  piece.share = shareOf(glm::normalize(normal), axis);
-  if (!(piece.share > 0.0f))
-  {
-    return false;
-  }
-  piece.positionMm = (Vec3f(voxel) + 0.5f) * spacing;
-  piece.positionMm[axis] += (0.5f + q.c0) * spacing[axis];
-  piece.slopeU = q.c1 * spacing[axis] / spacing[u];
-  piece.slopeV = q.c2 * spacing[axis] / spacing[v];
-  piece.bendUU = 2.0f * q.c3 * spacing[axis] / (spacing[u] * spacing[u]);
-  piece.bendUV = q.c5 * spacing[axis] / (spacing[u] * spacing[v]);
-  piece.bendVV = 2.0f * q.c4 * spacing[axis] / (spacing[v] * spacing[v]);
-  piece.axis = std::uint8_t(axis);
-  piece.below = face.below;
-  piece.above = face.above;
-  piece.voxel = voxel;
-  return true;
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
 }
 
 } // namespace
 
 SurfacePieces::SurfacePieces(const std::uint8_t* tissues, const Vec3i& size, const Vec3d& spacingMm)
-  : tissues_(tissues)
+  : id_(nextId())
+  , tissues_(tissues)
   , size_(size)
   , spacingMm_(spacingMm)
   , sizeMm_(Vec3d(size) * spacingMm)
@@ -140,15 +103,21 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
   const SurfacePiece* piece = place.load(std::memory_order_acquire);
   if (!piece)
   {
-    auto mine = std::make_unique<SurfacePiece>();
-    const bool counts = makePiece(tissues_, size_, spacingMm_, there.faces[face], *mine);
-    const SurfacePiece* made = counts ? mine.get() : &noPiece;
-    if (place.compare_exchange_strong(piece, made, std::memory_order_acq_rel))
-    {
-      piece = counts ? mine.release() : &noPiece;
-    }
+    piece = keep(fitByVectors(tissues_, size_, spacingMm_, there.faces[face]), place);
   }
   return piece == &noPiece ? nullptr : piece;
+}
+
+/// What is there afterwards: of two threads that make the same piece one is too late.
+const SurfacePiece* SurfacePieces::keep(const SurfacePiece& made, std::atomic<const SurfacePiece*>& place) const
+{
+  auto mine = made.share > 0.0f ? std::make_unique<SurfacePiece>(made) : nullptr;
+  const SurfacePiece* piece = nullptr;
+  if (place.compare_exchange_strong(piece, mine ? mine.get() : &noPiece, std::memory_order_acq_rel))
+  {
+    piece = mine ? mine.release() : &noPiece;
+  }
+  return piece;
 }
 
 Vec3f SurfacePieces::middleMm(const Face& face) const
@@ -171,12 +140,9 @@ int SurfacePieces::blockOf(const Vec3i& brick) const
 void SurfacePieces::forBricksOf(
   int block, const std::function<void(const Vec3i& brick, const std::vector<SurfacePiece>&)>& visit) const
 {
-  const Vec3i first =
-    blockBricks * Vec3i(block % blocks_.x, block / blocks_.x % blocks_.y, block / blocks_.x / blocks_.y);
   std::vector<SurfacePiece> pieces;
-  for (int n = 0; n < blockBricks * blockBricks * blockBricks; ++n)
+  for (const Vec3i& brick : bricksOf(block))
   {
-    const Vec3i brick = first + Vec3i(n % blockBricks, n / blockBricks % blockBricks, n / blockBricks / blockBricks);
     pieces.clear();
     for (std::size_t face = 0; face < faces(brick).size(); ++face)
     {
@@ -192,20 +158,85 @@ void SurfacePieces::forBricksOf(
   }
 }
 
-void SurfacePieces::makeBlock(int block) const
+std::vector<Vec3i> SurfacePieces::bricksOf(int block) const
 {
-  std::atomic<bool>& isWhole = whole_[std::size_t(block)];
-  if (!isWhole.load(std::memory_order_relaxed))
+  const Vec3i first =
+    blockBricks * Vec3i(block % blocks_.x, block / blocks_.x % blocks_.y, block / blocks_.x / blocks_.y);
+  const Vec3i end = glm::min(first + blockBricks, bricks_);
+  std::vector<Vec3i> bricks;
+  for (int k = first.z; k < end.z; ++k)
   {
-    forBricksOf(block, [](const Vec3i&, const std::vector<SurfacePiece>&) {});
-    isWhole.store(true, std::memory_order_relaxed);
+    for (int j = first.y; j < end.y; ++j)
+    {
+      for (int i = first.x; i < end.x; ++i)
+      {
+        bricks.emplace_back(i, j, k);
+      }
+    }
   }
+  return bricks;
+}
+
+void SurfacePieces::makeBlocks(const std::vector<int>& blocks, const Fit& fit) const
+{
+  std::vector<int> missing;
+  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(missing),
+               [&](int block) { return !whole_[std::size_t(block)].load(std::memory_order_acquire); });
+  if (missing.empty())
+  {
+    return;
+  }
+  if (fit)
+  {
+    fitBlocks(missing, fit);
+  }
+  else
+  {
+    parallelFor(int(missing.size()), {}, [&](int n) {
+      forBricksOf(missing[std::size_t(n)], [](const Vec3i&, const std::vector<SurfacePiece>&) {});
+    });
+  }
+  for (const int block : missing)
+  {
+    whole_[std::size_t(block)].store(true, std::memory_order_release);
+  }
+}
+
+void SurfacePieces::fitBlocks(const std::vector<int>& blocks, const Fit& fit) const
+{
+  std::vector<std::size_t> first(blocks.size() + 1, 0); // face of each block
+  parallelFor(int(blocks.size()), {}, [&](int n) {
+    for (const Vec3i& brick : bricksOf(blocks[std::size_t(n)]))
+    {
+      first[std::size_t(n) + 1] += faces(brick).size();
+    }
+  });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Face> all(first.back());
+  parallelFor(int(blocks.size()), {}, [&](int n) {
+    auto to = all.begin() + std::ptrdiff_t(first[std::size_t(n)]);
+    for (const Vec3i& brick : bricksOf(blocks[std::size_t(n)]))
+    {
+      to = std::copy(faces(brick).begin(), faces(brick).end(), to);
+    }
+  });
+  const std::vector<SurfacePiece> made = fit(all);
+  parallelFor(int(blocks.size()), {}, [&](int n) {
+    std::size_t next = first[std::size_t(n)];
+    for (const Vec3i& brick : bricksOf(blocks[std::size_t(n)]))
+    {
+      for (std::size_t face = 0; face < faces(brick).size(); ++face)
+      {
+        keep(made[next++], at(brick)->pieces[face]);
+      }
+    }
+  });
 }
 
 std::vector<SurfacePieces::Face> SurfacePieces::findFaces(const Vec3i& brick) const
 {
   std::vector<Face> faces;
-  const StepMap map(tissues_, size_);
+  const StepMap map(tissues_, size_, hostWindows());
   const Vec3f low = Vec3f(brick) * edgeMm_ / spacingMm_ - 0.5f;
   const Vec3f high = Vec3f(brick + 1) * edgeMm_ / spacingMm_ - 0.5f;
   const Vec3i first = glm::max(Vec3i(glm::ceil(low)), Vec3i(0));

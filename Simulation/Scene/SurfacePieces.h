@@ -2,6 +2,7 @@
 
 #include "Kernel/SurfacePiece.h"
 #include "Kernel/Vec.h"
+#include "Scene/SurfaceFace.h"
 
 #include <atomic>
 #include <cstdint>
@@ -30,16 +31,10 @@ public:
   SurfacePieces(const SurfacePieces&) = delete;
   SurfacePieces& operator=(const SurfacePieces&) = delete;
 
-  /// Where two voxels part.
-  struct Face
-  {
-    Vec3i voxel;        ///< the one below
-    Vec3f roughNormal;  ///< within roughNormalRad of the piece's, from below to above; 0 where it is not known
-    std::uint8_t axis;  ///< 0 to 2
-    std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
-    std::uint8_t above;
-  };
-  static constexpr float roughNormalRad = 0.4f;
+  /// Of these alone, in this process.
+  std::uint64_t id() const { return id_; }
+
+  using Face = SurfaceFace;
 
   /// Brick b holds the faces of the voxels whose middle lies in [b, b + 1) * edgeMm; their pieces are never more than a
   /// voxel outside.
@@ -53,8 +48,11 @@ public:
   int blockCount() const { return blocks_.x * blocks_.y * blocks_.z; }
   /// The block of a brick; -1: outside of the volume.
   int blockOf(const Vec3i& brick) const;
-  /// Makes all pieces of a block.
-  void makeBlock(int block) const;
+  /// Fits pieces to faces, as many; share 0 where columns of another axis stand for one.
+  using Fit = std::function<std::vector<SurfacePiece>(const std::vector<Face>&)>;
+  /// Makes all pieces of these blocks. Without a `fit` all cores do; one that comes from elsewhere must agree but for
+  /// rounding.
+  void makeBlocks(const std::vector<int>& blocks, const Fit& fit = {}) const;
   /// Visits the pieces of a block, brick by brick, those bricks that have any.
   void forBricksOf(int block,
                    const std::function<void(const Vec3i& brick, const std::vector<SurfacePiece>&)>& visit) const;
@@ -74,8 +72,12 @@ private:
   };
 
   const Brick* at(const Vec3i& brick) const;
+  std::vector<Vec3i> bricksOf(int block) const;
+  void fitBlocks(const std::vector<int>& blocks, const Fit& fit) const;
+  const SurfacePiece* keep(const SurfacePiece& made, std::atomic<const SurfacePiece*>& place) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
 
+  std::uint64_t id_;
   const std::uint8_t* tissues_;
   Vec3i size_;
   Vec3f spacingMm_;

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+
+// Loops over rows of numbers, from one source: g++ computes a vector's lanes at a time, and with nvcc a warp shares a
+// row, each thread being a lane; whatever lies in no lane, all of its threads compute alike. What is compiled so lives
+// in a namespace of its own, or the linker would take the one for the other.
+
+#if defined(__CUDACC__)
+#define SONO_LANES_NAMESPACE warp
+#define SONO_LANES __device__
+#else
+#define SONO_LANES_NAMESPACE vectors
+#define SONO_LANES
+#endif
+
+namespace sono::stepfit {
+inline namespace SONO_LANES_NAMESPACE {
+
+#if defined(__CUDACC__)
+
+using Floats = float;
+constexpr int lanes = 32;
+
+SONO_LANES inline int lane()
+{
+  return int(threadIdx.x) % lanes;
+}
+
+/// first, first + 1, first + 2, ...
+SONO_LANES inline void countFrom(float first, Floats& to)
+{
+  to = first + float(lane());
+}
+
+SONO_LANES inline void load(const float* from, Floats& to)
+{
+  to = from[lane()];
+}
+
+/// The lane's part of the sum.
+SONO_LANES inline double sumOf(Floats v)
+{
+  return v;
+}
+
+/// Of the lanes' parts.
+SONO_LANES inline double wholeSum(double part)
+{
+  for (int other = lanes / 2; other > 0; other /= 2)
+  {
+    part += __shfl_xor_sync(0xffffffffu, part, other);
+  }
+  return part;
+}
+
+SONO_LANES inline float largestOf(Floats v)
+{
+  for (int other = lanes / 2; other > 0; other /= 2)
+  {
+    v = fmaxf(v, __shfl_xor_sync(0xffffffffu, v, other));
+  }
+  return v;
+}
+
+/// Calls f(n) for n in [0, count), in any order; what was written before is there.
+template<class F>
+SONO_LANES inline void forEach(int count, const F& f)
+{
+  __syncwarp();
+  for (int n = lane(); n < count; n += lanes)
+  {
+    f(n);
+  }
+  __syncwarp();
+}
+
+#else
+
+using Floats = float __attribute__((vector_size(32)));
+constexpr int lanes = 8;
+
+/// first, first + 1, first + 2, ...
+inline void countFrom(float first, Floats& to)
+{
+  to = Floats{ 0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f } + first;
+}
+
+inline void load(const float* from, Floats& to)
+{
+  std::memcpy(&to, from, sizeof to);
+}
+
+inline double sumOf(const Floats& v)
+{
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+
+inline double wholeSum(double part)
+{
+  return part;
+}
+
+inline float largestOf(const Floats& v)
+{
+  return std::max(std::max(std::max(v[0], v[1]), std::max(v[2], v[3])),
+                  std::max(std::max(v[4], v[5]), std::max(v[6], v[7])));
+}
+
+/// Calls f(n) for n in [0, count), in any order.
+template<class F>
+inline void forEach(int count, const F& f)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    f(n);
+  }
+}
+
+#endif
+
+} // namespace SONO_LANES_NAMESPACE
+} // namespace sono::stepfit
