@@ -6,6 +6,7 @@
 #include "Image/ScanConvert.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
+#include "SonoPicture.h"
 #include "SonoStage.h"
 
 #include "vtkDataObject.h"
@@ -163,12 +164,13 @@ void vtkSonoDataSet::WriteFolder()
   this->ImagesPerSecond = 0.0;
   if (!this->Folder.empty())
   {
-    sono::writeDataSet(*this->Imager, this->Folder, this->GetShare(), sono::progressOf(this),
-                       [this](const sono::DataSetTally& tally) {
-                         this->WrittenImages = tally.made;
-                         this->ImagesPerSecond = tally.seconds > 0.0 ? double(tally.made) / tally.seconds : 0.0;
-                         this->SetProgressText(progressText(tally).c_str());
-                       });
+    const auto tell = [this](const sono::DataSetTally& tally) {
+      this->WrittenImages = tally.made;
+      this->ImagesPerSecond = tally.seconds > 0.0 ? double(tally.made) / tally.seconds : 0.0;
+      this->SetProgressText(progressText(tally).c_str());
+    };
+    sono::writeDataSet(*this->Imager, this->Folder, this->GetShare(), sono::progressOf(this), tell, 0,
+                       sono::openExrBytes);
   }
 }
 

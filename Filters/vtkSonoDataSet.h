@@ -22,8 +22,8 @@ struct DataSetShare;
  * mask group, from 1; 0 elsewhere). Field data: "Info", all settings and flags as JSON, and "MaskGroups", the names.
  *
  * With a Folder an update writes the images into it that are not there yet, for nnU-Net or MONAI, as
- * sono::writeDataSet says: interrupted or killed, it goes on where it was. Under MPI each process writes its share; the
- * first one gives the output.
+ * sono::writeDataSet says, with OpenEXR files where the file asks for channels: interrupted or killed, it goes on where
+ * it was. Under MPI each process writes its share; the first one gives the output.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoDataSet : public vtkImageAlgorithm
 {
