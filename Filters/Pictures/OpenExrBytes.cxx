@@ -12,6 +12,7 @@ OIIO::ImageSpec specOf(const sono::ChannelImage& image)
   OIIO::ImageSpec spec(image.width, image.height, int(image.names.size()), OIIO::TypeDesc::FLOAT);
   spec.channelnames = image.names;
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "2000:01:01 00:00:00"); // without one, OpenImageIO says when it was written
   for (const auto& [name, value] : image.numbers)
   {
     spec.attribute(name, float(value));
