@@ -13,6 +13,7 @@ import sonovdb
 from chain import listen
 from sonovdb.vtkSonoFilters import vtkSonoDataSet
 from TestPicture import read_png, read_tif
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 BUNDLED = pathlib.Path(__file__).resolve().parents[2] / "Data" / "datasets" / "apical.json"
 
@@ -124,6 +125,10 @@ class TestDataSet(unittest.TestCase):
         np.testing.assert_array_equal(np.maximum(1, np.floor(255 * pixels["grey"][inside] + 0.5)), image[inside])
         np.testing.assert_array_equal(pixels["mask"], mask)
         np.testing.assert_array_equal(pixels["tissue"] > 0, inside)
+        writer.SetImageNumber(2)
+        writer.Update()
+        shown = vtk_to_numpy(writer.GetOutput().GetPointData().GetArray("label"))
+        np.testing.assert_array_equal(shown.reshape(image.shape), pixels["label"])
         cavity = {int(number) for number, name in info["labels"].items()
                   if "left" in name.lower() and "ventricle_blood" in name.lower()}
         self.assertEqual(len(cavity), 1)

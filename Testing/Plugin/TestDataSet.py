@@ -55,7 +55,7 @@ class TestDataSet(unittest.TestCase):
         self.file.write_text(json.dumps(declared), encoding="utf-8")
 
     def command(self, name, *before):
-        return [*before, shutil.which("pvbatch"), SCRIPT, str(self.file), str(self.folder / name)]
+        return [*before, shutil.which("pvbatch"), SCRIPT, str(self.file), str(self.folder / name), "--every", "0"]
 
     def expect_same(self, folder, whole):
         there = content(folder)
@@ -68,7 +68,9 @@ class TestDataSet(unittest.TestCase):
         return done.stdout
 
     def test_two_processes_and_kills_leave_the_same_files(self):
-        self.assertRegex(self.run_whole("alone"), r"Wrote 40 images to .* in this process, [0-9.]+ a second")
+        said = self.run_whole("alone")
+        self.assertRegex(said, r"(?m)^Data set: image 17 of 40, [0-9.]+ images/s$")
+        self.assertRegex(said, r"Wrote 40 images to .* in this process, [0-9.]+ a second")
         alone = content(self.folder / "alone")
         self.assertEqual(len(alone), 5 * 40 + 3)
         said = self.run_whole("two", shutil.which("mpirun"), "--oversubscribe", "-np", "2")
