@@ -56,7 +56,8 @@ DataSetImage apicalImage(const std::string& path, const std::string& view)
   std::ifstream(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json") >> json;
   json.erase("jitter");
   json.erase("tissues");
-  json["patients"][0].update({ { "copies", 1 }, { "stretch", 1 }, { "views", { { { "name", view } } } } });
+  json["patients"][0].update(
+    { { "spacingMm", 1.5 }, { "copies", 1 }, { "stretch", 1 }, { "views", { { { "name", view } } } } });
   json["probe"].update({ { "depthMm", 150 }, { "sectorDeg", 80 }, { "centreFrequencyMHz", 2.5 }, { "lineCount", 64 } });
   json["tracing"]["pathsPerLine"] = 40;
   json["echo"]["samplingMHz"] = 12;
