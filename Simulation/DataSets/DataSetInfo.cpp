@@ -168,7 +168,8 @@ std::string describeImage(const DataSetPlan& plan, const Scene& scene, const Dat
     }
   }
   json["software"] = { { "name", "SonoVDB" }, { "version", version() }, { "device", facts.onGpu ? "GPU" : "CPU" } };
-  return json.dump(1) + "\n";
+  // A label map's names may be in any encoding.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 } // namespace sono

@@ -303,6 +303,15 @@ TEST_F(DataSetFolder, HasChannelsWhereTheFileAsksForThem)
   EXPECT_LE(intensity[std::size_t(3.0 / sampleMm)], 1.0f);
 }
 
+TEST_F(DataSetFolder, TakesNamesInAnyEncoding)
+{
+  std::ofstream(root_ / "names.csv") << "label,name\n0,background\n7,left ventricle blood \xe9\n9,skin\n";
+  json_["patients"][0]["names"] = "names.csv";
+  json_["channels"] = { "label" };
+  DataSetImager imager(plan(), Device::Cpu);
+  EXPECT_EQ(Json::parse(imager.make(0).info)["labels"]["7"], "left ventricle blood \xef\xbf\xbd");
+}
+
 TEST_F(DataSetFolder, WritesChannelsAndGoesOnWithThem)
 {
   const auto names = [](const Content& files, const std::string& folder) {
