@@ -27,23 +27,22 @@ Picture::Number numberOf(vtkDataArray* array, const std::string& name)
   }
 }
 
-using WriteFunction = decltype(&sonoWritePicture);
-
-/// From the library that lies beside this one.
-WriteFunction loadWriter()
+/// A function of the library that lies beside this one, which brings OpenImageIO.
+template<class Function>
+Function* load(const char* name)
 {
   Dl_info self{};
   dladdr(reinterpret_cast<const void*>(&writePicture), &self);
   const std::string path = std::filesystem::path(self.dli_fname).replace_filename("libsonoPictures.so").string();
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* function = library ? dlsym(library, "sonoWritePicture") : nullptr;
+  void* function = library ? dlsym(library, name) : nullptr;
   if (!function)
   {
     throw Error(
       std::string("The library that writes pictures cannot be used; install SonoVDB again with OpenImageIO: ") +
       dlerror() + ".");
   }
-  return reinterpret_cast<WriteFunction>(function);
+  return reinterpret_cast<Function*>(function);
 }
 
 } // namespace
@@ -76,13 +75,26 @@ Picture pictureOf(vtkImageData* image, vtkDataArray* array)
 
 void writePicture(const std::string& path, const Picture& picture)
 {
-  static const WriteFunction write = loadWriter();
+  static const auto write = load<decltype(sonoWritePicture)>("sonoWritePicture");
   std::string failure;
   write(path, picture, failure);
   if (!failure.empty())
   {
     throw Error("cannot write '" + path + "': " + failure + ".");
   }
+}
+
+std::string openExrBytes(const ChannelImage& image)
+{
+  static const auto encode = load<decltype(sonoOpenExrBytes)>("sonoOpenExrBytes");
+  std::string bytes;
+  std::string failure;
+  encode(image, bytes, failure);
+  if (!failure.empty())
+  {
+    throw Error("cannot make an OpenEXR file: " + failure + ".");
+  }
+  return bytes;
 }
 
 } // namespace sono

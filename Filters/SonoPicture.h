@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Pictures/OpenExrBytes.h"
 #include "Pictures/WritePicture.h"
 
 #include <string>
@@ -16,5 +17,8 @@ Picture pictureOf(vtkImageData* image, vtkDataArray* array);
 /// Writes a picture by the library of Pictures/WritePicture.h, which the first call loads. Throws Error when that or
 /// the writing fails.
 void writePicture(const std::string& path, const Picture& picture);
+
+/// The bytes of an OpenEXR file, by the same library. From any thread. Throws as writePicture.
+std::string openExrBytes(const ChannelImage& image);
 
 } // namespace sono

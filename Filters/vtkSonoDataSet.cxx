@@ -6,10 +6,12 @@
 #include "Image/ScanConvert.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
+#include "SonoPicture.h"
 #include "SonoStage.h"
 
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -35,6 +37,15 @@ void addBytes(const char* name, const std::vector<std::uint8_t>& bytes, vtkImage
   array->SetName(name);
   array->SetNumberOfValues(static_cast<vtkIdType>(bytes.size()));
   std::copy(bytes.begin(), bytes.end(), array->GetPointer(0));
+  image->GetPointData()->AddArray(array);
+}
+
+void addFloats(const char* name, const std::vector<float>& values, vtkImageData* image)
+{
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
   image->GetPointData()->AddArray(array);
 }
 
@@ -163,12 +174,13 @@ void vtkSonoDataSet::WriteFolder()
   this->ImagesPerSecond = 0.0;
   if (!this->Folder.empty())
   {
-    sono::writeDataSet(*this->Imager, this->Folder, this->GetShare(), sono::progressOf(this),
-                       [this](const sono::DataSetTally& tally) {
-                         this->WrittenImages = tally.made;
-                         this->ImagesPerSecond = tally.seconds > 0.0 ? double(tally.made) / tally.seconds : 0.0;
-                         this->SetProgressText(progressText(tally).c_str());
-                       });
+    const auto tell = [this](const sono::DataSetTally& tally) {
+      this->WrittenImages = tally.made;
+      this->ImagesPerSecond = tally.seconds > 0.0 ? double(tally.made) / tally.seconds : 0.0;
+      this->SetProgressText(progressText(tally).c_str());
+    };
+    sono::writeDataSet(*this->Imager, this->Folder, this->GetShare(), sono::progressOf(this), tell, 0,
+                       sono::openExrBytes);
   }
 }
 
@@ -181,6 +193,10 @@ void vtkSonoDataSet::GiveImage(vtkImageData* image)
   image->SetSpacing(made.pixelMm, made.pixelMm, 1.0);
   addBytes("BMode", made.grey, image);
   addBytes("Mask", made.mask, image);
+  for (std::size_t channel = 0; channel < made.channels.names.size(); ++channel)
+  {
+    addFloats(made.channels.names[channel].c_str(), made.channels.values[channel], image);
+  }
   image->GetPointData()->SetActiveScalars("BMode");
   addTexts("Info", { made.info }, image->GetFieldData());
   addTexts("MaskGroups", made.groups, image->GetFieldData());

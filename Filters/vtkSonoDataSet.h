@@ -19,11 +19,12 @@ struct DataSetShare;
  *
  * The output is one of the images, flat, in the probe's own frame as of output 1 of vtkSonoScanConverter, to look at or
  * to learn from. Point arrays: "BMode" (1, black, to 255 in the scanned area, 0 outside) and "Mask" (n for the n-th
- * mask group, from 1; 0 elsewhere). Field data: "Info", all settings and flags as JSON, and "MaskGroups", the names.
+ * mask group, from 1; 0 elsewhere), and of the channels that the file asks for those of the pixels, floats by their
+ * names (see Data/docs/datasets.md). Field data: "Info", all settings and flags as JSON, and "MaskGroups", the names.
  *
  * With a Folder an update writes the images into it that are not there yet, for nnU-Net or MONAI, as
- * sono::writeDataSet says: interrupted or killed, it goes on where it was. Under MPI each process writes its share; the
- * first one gives the output.
+ * sono::writeDataSet says, with OpenEXR files where the file asks for channels: interrupted or killed, it goes on where
+ * it was. Under MPI each process writes its share; the first one gives the output.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoDataSet : public vtkImageAlgorithm
 {

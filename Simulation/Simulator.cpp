@@ -164,6 +164,19 @@ TracedResult Simulator::trace(const std::vector<ScanLine>& lines, const TraceSet
   return last_->traced.get({ lines, settings, targets }, [&] { return best; });
 }
 
+std::shared_ptr<const TracedLines> Simulator::arrivals(const TracedResult& traced)
+{
+  if (!traced.onDevice())
+  {
+    return { std::shared_ptr<void>(), &traced.host() };
+  }
+  auto lines = std::make_shared<TracedLines>(traced.layout());
+  FetchedArrivals fetched = DeviceImager::instance().fetchArrivals(*traced.onDevice());
+  lines->intensity = std::move(fetched.intensity);
+  lines->depthOffsetMm = std::move(fetched.depthOffsetMm);
+  return lines;
+}
+
 bool Simulator::isRefining() const
 {
   return last_->rounds && last_->rounds->isRunning();

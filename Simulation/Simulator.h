@@ -69,6 +69,9 @@ public:
   /// The stages one by one.
   TracedResult trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
                      const std::vector<TargetSurface>& targets = {}, const Progress& progress = {});
+  /// Of traced lines the intensity and depth offsets, without the rest where that would have to come from a device. Not
+  /// longer than the result.
+  static std::shared_ptr<const TracedLines> arrivals(const TracedResult& traced);
   /// `count` of these paths, see recordPaths.
   std::shared_ptr<const std::vector<RecordedPath>> paths(const std::vector<ScanLine>& lines,
                                                          const TraceSettings& settings, int count,

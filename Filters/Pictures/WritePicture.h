@@ -25,7 +25,7 @@ struct Picture
 
 } // namespace sono
 
-/// The one function of the library that writes pictures, in the format that the path's ending names. `failure`
+/// A function of the library that writes pictures, in the format that the path's ending names. `failure`
 /// is empty then, or why nothing was written. The library is loaded when a picture is written for the first time: it
 /// brings OpenImageIO, which takes most of a second to load.
 extern "C" void sonoWritePicture(const std::string& path, const sono::Picture& picture, std::string& failure);

@@ -95,8 +95,10 @@ def _write_shard(path, members):
 
 def write_shards(folder, target, per_shard=1000):
     """Packs a folder that Ultrasound Data Set wrote into shards for WebDataset, TARGET/SPLIT-000000.tar and so on, of
-    `per_shard` images each: CASE.image.png, CASE.mask.png and CASE.json. Returns the paths."""
+    `per_shard` images each: CASE.image.png, CASE.mask.png and CASE.json, and where the file asked for channels
+    CASE.channels.exr and CASE.beam.exr. Returns the paths."""
     os.makedirs(target, exist_ok=True)
+    exr_folders = [name for name in ("channels", "beam") if os.path.isdir(os.path.join(folder, name))]
     members, counts, paths = {}, {}, []
 
     def flush(split):
@@ -114,11 +116,12 @@ def write_shards(folder, target, per_shard=1000):
         info = json.loads(text)
         image, mask = _files_of(folder, name, info)
         of_split = members.setdefault(info["split"], [])
-        for part, end in ((image, ".image.png"), (mask, ".mask.png")):
+        channels = [(os.path.join(each, name + ".exr"), f".{each}.exr") for each in exr_folders]
+        for part, end in ((image, ".image.png"), (mask, ".mask.png"), *channels):
             with open(os.path.join(folder, part), "rb") as file:
                 of_split.append((name + end, file.read()))
         of_split.append((name + ".json", text))
-        if len(of_split) == 3 * per_shard:
+        if len(of_split) == (3 + len(channels)) * per_shard:
             flush(info["split"])
     for split in sorted(members):
         flush(split)

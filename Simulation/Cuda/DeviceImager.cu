@@ -435,14 +435,26 @@ FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
   });
 }
 
-SharedSpan<float> DeviceImager::fetchIntensity(const DeviceTraced& traced)
+FetchedArrivals DeviceImager::fetchArrivals(const DeviceTraced& traced)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
-    const DeviceArray<float>& intensity = traced.arrays.bins[intensityArray];
-    const std::shared_ptr<void> memory = pinnedMemory(intensity.size() * sizeof(float));
-    download(intensity.data(), intensity.size(), static_cast<float*>(memory.get()), stream, w.traffic);
+    const auto& bins = traced.arrays.bins;
+    FetchedArrivals out;
+    std::vector<std::shared_ptr<void>> pinned;
+    for (const int array : { intensityArray, depthOffsetArray })
+    {
+      const DeviceArray<float>& values = bins[std::size_t(array)];
+      pinned.push_back(pinnedMemory(values.size() * sizeof(float)));
+      download(values.data(), values.size(), static_cast<float*>(pinned.back().get()), stream, w.traffic);
+    }
     check(cudaStreamSynchronize(stream), "computing");
-    return pinnedSpan<float>(memory, intensity.size());
+    const auto valuesOf = [&](std::size_t n, int array) {
+      const auto* from = static_cast<const float*>(pinned[n].get());
+      return std::vector<float>(from, from + bins[std::size_t(array)].size());
+    };
+    out.intensity = valuesOf(0, intensityArray);
+    out.depthOffsetMm = valuesOf(1, depthOffsetArray);
+    return out;
   });
 }
 

@@ -36,6 +36,13 @@ struct FetchedTrace
   std::uint64_t segments = 0;
 };
 
+/// Of these what says where sound arrives, and when.
+struct FetchedArrivals
+{
+  std::vector<float> intensity;
+  std::vector<float> depthOffsetMm; ///< empty: range is depth
+};
+
 /// Bytes of pictures on their way to the host, in pinned memory; `labels` where they were wanted.
 struct PictureCopy
 {
@@ -94,8 +101,7 @@ public:
   std::vector<SurfacePiece> fitPieces(const VoxelJob& voxels, const std::vector<SurfaceFace>& faces);
 
   FetchedTrace fetch(const DeviceTraced& traced);
-  /// Of that the intensity alone, in pinned memory.
-  SharedSpan<float> fetchIntensity(const DeviceTraced& traced);
+  FetchedArrivals fetchArrivals(const DeviceTraced& traced);
   std::vector<std::complex<float>> fetchIq(const DeviceRf& rf);
   /// Grey levels in beam space, and the reference amplitude of each image.
   std::vector<float> fetch(const DeviceGrey& grey, std::vector<double>& reference);

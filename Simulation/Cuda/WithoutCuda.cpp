@@ -60,7 +60,7 @@ std::vector<SurfacePiece> DeviceImager::fitPieces(const VoxelJob&, const std::ve
   return {};
 }
 
-SharedSpan<float> DeviceImager::fetchIntensity(const DeviceTraced&)
+FetchedArrivals DeviceImager::fetchArrivals(const DeviceTraced&)
 {
   return {};
 }

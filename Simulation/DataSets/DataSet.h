@@ -29,6 +29,20 @@ enum class DataSetFormat
   Monai   ///< images, labels and a data list dataset.json
 };
 
+/// What an image's OpenEXR files may hold, see ImageChannels.h.
+enum class ImageChannel
+{
+  Grey,
+  Mask,
+  Label,
+  Tissue,
+  Error,
+  Beam ///< a file of its own, in beam space
+};
+constexpr int imageChannelCount = 6;
+/// "grey", "mask", "label", "tissue", "error", "beam".
+const char* nameOf(ImageChannel channel);
+
 /// Where the probe stands before it is jittered.
 struct DataSetView
 {
@@ -135,6 +149,7 @@ struct DataSet
   std::vector<DrawnTissue> drawnTissues;
   std::vector<MaskGroup> masks; ///< value n + 1 in a mask; 0 is everything else
   DataSetFormat format = DataSetFormat::NnUNet;
+  std::vector<ImageChannel> channels; ///< of each image's OpenEXR files, beside its PNGs; empty: there are none
 };
 
 /// Reads and checks a declarative file (JSON). Paths in it are relative to it; presets, tables and probes that come

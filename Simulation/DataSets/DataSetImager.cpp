@@ -2,6 +2,7 @@
 
 #include "Cuda/RunOnDevice.h"
 #include "DataSets/DataSetInfo.h"
+#include "DataSets/ImageChannels.h"
 #include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
 #include "Phantoms/DrawThorax.h"
@@ -87,16 +88,22 @@ std::vector<std::uint8_t> groupsOf(const std::vector<LabelInfo>& labels, const s
   return values;
 }
 
-/// The standard view of a name; none where it is not obtainable, and `why` says it then.
-std::optional<ProbePose> standardPose(const std::vector<StandardView>& views, const std::string& name, std::string& why)
+/// One of a patient's views.
+struct BodyView
+{
+  std::optional<ProbePose> pose;     ///< none: not obtainable
+  std::optional<StandardView> found; ///< how it was found by landmarks; none: it was not looked for
+};
+
+/// The standard view of a name.
+BodyView standardView(const std::vector<StandardView>& views, const std::string& name)
 {
   std::string names;
   for (const StandardView& view : views)
   {
     if (view.name == name)
     {
-      why = view.refusal;
-      return view.refusal.empty() ? std::optional<ProbePose>(view.pose) : std::nullopt;
+      return { view.refusal.empty() ? std::optional<ProbePose>(view.pose) : std::nullopt, view };
     }
     names += (names.empty() ? "" : ", ") + view.name;
   }
@@ -104,25 +111,23 @@ std::optional<ProbePose> standardPose(const std::vector<StandardView>& views, co
 }
 
 /// Where the probe stands for each of a patient's views. Throws Error where none is obtainable.
-std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSetPatient& patient,
-                                                const ThoraxParameters& thorax, const ProbeSettings& probe,
-                                                const Mat3d& stretch, const Progress& progress)
+std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patient, const ThoraxParameters& thorax,
+                                const ProbeSettings& probe, const Mat3d& stretch, const Progress& progress)
 {
-  std::vector<std::optional<ProbePose>> poses;
+  std::vector<BodyView> views;
   std::vector<StandardView> standard;
-  std::string why;
   for (const DataSetView& view : patient.views)
   {
     const bool isBundled = patient.labels.empty() && view.name == "A4C";
     if (!view.window.empty())
     {
-      poses.emplace_back(findAcousticWindows(scene, windowTarget(scene, view.window), probe, 1).front().pose);
+      views.push_back({ findAcousticWindows(scene, windowTarget(scene, view.window), probe, 1).front().pose, {} });
     }
     else if (view.pose || isBundled)
     {
       const ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C(thorax);
-      poses.emplace_back(
-        ProbePose{ stretch * pose.positionMm, stretch * pose.axial, stretch * pose.lateral }.orthonormalized());
+      views.push_back(
+        { ProbePose{ stretch * pose.positionMm, stretch * pose.axial, stretch * pose.lateral }.orthonormalized(), {} });
     }
     else
     {
@@ -131,29 +136,48 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
         standard = findStandardViews(
           scene, [&](const std::string&) { return probe; }, progress);
       }
-      poses.push_back(standardPose(standard, view.name, why));
+      views.push_back(standardView(standard, view.name));
     }
   }
-  if (std::none_of(poses.begin(), poses.end(), [](const auto& pose) { return pose.has_value(); }))
+  if (std::none_of(views.begin(), views.end(), [](const BodyView& view) { return view.pose.has_value(); }))
   {
-    throw Error("none of its views is obtainable; give it others. " + why);
+    throw Error("none of its views is obtainable; give it others. " + views.back().found->refusal);
   }
-  return poses;
+  return views;
+}
+
+/// A body's landmarks, or a sentence why it has none.
+struct FoundLandmarks
+{
+  std::optional<HeartLandmarks> heart;
+  std::string refusal;
+};
+
+FoundLandmarks findLandmarks(const LabelVolume& volume)
+{
+  try
+  {
+    return { findHeartLandmarks(volume), {} };
+  }
+  catch (const Error& error)
+  {
+    return { {}, error.what() };
+  }
 }
 
 /// Images of a body share what is prepared of what its views, held and set otherwise, may reach. Whoever reaches
 /// further prepares it anew, so that no image depends on others.
-void shareRegion(Scene& scene, const DataSetPlan& plan, const std::vector<std::optional<ProbePose>>& views)
+void shareRegion(Scene& scene, const DataSetPlan& plan, const std::vector<BodyView>& views)
 {
   constexpr double marginMm = 15.0; // for a probe that is held elsewhere on the skin
   const ImageSettings deepest = plan.deepest().image(plan.set().pixelMm, Device::Cpu);
   const Vec3i margin(glm::ceil(marginMm / scene.placement().spacingMm));
   std::optional<VoxelBox> all;
-  for (const std::optional<ProbePose>& view : views)
+  for (const BodyView& view : views)
   {
-    if (view)
+    if (view.pose)
     {
-      const VoxelBox box = fanBox(scene, makeScanLines(deepest.geometry, *view), deepest.tracing);
+      const VoxelBox box = fanBox(scene, makeScanLines(deepest.geometry, *view.pose), deepest.tracing);
       all = all ? VoxelBox{ glm::min(all->first, box.first), glm::max(all->last, box.last) } : box;
     }
   }
@@ -182,7 +206,8 @@ struct DataSetImager::Body
   std::int64_t exam = -1;
   std::shared_ptr<Scene> scene;
   Simulator simulator;
-  std::vector<std::optional<ProbePose>> views; ///< of the patient's; none: not obtainable
+  std::vector<BodyView> views; ///< of the patient's
+  FoundLandmarks landmarks;
 };
 
 struct DataSetImager::Placed
@@ -259,6 +284,7 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
   body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
                           stretchMap(patient_->volume.placement, stretch), progress);
+  body->landmarks = findLandmarks(body->scene->volume());
   shareRegion(*body->scene, *plan_, body->views);
   body_ = std::move(body);
 }
@@ -279,11 +305,11 @@ DataSetImager::Placed DataSetImager::place(const PlannedImage& image, const Imag
 {
   Placed placed;
   placed.view = image.view;
-  while (!body_->views[std::size_t(placed.view)])
+  while (!body_->views[std::size_t(placed.view)].pose)
   {
     placed.view = (placed.view + 1) % int(body_->views.size());
   }
-  const ProbePose view = *body_->views[std::size_t(placed.view)];
+  const ProbePose view = *body_->views[std::size_t(placed.view)].pose;
   const bool isCatheter = settings.geometry.lineOrigin() == LineOrigin::Catheter;
   std::string why = "No surface of the body lies there.";
   for (int attempt = 0; attempt < mostAttempts; ++attempt)
@@ -349,26 +375,39 @@ DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progres
   const ScanPicture picture = body_->simulator.picture(result, input.settings.geometry, input.pose, traced);
   const PlaneImage layout = plan_->layout(image);
   DataSetImage made{
-    layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}
+    layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}, {}, {}
   };
   made.grey.assign(picture.grey.begin(), picture.grey.end());
   made.mask.resize(made.grey.size());
   std::transform(picture.labels.begin(), picture.labels.end(), made.mask.begin(),
                  [&](std::uint16_t label) { return patient_->groups[label]; });
-  for (std::size_t group = 0; group < plan_->set().masks.size(); ++group)
+  const std::vector<ImageChannel>& channels = plan_->set().channels;
+  made.channels = pixelChannels(channels, input, body_->simulator, picture, made.mask);
+  made.beam = beamChannels(channels, input, body_->simulator);
+  const auto arrivals = Simulator::arrivals(traced);
+  const ImageSight sight(input.settings, input.pose, layout, *arrivals);
+  const std::vector<MaskGroup>& groups = plan_->set().masks;
+  const std::vector<double> visible = sight.visibleShares(made.mask, groups.size());
+  for (std::size_t group = 0; group < groups.size(); ++group)
   {
-    made.groups.push_back(plan_->set().masks[group].name);
-    facts.groupPixels.push_back(std::size_t(std::count(made.mask.begin(), made.mask.end(), std::uint8_t(group + 1))));
+    made.groups.push_back(groups[group].name);
+    facts.groups.push_back({ std::size_t(std::count(made.mask.begin(), made.mask.end(), std::uint8_t(group + 1))),
+                             patient_->groupIsThere[group], visible[group] });
   }
-  facts.groupIsThere = patient_->groupIsThere;
+  const BodyView& view = body_->views[std::size_t(placed.view)];
+  facts.found = view.found ? &*view.found : nullptr;
+  facts.noLandmarks = body_->landmarks.refusal;
+  if (body_->landmarks.heart)
+  {
+    facts.landmarks = landmarksInImage(*body_->landmarks.heart, input.pose, sight);
+  }
   facts.width = layout.width;
   facts.height = layout.height;
   facts.lateralMinMm = layout.lateralMinMm;
   facts.axialMinMm = layout.axialMinMm;
   const std::vector<ScanLine> lines = makeScanLines(input.settings.geometry, input.pose);
   facts.flags = { probeContactWarning(*body_->scene, lines).empty(),
-                  shareInsideVolume(*body_->scene, input.settings.geometry, input.pose),
-                  shareShadowed(lines, input.settings, traced.host()) };
+                  shareInsideVolume(*body_->scene, input.settings.geometry, input.pose), sight.shareShadowed(lines) };
   made.info = describeImage(*plan_, *body_->scene, facts);
   return made;
 }

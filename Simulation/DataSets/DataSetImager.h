@@ -2,6 +2,7 @@
 
 #include "Core/Device.h"
 #include "Core/Progress.h"
+#include "DataSets/ChannelImage.h"
 #include "DataSets/DataSetPlan.h"
 
 #include <cstdint>
@@ -25,6 +26,11 @@ struct DataSetImage
   /// JSON: what was drawn, all settings, the tissues' numbers, the pose, licence and provenance of the patient, and
   /// flags (see Data/docs/datasets.md).
   std::string info;
+  ///@{
+  /// What the file asks for as channels, see ImageChannels.h; without pixels where it does not.
+  ChannelImage channels;
+  ChannelImage beam;
+  ///@}
 };
 
 /// Makes the images of a plan, whichever are asked for. Keeps the last patient's labels and the last body's scene, so

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
+#include <algorithm>
 #include <type_traits>
 
 namespace sono {
@@ -12,9 +12,6 @@ namespace sono {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double softTissueDbPerCmMHz = 0.5;
-constexpr double shadowDb = 20.0;
 
 Json vectorOf(const Vec3d& v)
 {
@@ -52,29 +49,57 @@ Json tissuesOf(const Scene& scene)
   return json;
 }
 
-} // namespace
-
-double shareShadowed(const std::vector<ScanLine>& lines, const ImageSettings& settings, const TracedLines& traced)
+/// What the view shows from where it was found, before the probe was jittered.
+Json visibilityOf(const StandardView& view)
 {
-  double all = 0.0;
-  double shadowed = 0.0;
-  const int bins = std::min(traced.binCount, int(settings.geometry.rangeMm() / traced.binMm));
-  for (std::size_t line = 0; line + 1 < lines.size(); ++line)
+  Json json = { { "score", view.score },
+                { "planeOffDeg", view.planeOffDeg },
+                { "markOffMm", view.markOffMm },
+                { "insidePercent", view.insidePercent } };
+  for (const ShownStructure& shown : view.shown)
   {
-    for (int bin = 0; bin < bins; ++bin)
+    json["shownPercent"][shown.structure] = shown.percent;
+  }
+  json["shadow"] = view.shadow;
+  json["shadowDb"] = view.shadowDb;
+  return json;
+}
+
+Json pointOf(const ImagePoint& point)
+{
+  return { { "worldMm", vectorOf(point.worldMm) }, { "column", point.column },     { "row", point.row },
+           { "offPlaneMm", point.offPlaneMm },     { "inSector", point.inSector }, { "inShadow", point.inShadow } };
+}
+
+Json landmarksOf(const std::vector<ImageLandmark>& landmarks)
+{
+  Json json;
+  for (const ImageLandmark& landmark : landmarks)
+  {
+    Json& entry = json[landmark.name];
+    entry = pointOf(landmark.point);
+    if (landmark.ring)
     {
-      const double r = (bin + 0.5) * traced.binMm;
-      // Echoes go there and back.
-      const double db = -2.0 * softTissueDbPerCmMHz * settings.tracing.frequencyMHz * r / 10.0 - shadowDb;
-      const double area =
-        glm::distance(lines[line].originMm + r * lines[line].axis, lines[line + 1].originMm + r * lines[line + 1].axis);
-      all += area;
-      const double intensity = traced.intensity[line * std::size_t(traced.binCount) + std::size_t(bin)];
-      shadowed += intensity < std::pow(10.0, db / 20.0) ? area : 0.0;
+      entry["normal"] = vectorOf(landmark.ring->normal);
+      entry["radiusMm"] = landmark.ring->radiusMm;
+      entry["hinges"] = Json::array();
+      for (const ImagePoint& hinge : landmark.hinges)
+      {
+        entry["hinges"].push_back(pointOf(hinge));
+      }
     }
   }
-  return all > 0.0 ? shadowed / all : 0.0;
+  return json;
 }
+
+Json groupOf(std::size_t value, const GroupFacts& group)
+{
+  Json json = { { "value", value }, { "pixels", group.pixels }, { "inPatient", group.isThere } };
+  json["visiblePercent"] = group.pixels > 0 ? Json(100.0 * group.visibleShare) : Json();
+  return json;
+}
+
+} // namespace
 
 std::string describeImage(const DataSetPlan& plan, const Scene& scene, const DataSetFacts& facts)
 {
@@ -101,6 +126,10 @@ std::string describeImage(const DataSetPlan& plan, const Scene& scene, const Dat
       thorax, [&](double value, const Parameter& parameter) { json["patient"]["thorax"][parameter.name] = value; });
   }
   json["view"] = patient.views[std::size_t(image.view)].name;
+  if (facts.found)
+  {
+    json["visibility"] = visibilityOf(*facts.found);
+  }
   json["pose"] = { { "positionMm", vectorOf(facts.pose.positionMm) },
                    { "axial", vectorOf(facts.pose.axial) },
                    { "lateral", vectorOf(facts.pose.lateral) } };
@@ -110,9 +139,15 @@ std::string describeImage(const DataSetPlan& plan, const Scene& scene, const Dat
                     { "shareShadowed", facts.flags.shareShadowed } };
   for (std::size_t group = 0; group < set.masks.size(); ++group)
   {
-    json["masks"][set.masks[group].name] = { { "value", group + 1 },
-                                             { "pixels", facts.groupPixels[group] },
-                                             { "inPatient", bool(facts.groupIsThere[group]) } };
+    json["masks"][set.masks[group].name] = groupOf(group + 1, facts.groups[group]);
+  }
+  if (facts.noLandmarks.empty())
+  {
+    json["landmarks"] = landmarksOf(facts.landmarks);
+  }
+  else
+  {
+    json["noLandmarks"] = facts.noLandmarks;
   }
   json["image"] = { { "width", facts.width },
                     { "height", facts.height },
@@ -125,8 +160,16 @@ std::string describeImage(const DataSetPlan& plan, const Scene& scene, const Dat
     json[nameOf(group)] = settingsOf(facts.settings, group);
   }
   json["tissues"] = tissuesOf(scene);
+  if (std::find(set.channels.begin(), set.channels.end(), ImageChannel::Label) != set.channels.end())
+  {
+    for (const LabelInfo& label : scene.volume().labels)
+    {
+      json["labels"][std::to_string(label.id)] = label.name;
+    }
+  }
   json["software"] = { { "name", "SonoVDB" }, { "version", version() }, { "device", facts.onGpu ? "GPU" : "CPU" } };
-  return json.dump(1) + "\n";
+  // A label map's names may be in any encoding.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 } // namespace sono

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "DataSets/DataSetPlan.h"
+#include "DataSets/ImageLandmarks.h"
+#include "Probe/StandardViews.h"
 #include "Scene/Scene.h"
-#include "Trace/Trace.h"
 
 #include <string>
 #include <vector>
@@ -14,12 +15,16 @@ struct DataSetFlags
 {
   bool faceOnSkin = false;
   double shareInsideVolume = 0.0; ///< of the image's area, see shareInsideVolume
-  double shareShadowed = 0.0;     ///< see shareShadowed
+  double shareShadowed = 0.0;     ///< see ImageSight
 };
 
-/// Share of the scanned area where what arrives would echo at less than -20 dB of what a soft tissue of 0.5 dB/(cm MHz)
-/// lets through to there: bone, lung and gas lie in front, or no contact.
-double shareShadowed(const std::vector<ScanLine>& lines, const ImageSettings& settings, const TracedLines& traced);
+/// What an image has of a mask group.
+struct GroupFacts
+{
+  std::size_t pixels = 0;
+  bool isThere = false;      ///< whether the patient has a label of it
+  double visibleShare = 0.0; ///< of these pixels, see ImageSight
+};
 
 /// What is to be said of an image.
 struct DataSetFacts
@@ -30,8 +35,10 @@ struct DataSetFacts
   ProbePose pose;
   PoseJitter jitter;
   DataSetFlags flags;
-  std::vector<std::size_t> groupPixels; ///< of each mask group
-  std::vector<bool> groupIsThere;       ///< whether the patient has a label of it
+  const StandardView* found = nullptr; ///< of a view that was looked for by landmarks; null: it was not
+  std::vector<ImageLandmark> landmarks;
+  std::string noLandmarks;        ///< why there are none; empty: there are
+  std::vector<GroupFacts> groups; ///< of each mask group
   int width = 0;
   int height = 0;
   double lateralMinMm = 0.0;

@@ -2,6 +2,7 @@
 #include "DataSets/DataSetSettings.h"
 #include "DataSets/StrictJson.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -317,6 +318,28 @@ void readMasks(StrictObject& root, DataSet& set)
   root.require("masks", set.masks.size() <= 255, "has more than 255 groups; remove some");
 }
 
+void readChannels(StrictObject& root, DataSet& set)
+{
+  std::string names;
+  for (int i = 0; i < imageChannelCount; ++i)
+  {
+    names += (i == 0 ? "\"" : ", \"") + std::string(nameOf(ImageChannel(i))) + "\"";
+  }
+  for (const std::string& name : root.texts("channels"))
+  {
+    int channel = 0;
+    while (channel < imageChannelCount && name != nameOf(ImageChannel(channel)))
+    {
+      ++channel;
+    }
+    root.require("channels", channel < imageChannelCount, "has '" + name + "', which is none; write of " + names);
+    root.require("channels",
+                 std::find(set.channels.begin(), set.channels.end(), ImageChannel(channel)) == set.channels.end(),
+                 "has '" + name + "' twice; remove one");
+    set.channels.push_back(ImageChannel(channel));
+  }
+}
+
 void readPatients(StrictObject& root, DataSet& set)
 {
   std::set<std::string> ids;
@@ -384,18 +407,6 @@ Json parse(const DataSet& set)
 
 } // namespace
 
-const char* nameOf(Split split)
-{
-  constexpr const char* names[splitCount] = { "train", "validation", "test" };
-  return names[int(split)];
-}
-
-const char* nameOf(SettingsGroup group)
-{
-  constexpr const char* names[] = { "probe", "tracing", "echo", "display" };
-  return names[int(group)];
-}
-
 DataSet readDataSet(const std::string& path, const std::string& dataFolder)
 {
   std::ifstream stream(path, std::ios::binary);
@@ -449,6 +460,10 @@ DataSet readDataSet(const std::string& path, const std::string& dataFolder)
     readTissues(root.object("tissues"), set);
   }
   readMasks(root, set);
+  if (root.has("channels"))
+  {
+    readChannels(root, set);
+  }
   root.refuseOthers();
   checkTogether(set);
   return set;

@@ -24,6 +24,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* infoFolder = "info";
+constexpr const char* channelFolder = "channels";
+constexpr const char* beamFolder = "beam";
 constexpr const char* sourceFile = "dataset_source.json";
 
 /// Where the files of an image lie in the folder.
@@ -32,25 +34,52 @@ struct CaseFiles
   std::string image;
   std::string mask;
   std::string info;
+  std::string channels; ///< empty: none
+  std::string beam;
 };
+
+bool asksFor(const DataSet& set, ImageChannel channel)
+{
+  return std::find(set.channels.begin(), set.channels.end(), channel) != set.channels.end();
+}
 
 CaseFiles filesOf(const DataSetPlan& plan, std::int64_t index)
 {
   const std::string name = plan.caseName(index);
-  const std::string info = std::string(infoFolder) + "/" + name + ".json";
+  const bool hasBeam = asksFor(plan.set(), ImageChannel::Beam);
+  const bool hasPixels = plan.set().channels.size() > (hasBeam ? 1u : 0u);
+  CaseFiles files;
+  files.info = std::string(infoFolder) + "/" + name + ".json";
+  files.channels = hasPixels ? channelFolder + ("/" + name) + ".exr" : "";
+  files.beam = hasBeam ? beamFolder + ("/" + name) + ".exr" : "";
   if (plan.set().format == DataSetFormat::Monai)
   {
-    return { "images/" + name + ".png", "labels/" + name + ".png", info };
+    files.image = "images/" + name + ".png";
+    files.mask = "labels/" + name + ".png";
+    return files;
   }
   const std::string end = plan.splitOf(index) == Split::Test ? "Ts/" : "Tr/";
-  return { "images" + end + name + "_0000.png", "labels" + end + name + ".png", info };
+  files.image = "images" + end + name + "_0000.png";
+  files.mask = "labels" + end + name + ".png";
+  return files;
 }
 
 std::vector<std::string> foldersOf(const DataSetPlan& plan)
 {
-  return plan.set().format == DataSetFormat::Monai
-           ? std::vector<std::string>{ "images", "labels", infoFolder }
-           : std::vector<std::string>{ "imagesTr", "labelsTr", "imagesTs", "labelsTs", infoFolder };
+  std::vector<std::string> folders =
+    plan.set().format == DataSetFormat::Monai
+      ? std::vector<std::string>{ "images", "labels", infoFolder }
+      : std::vector<std::string>{ "imagesTr", "labelsTr", "imagesTs", "labelsTs", infoFolder };
+  const CaseFiles files = filesOf(plan, 0);
+  if (!files.channels.empty())
+  {
+    folders.emplace_back(channelFolder);
+  }
+  if (!files.beam.empty())
+  {
+    folders.emplace_back(beamFolder);
+  }
+  return folders;
 }
 
 void write(const fs::path& path, const std::function<void(std::ostream&)>& content)
@@ -198,7 +227,11 @@ void writeMonaiList(const DataSetPlan& plan, const fs::path& folder)
   json["numTest"] = plan.imagesIn(Split::Test);
   const auto entry = [&](std::int64_t index) {
     const CaseFiles files = filesOf(plan, index);
-    return R"({"image": ")" + files.image + R"(", "label": ")" + files.mask + R"(", "info": ")" + files.info + "\"}";
+    std::string text =
+      R"({"image": ")" + files.image + R"(", "label": ")" + files.mask + R"(", "info": ")" + files.info;
+    text += files.channels.empty() ? "" : R"(", "channels": ")" + files.channels;
+    text += files.beam.empty() ? "" : R"(", "beam": ")" + files.beam;
+    return text + "\"}";
   };
   write(folder / "dataset.json", [&](std::ostream& out) {
     out << open(json) << ",\n \"training\": ";
@@ -211,17 +244,26 @@ void writeMonaiList(const DataSetPlan& plan, const fs::path& folder)
   });
 }
 
-void writeImage(const DataSetImage& image, const CaseFiles& files, const fs::path& folder)
+void writeImage(const DataSetImage& image, const CaseFiles& files, const fs::path& folder, const EncodeExr& encode)
 {
   write(folder / files.image, pngBytes(image.grey.data(), image.width, image.height, image.pixelMm));
   write(folder / files.mask, pngBytes(image.mask.data(), image.width, image.height, image.pixelMm));
-  write(folder / files.info, image.info);
+  if (!files.channels.empty())
+  {
+    write(folder / files.channels, encode(image.channels));
+  }
+  if (!files.beam.empty())
+  {
+    write(folder / files.beam, encode(image.beam));
+  }
+  write(folder / files.info, image.info); // the last
 }
 
 } // namespace
 
 DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, const DataSetShare& share,
-                          const Progress& progress, const std::function<void(const DataSetTally&)>& tell, int workers)
+                          const Progress& progress, const std::function<void(const DataSetTally&)>& tell, int workers,
+                          const EncodeExr& encode)
 {
   if (folderName.empty())
   {
@@ -229,6 +271,12 @@ DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, 
   }
   const fs::path folder(folderName);
   const DataSetPlan& plan = imager.plan();
+  if (!plan.set().channels.empty() && !encode)
+  {
+    throw Error("'" + plan.set().path +
+                "': 'channels' go into OpenEXR files, which this program cannot write; remove "
+                "them, or write the data set in ParaView.");
+  }
   const PlannedRange images = plan.imagesOf(share);
   claim(plan, folder);
   removeParts(plan, folder, images);
@@ -244,7 +292,7 @@ DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, 
     const CaseFiles files = filesOf(plan, index);
     if (!fs::exists(folder / files.info))
     {
-      writeImage(by.make(index, untilStopped), files, folder);
+      writeImage(by.make(index, untilStopped), files, folder, encode);
       ++made;
     }
   };

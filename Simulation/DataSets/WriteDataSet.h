@@ -25,12 +25,14 @@ struct DataSetTally
 /// A folder that nnU-Net takes: imagesTr and imagesTs with CASE_0000.png, labelsTr and labelsTs with CASE.png, info
 /// with CASE.json, dataset.json and splits_final.json. One that MONAI takes: images, labels and info, and the data list
 /// dataset.json with training, validation and test. Beside them dataset_source.json: the file that declared it all.
+/// Where that asks for channels, OpenEXR files: channels/CASE.exr, as large as the picture, and beam/CASE.exr, lines x
+/// samples (see ImageChannels.h), which `encode` makes.
 ///
 /// `workers` threads make images beside each other, 0: as many as suit the device (imageWorkers). `tell` hears after
 /// each image, on the calling thread. Throws Error as DataSetImager, where the folder holds another
-/// data set, and where a file cannot be written; Aborted.
+/// data set, where a file cannot be written, and for channels without `encode`; Aborted.
 DataSetTally writeDataSet(DataSetImager& imager, const std::string& folder, const DataSetShare& share = {},
                           const Progress& progress = {}, const std::function<void(const DataSetTally&)>& tell = {},
-                          int workers = 0);
+                          int workers = 0, const EncodeExr& encode = {});
 
 } // namespace sono

@@ -24,6 +24,9 @@ void printFigure(const std::string& name, double value, const std::string& unit,
 /// Largest resident memory of this process so far, in MB of 10^6 bytes.
 double peakMegabytes();
 
+/// Resident memory of this process now, the same unit.
+double residentMegabytes();
+
 inline double medianOf(std::vector<double> values)
 {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

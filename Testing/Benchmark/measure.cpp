@@ -1,9 +1,11 @@
 #include "Stage.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
+#include <fstream>
 
 namespace sono {
 
@@ -25,6 +27,14 @@ double peakMegabytes()
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6; // Linux counts in KiB
+}
+
+double residentMegabytes()
+{
+  std::ifstream stream("/proc/self/statm");
+  double pages = 0.0;
+  stream >> pages >> pages; // the second
+  return pages * double(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
 } // namespace sono

@@ -2,6 +2,8 @@
 import json
 import os
 import pathlib
+import re
+import subprocess
 import tarfile
 import tempfile
 import unittest
@@ -10,6 +12,8 @@ import numpy as np
 import sonovdb
 from chain import listen
 from sonovdb.vtkSonoFilters import vtkSonoDataSet
+from TestPicture import read_png, read_tif
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 BUNDLED = pathlib.Path(__file__).resolve().parents[2] / "Data" / "datasets" / "apical.json"
 
@@ -25,6 +29,13 @@ def small(folder, **changes):
     path = pathlib.Path(folder) / "small.json"
     path.write_text(json.dumps(declared), encoding="utf-8")
     return str(path)
+
+
+def read_channel(exr, name):
+    """As floats, rows from the top."""
+    to = exr.with_suffix(f".{name}.tif")
+    subprocess.run(["oiiotool", str(exr), "--ch", name, "-d", "float", "-o", str(to)], check=True)
+    return read_tif(to)
 
 
 class TestDataSet(unittest.TestCase):
@@ -53,6 +64,9 @@ class TestDataSet(unittest.TestCase):
         self.assertIn("pathSeed", info["tracing"])
         self.assertIn("scattererSeed", info["echo"])
         self.assertIn("blood", info["tissues"])
+        apex = info["landmarks"]["apex"]
+        self.assertTrue(apex["inSector"])
+        self.assertTrue(0 < apex["column"] < image.shape[1] and 0 < apex["row"] < image.shape[0])
         self.assertEqual(info["patient"]["licence"], "BSD-3-Clause")
         again = sonovdb.Dataset(small(self.folder))[3]  # without the three before it
         np.testing.assert_array_equal(again[0], image)
@@ -91,6 +105,67 @@ class TestDataSet(unittest.TestCase):
                 image = [p for p in pathlib.Path(target).rglob("apical_0000005*.png") if "images" in p.parent.name]
                 self.assertEqual(found["apical_0000005.image.png"], image[0].read_bytes())
                 self.assertTrue(any(os.path.basename(path).startswith(info["split"]) for path in shards))
+
+    def test_channels_say_what_the_pictures_say(self):
+        target = pathlib.Path(self.folder, "channels")
+        writer = vtkSonoDataSet()
+        heard = listen(writer)
+        writer.SetFileName(small(self.folder, format="MONAI",
+                                 channels=["grey", "mask", "label", "tissue", "error", "beam"]))
+        writer.SetFolder(str(target))
+        writer.Update()
+        self.assertEqual(heard, [])
+        info = json.loads((target / "info" / "apical_0000002.json").read_text(encoding="utf-8"))
+        exr = target / "channels" / "apical_0000002.exr"
+        # Read by OpenImageIO: each channel as the floats of a TIFF.
+        pixels = {name: read_channel(exr, name) for name in ("grey", "mask", "label", "tissue", "error")}
+        image = read_png(target / "images" / "apical_0000002.png").astype(int)
+        mask = read_png(target / "labels" / "apical_0000002.png")
+        inside = image > 0
+        np.testing.assert_array_equal(np.maximum(1, np.floor(255 * pixels["grey"][inside] + 0.5)), image[inside])
+        np.testing.assert_array_equal(pixels["mask"], mask)
+        np.testing.assert_array_equal(pixels["tissue"] > 0, inside)
+        writer.SetImageNumber(2)
+        writer.Update()
+        shown = vtk_to_numpy(writer.GetOutput().GetPointData().GetArray("label"))
+        np.testing.assert_array_equal(shown.reshape(image.shape), pixels["label"])
+        cavity = {int(number) for number, name in info["labels"].items()
+                  if "left" in name.lower() and "ventricle_blood" in name.lower()}
+        self.assertEqual(len(cavity), 1)
+        shown = np.isin(pixels["label"].astype(int), list(cavity))
+        self.assertGreater(shown.sum(), 200)
+        self.assertTrue(np.all(mask[shown] == info["masks"]["LV cavity"]["value"]))
+        names = list(info["tissues"])
+        self.assertEqual({names[int(n) - 1] for n in np.unique(pixels["tissue"][shown])}, {"blood"})
+        self.assertTrue(0 < pixels["error"].max() <= 100)
+        said = subprocess.run(["oiiotool", "--info", "-v", str(exr)], capture_output=True, text=True, check=True).stdout
+        self.assertRegex(said, rf"{image.shape[1]} x +{image.shape[0]}, 5 channel, float openexr")
+        self.assertRegex(said, r"pixelMm: 1\b")
+        self.assertIn("error: percent of the intensity", said)
+
+        beam = target / "beam" / "apical_0000002.exr"
+        lines = {name: read_channel(beam, name) for name in ("grey", "envelope", "iq.re", "iq.im", "intensity")}
+        self.assertEqual(lines["grey"].shape[0], info["probe"]["lineCount"])
+        np.testing.assert_allclose(np.hypot(lines["iq.re"], lines["iq.im"]), lines["envelope"], rtol=1e-5)
+        self.assertTrue(0 <= lines["grey"].min() and lines["grey"].max() <= 1)
+        self.assertTrue(np.all(lines["intensity"] <= 1) and lines["intensity"].max() > 0)
+        # A pixel lies between two lines and two samples: where those are as bright, so is it.
+        middle = info["probe"]["lineCount"] // 2
+        column = int(round(-info["image"]["lateralMinMm"]))
+        said = subprocess.run(["oiiotool", "--info", "-v", str(beam)], capture_output=True, text=True, check=True).stdout
+        sample_mm = float(re.search(r"sampleMm: ([0-9.e-]+)", said).group(1))
+        for row in range(10, image.shape[0] - 5):
+            at = row / sample_mm
+            near = lines["grey"][middle - 1:middle + 1, int(at):int(at) + 2]
+            self.assertTrue(near.min() - 1e-3 <= pixels["grey"][row, column] <= near.max() + 1e-3, row)
+
+        shards = sonovdb.write_shards(str(target), os.path.join(self.folder, "exr-shards"), per_shard=2)
+        found = []
+        for path in shards:
+            with tarfile.open(path) as shard:
+                found += shard.getnames()
+        self.assertEqual(sum(name.endswith(".channels.exr") for name in found), 6)
+        self.assertEqual(len(found), 30)
 
     def test_an_abort_keeps_what_is_there(self):
         writer = vtkSonoDataSet()

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -25,6 +27,28 @@ namespace {
 
 using Json = nlohmann::json;
 using Content = std::map<std::string, std::string>;
+
+/// Not OpenEXR, but all that would be in it.
+std::string plainBytes(const ChannelImage& image)
+{
+  std::string bytes = std::to_string(image.width) + " " + std::to_string(image.height);
+  for (std::size_t i = 0; i < image.names.size(); ++i)
+  {
+    bytes += " " + image.names[i] + " ";
+    bytes.append(reinterpret_cast<const char*>(image.values[i].data()), sizeof(float) * image.values[i].size());
+  }
+  return bytes;
+}
+
+const std::vector<float>& channel(const ChannelImage& image, const std::string& name)
+{
+  const auto at = std::find(image.names.begin(), image.names.end(), name);
+  if (at == image.names.end())
+  {
+    throw Error("no channel " + name);
+  }
+  return image.values[std::size_t(at - image.names.begin())];
+}
 
 /// A head of skin around a ball of blood, in air, 40 voxels of 2.5 mm, turned against the world.
 LabelVolume ball()
@@ -76,7 +100,7 @@ protected:
   DataSetTally write(const std::string& folder, const DataSetShare& share = {}, const Progress& progress = {})
   {
     DataSetImager imager(plan(), Device::Cpu);
-    return writeDataSet(imager, (root_ / folder).string(), share, progress);
+    return writeDataSet(imager, (root_ / folder).string(), share, progress, {}, 0, plainBytes);
   }
   Content content(const std::string& folder)
   {
@@ -159,6 +183,10 @@ TEST_F(DataSetFolder, SaysWhereTheProbeIsAndWhatItSees)
   const double areaMm2 = 4.0 * double(info["masks"]["cavity"]["pixels"]);
   EXPECT_NEAR(areaMm2, 400.0 * M_PI, 0.12 * 400.0 * M_PI); // voxels of 2.5 mm, pixels of 2 mm, refraction none: 4 % rms
   EXPECT_EQ(info["display"]["gainDb"].get<double>(), set->settings(set->image(3)).display.gainDb);
+  EXPECT_GT(info["masks"]["cavity"]["visiblePercent"], 99.0); // there is nothing but skin in front
+  EXPECT_TRUE(info["masks"]["none"]["visiblePercent"].is_null());
+  expectContains(info["noLandmarks"], "The label map has no left atrium, no right ventricle");
+  EXPECT_FALSE(info.contains("landmarks"));
   EXPECT_EQ(info["flags"]["faceOnSkin"], true);
   EXPECT_DOUBLE_EQ(info["flags"]["shareInsideVolume"].get<double>(), 1.0);
   EXPECT_EQ(std::size_t(std::count(image.mask.begin(), image.mask.end(), 2)),
@@ -222,6 +250,99 @@ TEST_F(DataSetFolder, IsTheSameByManyWorkers)
   expectContains(errorOf([&] { byThree("bad", {}); }), "of patient 'other': none of 32 poses");
 }
 
+/// The channels say the same as the pictures, and as the JSON beside them.
+TEST_F(DataSetFolder, HasChannelsWhereTheFileAsksForThem)
+{
+  json_["channels"] = { "grey", "mask", "label", "tissue", "error", "beam" };
+  DataSetImager imager(plan(), Device::Cpu);
+  const DataSetImage image = imager.make(3);
+  const Json info = Json::parse(image.info);
+  ASSERT_EQ(image.channels.names, (std::vector<std::string>{ "grey", "mask", "label", "tissue", "error" }));
+  std::vector<std::string> tissues{ "" };
+  const auto inOrder = nlohmann::ordered_json::parse(image.info);
+  for (const auto& [name, numbers] : inOrder["tissues"].items())
+  {
+    tissues.push_back(name);
+  }
+  const std::map<std::string, std::string> expected{ { "left_ventricle_blood", "blood" }, { "skin", "skin" } };
+  ASSERT_EQ(channel(image.channels, "error").size(), image.grey.size());
+  double error = 0.0;
+  for (std::size_t i = 0; i < image.grey.size(); ++i)
+  {
+    const float grey = channel(image.channels, "grey")[i];
+    const int label = int(channel(image.channels, "label")[i]);
+    const int tissue = int(channel(image.channels, "tissue")[i]);
+    EXPECT_EQ(image.grey[i], image.grey[i] == 0 ? 0 : std::max(1L, std::lround(255.0f * grey)));
+    EXPECT_EQ(float(image.mask[i]), channel(image.channels, "mask")[i]);
+    EXPECT_EQ(image.mask[i], label == 7 ? 2 : 0);
+    ASSERT_LT(tissue, int(tissues.size()));
+    EXPECT_EQ(tissue > 0, image.grey[i] > 0);
+    const std::string name = label > 0 ? info["labels"][std::to_string(label)] : "";
+    if (expected.count(name) > 0)
+    {
+      EXPECT_EQ(tissues[std::size_t(tissue)], expected.at(name));
+    }
+    error = std::max(error, double(channel(image.channels, "error")[i]));
+  }
+  EXPECT_GT(error, 1.0); // of eight paths
+  EXPECT_LE(error, 100.0);
+  EXPECT_EQ(image.channels.numbers[0], std::make_pair(std::string("pixelMm"), 2.0));
+
+  EXPECT_EQ(image.beam.height, 12);
+  const double sampleMm = image.beam.numbers[0].second;
+  EXPECT_NEAR(image.beam.width * sampleMm, 70.0, 2.0 * sampleMm);
+  for (std::size_t i = 0; i < channel(image.beam, "envelope").size(); ++i)
+  {
+    const float re = channel(image.beam, "iq.re")[i];
+    const float im = channel(image.beam, "iq.im")[i];
+    ASSERT_FLOAT_EQ(channel(image.beam, "envelope")[i], std::hypot(re, im));
+  }
+  // Skin takes, so that less arrives the deeper it lies.
+  const float* intensity = channel(image.beam, "intensity").data() + 6 * std::size_t(image.beam.width);
+  EXPECT_LT(intensity[std::size_t(60.0 / sampleMm)], intensity[std::size_t(3.0 / sampleMm)]);
+  EXPECT_LE(intensity[std::size_t(3.0 / sampleMm)], 1.0f);
+}
+
+TEST_F(DataSetFolder, TakesNamesInAnyEncoding)
+{
+  std::ofstream(root_ / "names.csv") << "label,name\n0,background\n7,left ventricle blood \xe9\n9,skin\n";
+  json_["patients"][0]["names"] = "names.csv";
+  json_["channels"] = { "label" };
+  DataSetImager imager(plan(), Device::Cpu);
+  EXPECT_EQ(Json::parse(imager.make(0).info)["labels"]["7"], "left ventricle blood \xef\xbf\xbd");
+}
+
+TEST_F(DataSetFolder, WritesChannelsAndGoesOnWithThem)
+{
+  const auto names = [](const Content& files, const std::string& folder) {
+    return std::count_if(files.begin(), files.end(),
+                         [&](const auto& file) { return file.first.rfind(folder + "/", 0) == 0; });
+  };
+  write("plain");
+  json_["channels"] = { "error", "beam" };
+  write("whole");
+  const Content whole = content("whole");
+  EXPECT_EQ(names(whole, "channels"), 12);
+  EXPECT_EQ(names(whole, "beam"), 12);
+  EXPECT_EQ(names(content("plain"), "beam"), 0);
+  EXPECT_EQ(whole.at("imagesTr/ball_0000002_0000.png"), content("plain").at("imagesTr/ball_0000002_0000.png"));
+  int heard = 0;
+  EXPECT_THROW(write("cut", {}, [&](double) { return ++heard < 60; }), Aborted);
+  std::ofstream(root_ / "cut/beam/ball_0000009.exr.12.part") << "half";
+  std::ofstream(root_ / "cut/channels/ball_0000009.exr") << "of a process that was killed before its JSON";
+  write("cut");
+  EXPECT_EQ(content("cut"), whole);
+  json_["channels"] = { "beam" };
+  json_["format"] = "MONAI";
+  write("monai");
+  const Json first = Json::parse(content("monai").at("dataset.json"))["training"][0];
+  EXPECT_EQ(content("monai").count(first["beam"]), 1u);
+  EXPECT_FALSE(first.contains("channels"));
+  DataSetImager imager(plan(), Device::Cpu);
+  expectContains(errorOf([&] { writeDataSet(imager, (root_ / "none").string()); }),
+                 "'channels' go into OpenEXR files, which this program cannot write");
+}
+
 TEST_F(DataSetFolder, KeepsDataSetsApart)
 {
   write("out");
@@ -257,6 +378,11 @@ TEST_F(DataSetFolder, LooksForViewsByNameAndForWindows)
   const Json first = infoOf(0);
   EXPECT_EQ(first["view"], "A2C"); // there is no bladder
   EXPECT_EQ(infoOf(1)["pose"], first["pose"]);
+  EXPECT_GT(first["visibility"]["shownPercent"]["left ventricle"], 50.0);
+  EXPECT_GT(first["visibility"]["score"], 0.1);
+  EXPECT_LT(first["visibility"]["planeOffDeg"], 15.0);
+  EXPECT_TRUE(first["landmarks"]["apex"]["inSector"]);
+  EXPECT_FALSE(infoOf(2).contains("visibility")); // of a window
   EXPECT_GT(first["masks"]["cavity"]["pixels"], 200);
   EXPECT_GT(infoOf(2)["masks"]["liver"]["pixels"], 500);
   patient["views"] = Json::parse(R"([{"name": "A6C"}])");

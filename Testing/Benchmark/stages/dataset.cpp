@@ -7,18 +7,9 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 namespace sono {
 namespace {
-
-double residentMegabytes()
-{
-  std::ifstream stream("/proc/self/statm");
-  double pages = 0.0;
-  stream >> pages >> pages; // the second
-  return pages * double(sysconf(_SC_PAGESIZE)) / 1e6;
-}
 
 void measurePlan(DataSet set)
 {
