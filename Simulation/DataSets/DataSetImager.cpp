@@ -23,24 +23,6 @@ namespace {
 constexpr int mostAttempts = 32;
 constexpr const char* fallbackTissue = "soft_tissue";
 
-/// The linear map that stretches a grid along its own axes.
-Mat3d stretchMap(const GridPlacement& placement, const Vec3d& stretch)
-{
-  Mat3d scaled = placement.direction;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    scaled[axis] *= stretch[axis];
-  }
-  return scaled * glm::transpose(placement.direction);
-}
-
-GridPlacement stretched(GridPlacement placement, const Vec3d& stretch)
-{
-  placement.originMm = stretchMap(placement, stretch) * placement.originMm;
-  placement.spacingMm *= stretch;
-  return placement;
-}
-
 /// Rodrigues' formula; `axis` has length 1.
 Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
 {
@@ -105,7 +87,8 @@ std::optional<ProbePose> standardPose(const std::vector<StandardView>& views, co
 /// Where the probe stands for each of a patient's views. Throws Error where none is obtainable.
 std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSetPatient& patient,
                                                 const ThoraxParameters& thorax, const ProbeSettings& probe,
-                                                const Mat3d& stretch, const Progress& progress)
+                                                const GridPlacement& grid, const BodyAugmentation& augmentation,
+                                                const Progress& progress)
 {
   std::vector<std::optional<ProbePose>> poses;
   std::vector<StandardView> standard;
@@ -119,9 +102,7 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
     }
     else if (view.pose || isBundled)
     {
-      const ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C(thorax);
-      poses.emplace_back(
-        ProbePose{ stretch * pose.positionMm, stretch * pose.axial, stretch * pose.lateral }.orthonormalized());
+      poses.emplace_back(augmented(view.pose ? *view.pose : thoraxPhantomA4C(thorax), grid, augmentation));
     }
     else
     {
@@ -131,6 +112,10 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
           scene, [&](const std::string&) { return probe; }, progress);
       }
       poses.push_back(standardPose(standard, view.name, why));
+      if (poses.back() && augmentation.isMirrored)
+      {
+        poses.back()->lateral = -poses.back()->lateral; // as `augmented` turns a given one
+      }
     }
   }
   if (std::none_of(poses.begin(), poses.end(), [](const auto& pose) { return pose.has_value(); }))
@@ -142,13 +127,13 @@ std::vector<std::optional<ProbePose>> findViews(const Scene& scene, const DataSe
 
 } // namespace
 
-/// A patient's labels with tissues, and skin around them; not stretched.
+/// A patient's labels with tissues, and skin around them; not augmented.
 struct DataSetImager::Patient
 {
-  PlannedBody body; ///< for whom it was made, and for all that do not differ from it but by their stretch
+  PlannedBody body; ///< for whom it was made, and for all that do not differ from it but by augmentation
   ThoraxParameters thorax;
   LabelVolume volume;
-  std::vector<std::uint8_t> groups; ///< of each label id
+  std::vector<std::uint8_t> groups; ///< of each label id of the last body
   std::vector<bool> groupIsThere;
 };
 
@@ -228,14 +213,14 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   }
   body_ = nullptr; // before the next one takes as much memory
   const DataSet& set = plan_->set();
-  const Vec3d stretch = plan_->bodies()[std::size_t(number)].stretch;
-  LabelVolume volume = patient_->volume;
-  volume.placement = stretched(volume.placement, stretch);
+  const BodyAugmentation& augmentation = plan_->bodies()[std::size_t(number)].augmentation;
+  LabelVolume volume = augmented(patient_->volume, augmentation);
+  patient_->groups = groupsOf(volume.labels, set.masks); // fat may be new
   auto body = std::make_unique<Body>();
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
   body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
-                          stretchMap(patient_->volume.placement, stretch), progress);
+                          patient_->volume.placement, augmentation, progress);
   body_ = std::move(body);
 }
 
