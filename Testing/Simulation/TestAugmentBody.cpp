@@ -281,38 +281,48 @@ TEST(AugmentBody, PosesMoveWithTheAnatomy)
   }
 }
 
-/// The mask of a mirrored body is the mirror image of the body's own, and so are those of views that are looked for.
-TEST(AugmentBody, PicturesOfAMirroredBodyAreMirrorImages)
+/// Two views of the bundled thorax, small.
+class AugmentedPictures : public ::testing::Test
 {
-  const sono::testing::TemporaryFolder folder;
-  nlohmann::json json;
-  std::ifstream(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json") >> json;
-  json["exams"] = 1;
-  json["imagesPerExam"] = 2;
-  json["pixelMm"] = 1.0;
-  json["tracing"]["pathsPerLine"] = 4;
-  json.erase("jitter");
-  nlohmann::json& patient = json["patients"][0];
-  patient["copies"] = 1;
-  patient["spacingMm"] = 2.0;
-  patient["views"] = nlohmann::json::parse(R"([{"name": "A4C"}, {"name": "A2C"}])");
-  std::vector<DataSetImage> images;
-  for (const bool isMirrored : { false, true })
+protected:
+  void SetUp() override
   {
-    patient["mirror"] = isMirrored;
-    std::ofstream(folder.file("set.json")) << json.dump();
-    DataSetImager imager(std::make_shared<const DataSetPlan>(readDataSet(folder.file("set.json"), SONOVDB_DATA_DIR)),
-                         Device::Cpu);
-    for (const int view : { 0, 1 })
-    {
-      images.push_back(imager.make(view));
-      EXPECT_EQ(nlohmann::json::parse(images.back().info)["patient"]["mirror"], isMirrored);
-    }
+    std::ifstream(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json") >> json_;
+    json_["exams"] = 1;
+    json_["imagesPerExam"] = 2;
+    json_["pixelMm"] = 1.0;
+    json_["tracing"]["pathsPerLine"] = 4;
+    json_.erase("jitter");
+    nlohmann::json& patient = json_["patients"][0];
+    patient["copies"] = 1;
+    patient["spacingMm"] = 2.0;
+    patient["views"] = nlohmann::json::parse(R"([{"name": "A4C"}, {"name": "A2C"}])");
   }
+  std::vector<DataSetImage> imagesWith(const char* changes)
+  {
+    nlohmann::json json = json_;
+    json["patients"][0].update(nlohmann::json::parse(changes));
+    const std::string path = folder_.file("set.json");
+    std::ofstream(path) << json.dump();
+    DataSetImager imager(std::make_shared<const DataSetPlan>(readDataSet(path, SONOVDB_DATA_DIR)), Device::Cpu);
+    return { imager.make(0), imager.make(1) };
+  }
+
+  const sono::testing::TemporaryFolder folder_;
+  nlohmann::json json_;
+};
+
+/// The mask of a mirrored body is the mirror image of the body's own, of a view that is looked for, too.
+TEST_F(AugmentedPictures, OfAMirroredBodyAreMirrorImages)
+{
+  const std::vector<DataSetImage> plain = imagesWith(R"({"mirror": false})");
+  const std::vector<DataSetImage> mirrored = imagesWith(R"({"mirror": true})");
   for (const std::size_t view : { std::size_t(0), std::size_t(1) })
   {
-    const DataSetImage& a = images[view];
-    const DataSetImage& b = images[view + 2];
+    const DataSetImage& a = plain[view];
+    const DataSetImage& b = mirrored[view];
+    EXPECT_EQ(nlohmann::json::parse(a.info)["patient"]["mirror"], false);
+    EXPECT_EQ(nlohmann::json::parse(b.info)["patient"]["mirror"], true);
     ASSERT_EQ(a.width, b.width);
     ASSERT_EQ(a.height, b.height);
     int same = 0;
@@ -328,6 +338,20 @@ TEST(AugmentBody, PicturesOfAMirroredBodyAreMirrorImages)
     }
     EXPECT_GT(flipped, 0.97 * a.width * a.height) << view;
     EXPECT_LT(same, 0.95 * a.width * a.height) << view;
+  }
+}
+
+TEST_F(AugmentedPictures, StandOnTheNewSkin)
+{
+  for (const DataSetImage& image : imagesWith(
+         R"({"extraFatMm": 12, "mirror": true, "warp": {"amplitudeMm": 8, "wavelengthMm": 140}, "stretch": 1.05})"))
+  {
+    const auto info = nlohmann::json::parse(image.info);
+    EXPECT_EQ(info["patient"]["extraFatMm"], 12.0);
+    EXPECT_EQ(info["patient"]["warp"]["amplitudeMm"], 8.0);
+    EXPECT_EQ(info["flags"]["faceOnSkin"], true);
+    EXPECT_GT(info["masks"]["LV cavity"]["pixels"], 500);
+    EXPECT_GT(info["masks"]["left atrium"]["pixels"], 200);
   }
 }
 

@@ -214,6 +214,13 @@ TEST_F(DataSetFile, SchemaNamesTheParameters)
   {
     expectContains(said, entry.key());
   }
+  Json stranger = apical();
+  stranger["patients"][0]["?"] = 1;
+  const std::string ofPatient = refusal(stranger);
+  for (const auto& entry : schema["$defs"]["patient"]["properties"].items())
+  {
+    expectContains(ofPatient, entry.key() == "names" ? "" : entry.key()); // of a label map's
+  }
 }
 
 TEST_F(DataSetFile, DrawsKeepToTheirRangesAndFillThem)
