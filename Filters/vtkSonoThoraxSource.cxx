@@ -22,9 +22,16 @@ namespace {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
+sono::ThoraxParameters atPhase(double phase)
+{
+  sono::ThoraxParameters parameters;
+  parameters.phase = phase;
+  return parameters;
+}
+
 std::shared_ptr<const sono::LabelVolume> makeVolume(double spacingMm, double phase)
 {
-  return std::make_shared<const sono::LabelVolume>(sono::makeBeatingThorax(spacingMm, phase));
+  return std::make_shared<const sono::LabelVolume>(sono::makeThoraxPhantom(spacingMm, atPhase(phase)));
 }
 
 } // namespace
@@ -81,7 +88,7 @@ int vtkSonoThoraxSource::RequestData(vtkInformation*, vtkInformationVector**, vt
     sono::imageFromLabelVolume(*volume, image);
     if (this->Phases > 1)
     {
-      sono::addMotion(sono::thoraxDisplacementMm(volume->placement, phase), sono::thoraxMovingLabels(), image);
+      sono::addMotion(sono::thoraxDisplacementMm(volume->placement, atPhase(phase)), sono::thoraxMovingLabels(), image);
       image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), phase);
     }
     const sono::ProbePose pose = sono::thoraxPhantomA4C();

@@ -63,8 +63,12 @@ struct DataSetPatient
   bool isDrawn = false;   ///< each copy of the bundled thorax is another body, see drawThoraxParameters
   std::string licence;
   std::string provenance;
-  int copies = 1;             ///< bodies made of it, each stretched by itself along the grid's three axes
-  Draw stretch = always(1.0); ///< factor
+  int copies = 1;             ///< bodies made of it, each changed by itself by the draws that follow
+  Draw stretch = always(1.0); ///< factor, for each of the grid's three axes
+  Draw extraFatMm = always(0.0);
+  Draw warpAmplitudeMm = always(0.0);
+  Draw warpWavelengthMm = always(1.0);
+  Draw mirror = always(0.0);  ///< 1: left for right, see BodyAugmentation
   std::optional<Split> split; ///< none: drawn
   std::vector<DataSetView> views;
 };

@@ -25,24 +25,6 @@ namespace {
 constexpr int mostAttempts = 32;
 constexpr const char* fallbackTissue = "soft_tissue";
 
-/// The linear map that stretches a grid along its own axes.
-Mat3d stretchMap(const GridPlacement& placement, const Vec3d& stretch)
-{
-  Mat3d scaled = placement.direction;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    scaled[axis] *= stretch[axis];
-  }
-  return scaled * glm::transpose(placement.direction);
-}
-
-GridPlacement stretched(GridPlacement placement, const Vec3d& stretch)
-{
-  placement.originMm = stretchMap(placement, stretch) * placement.originMm;
-  placement.spacingMm *= stretch;
-  return placement;
-}
-
 /// Rodrigues' formula; `axis` has length 1.
 Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
 {
@@ -112,7 +94,8 @@ BodyView standardView(const std::vector<StandardView>& views, const std::string&
 
 /// Where the probe stands for each of a patient's views. Throws Error where none is obtainable.
 std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patient, const ThoraxParameters& thorax,
-                                const ProbeSettings& probe, const Mat3d& stretch, const Progress& progress)
+                                const ProbeSettings& probe, const GridPlacement& grid,
+                                const BodyAugmentation& augmentation, const Progress& progress)
 {
   std::vector<BodyView> views;
   std::vector<StandardView> standard;
@@ -125,9 +108,7 @@ std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patien
     }
     else if (view.pose || isBundled)
     {
-      const ProbePose pose = view.pose ? *view.pose : thoraxPhantomA4C(thorax);
-      views.push_back(
-        { ProbePose{ stretch * pose.positionMm, stretch * pose.axial, stretch * pose.lateral }.orthonormalized(), {} });
+      views.push_back({ augmented(view.pose ? *view.pose : thoraxPhantomA4C(thorax), grid, augmentation), {} });
     }
     else
     {
@@ -137,6 +118,10 @@ std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patien
           scene, [&](const std::string&) { return probe; }, progress);
       }
       views.push_back(standardView(standard, view.name));
+      if (views.back().pose && augmentation.isMirrored)
+      {
+        views.back().pose->lateral = -views.back().pose->lateral; // as `augmented` turns a given one
+      }
     }
   }
   if (std::none_of(views.begin(), views.end(), [](const BodyView& view) { return view.pose.has_value(); }))
@@ -189,13 +174,13 @@ void shareRegion(Scene& scene, const DataSetPlan& plan, const std::vector<BodyVi
 
 } // namespace
 
-/// A patient's labels with tissues, and skin around them; not stretched.
+/// A patient's labels with tissues, and skin around them; not augmented.
 struct DataSetImager::Patient
 {
-  PlannedBody body; ///< for whom it was made, and for all that do not differ from it but by their stretch
+  PlannedBody body; ///< for whom it was made, and for all that do not differ from it but by augmentation
   ThoraxParameters thorax;
   LabelVolume volume;
-  std::vector<std::uint8_t> groups; ///< of each label id
+  std::vector<std::uint8_t> groups; ///< of each label id of the last body
   std::vector<bool> groupIsThere;
 };
 
@@ -276,14 +261,14 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   }
   body_ = nullptr; // before the next one takes as much memory
   const DataSet& set = plan_->set();
-  const Vec3d stretch = plan_->bodies()[std::size_t(number)].stretch;
-  LabelVolume volume = patient_->volume;
-  volume.placement = stretched(volume.placement, stretch);
+  const BodyAugmentation& augmentation = plan_->bodies()[std::size_t(number)].augmentation;
+  LabelVolume volume = augmented(patient_->volume, augmentation);
+  patient_->groups = groupsOf(volume.labels, set.masks); // fat may be new
   auto body = std::make_unique<Body>();
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
   body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
-                          stretchMap(patient_->volume.placement, stretch), progress);
+                          patient_->volume.placement, augmentation, progress);
   body->landmarks = findLandmarks(body->scene->volume());
   shareRegion(*body->scene, *plan_, body->views);
   body_ = std::move(body);

@@ -116,7 +116,13 @@ std::string describeImage(const DataSetPlan& plan, const Scene& scene, const Dat
   json["split"] = nameOf(body.split);
   json["patient"] = { { "id", patient.id },
                       { "copy", body.copy },
-                      { "stretch", vectorOf(body.stretch) },
+                      { "stretch", vectorOf(body.augmentation.stretch) },
+                      { "extraFatMm", body.augmentation.extraFatMm },
+                      { "warp",
+                        { { "amplitudeMm", body.augmentation.warpAmplitudeMm },
+                          { "wavelengthMm", body.augmentation.warpWavelengthMm },
+                          { "seed", body.augmentation.warpSeed } } },
+                      { "mirror", body.augmentation.isMirrored },
                       { "licence", patient.licence },
                       { "provenance", patient.provenance } };
   if (body.thoraxSeed)

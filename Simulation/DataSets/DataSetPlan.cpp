@@ -28,22 +28,17 @@ DataSetPlan::DataSetPlan(DataSet set)
   : set_(std::move(set))
   , base_(baseSettings(set_))
 {
-  const std::uint32_t stretchKeys[3] = { drawKey("stretch i"), drawKey("stretch j"), drawKey("stretch k") };
   const std::uint32_t thoraxKey = drawKey("thorax");
   for (std::size_t p = 0; p < set_.patients.size(); ++p)
   {
     const DataSetPatient& patient = set_.patients[p];
     for (int copy = 0; copy < patient.copies; ++copy)
     {
-      PlannedBody body{ int(p), copy, patient.split.value_or(Split::Train), {}, {} };
       const auto number = std::int64_t(bodies_.size());
+      PlannedBody body{ int(p), copy, patient.split.value_or(Split::Train), augmentationOf(patient, number), {} };
       if (patient.isDrawn)
       {
         body.thoraxSeed = drawSeed(set_.seed, DrawScope::Body, number, thoraxKey);
-      }
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        body.stretch[axis] = patient.stretch.at(drawUniform(set_.seed, DrawScope::Body, number, stretchKeys[axis]));
       }
       bodies_.push_back(body);
     }
@@ -60,6 +55,22 @@ DataSetPlan::DataSetPlan(DataSet set)
     ++digits_;
   }
   dealSplits();
+}
+
+BodyAugmentation DataSetPlan::augmentationOf(const DataSetPatient& patient, std::int64_t body) const
+{
+  const auto draw = [&](const Draw& drawn, const char* name) {
+    return drawn.at(drawUniform(set_.seed, DrawScope::Body, body, drawKey(name)));
+  };
+  BodyAugmentation augmentation;
+  augmentation.stretch =
+    Vec3d(draw(patient.stretch, "stretch i"), draw(patient.stretch, "stretch j"), draw(patient.stretch, "stretch k"));
+  augmentation.extraFatMm = draw(patient.extraFatMm, "extraFatMm");
+  augmentation.warpAmplitudeMm = draw(patient.warpAmplitudeMm, "warp amplitudeMm");
+  augmentation.warpWavelengthMm = draw(patient.warpWavelengthMm, "warp wavelengthMm");
+  augmentation.warpSeed = drawSeed(set_.seed, DrawScope::Body, body, drawKey("warp"));
+  augmentation.isMirrored = draw(patient.mirror, "mirror") > 0.0;
+  return augmentation;
 }
 
 /// A patient is in one split alone: of label maps with all copies; copies of the bundled body are patients each.

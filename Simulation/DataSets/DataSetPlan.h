@@ -1,5 +1,6 @@
 #pragma once
 
+#include "DataSets/AugmentBody.h"
 #include "DataSets/DataSet.h"
 #include "DataSets/DataSetSettings.h"
 #include "Image/ScanConvert.h"
@@ -19,7 +20,7 @@ struct PlannedBody
   int patient = 0; ///< its number in the file
   int copy = 0;
   Split split = Split::Train;
-  Vec3d stretch{ 1.0 };                    ///< along the grid's axes
+  BodyAugmentation augmentation;
   std::optional<std::uint64_t> thoraxSeed; ///< of drawThoraxParameters; none: the patient is not drawn
 };
 
@@ -91,6 +92,7 @@ public:
   PlannedRange imagesOf(const DataSetShare& share) const;
 
 private:
+  BodyAugmentation augmentationOf(const DataSetPatient& patient, std::int64_t body) const;
   void dealSplits();
 
   DataSet set_;

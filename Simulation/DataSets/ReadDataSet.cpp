@@ -1,6 +1,7 @@
 #include "DataSets/DataSet.h"
 #include "DataSets/DataSetSettings.h"
 #include "DataSets/StrictJson.h"
+#include "Labels/SmoothWarp.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -156,6 +157,16 @@ DataSetView readView(StrictObject object)
   return view;
 }
 
+void readWarp(StrictObject& patient, DataSetPatient& read)
+{
+  StrictObject warp = patient.object("warp");
+  read.warpAmplitudeMm = readDraw(warp, "amplitudeMm", { between(0, 50) });
+  read.warpWavelengthMm = readDraw(warp, "wavelengthMm", { between(10, 2000) });
+  warp.refuseOthers();
+  patient.require("warp", read.warpWavelengthMm.least() >= SmoothWarp::leastWavelengths * read.warpAmplitudeMm.most(),
+                  "could fold the body; let its shortest wavelength be at least 14 times its largest amplitude");
+}
+
 DataSetPatient readPatient(StrictObject object)
 {
   DataSetPatient patient;
@@ -184,6 +195,18 @@ DataSetPatient readPatient(StrictObject object)
   if (object.has("stretch"))
   {
     patient.stretch = readDraw(object, "stretch", { between(0.5, 2.0) });
+  }
+  if (object.has("extraFatMm"))
+  {
+    patient.extraFatMm = readDraw(object, "extraFatMm", { between(0, 50) });
+  }
+  if (object.has("warp"))
+  {
+    readWarp(object, patient);
+  }
+  if (object.has("mirror"))
+  {
+    patient.mirror = readDraw(object, "mirror", { {}, false, true });
   }
   if (object.has("split"))
   {

@@ -1,5 +1,6 @@
 #include "Phantoms/CheckThorax.h"
 
+#include "Phantoms/BeatingHeart.h"
 #include "Phantoms/ThoraxLabels.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace {
 /// between the atria.
 using Touch = std::array<std::array<bool, ThoraxLabelCount>, 4>;
 
-Touch allowedTouch()
+Touch allowedTouch(bool aorticValveIsOpen)
 {
   Touch touch{};
   const auto allow = [&touch](ThoraxLabel chamber, std::initializer_list<ThoraxLabel> labels) {
@@ -38,6 +39,7 @@ Touch allowedTouch()
   allow(RightAtriumBlood,
         { RightAtriumWall, InteratrialSeptum, TricuspidValve, RightVentricleMyocardium, LeftVentricleMyocardium,
           InterventricularSeptum, AortaWall, RightVentricleBlood, LeftAtriumWall, PapillaryMuscleRight });
+  touch[0][AortaLumen] = aorticValveIsOpen;
   return touch;
 }
 
@@ -75,7 +77,7 @@ std::size_t takePart(std::vector<std::uint16_t>& voxels, std::size_t start, cons
 
 ThoraxFaults checkThorax(const LabelVolume& labels, const ThoraxParameters& parameters)
 {
-  static const Touch touch = allowedTouch();
+  const Touch touch = allowedTouch(outflowOpeningAt(parameters.phase) > 0.0);
   const Vec3i size = labels.placement.size;
   const std::array<std::ptrdiff_t, 3> steps{ 1, size.x, std::ptrdiff_t(size.x) * size.y };
   ThoraxFaults faults;
@@ -104,12 +106,21 @@ ThoraxFaults checkThorax(const LabelVolume& labels, const ThoraxParameters& para
   }
   const std::array<double, 4> asked{ parameters.leftVentricleMl, parameters.rightVentricleMl, parameters.leftAtriumMl,
                                      parameters.rightAtriumMl };
+  const double contraction = contractionAt(parameters.phase);
   const Vec3d s = labels.placement.spacingMm;
   for (std::size_t chamber = 0; chamber < 4; ++chamber)
   {
     const double volumeMl = double(count[chamber]) * s.x * s.y * s.z / 1000.0;
     faults.apart += double(largest[chamber]) < 0.995 * double(count[chamber]) ? 1 : 0;
-    faults.volumes += std::abs(volumeMl / asked[chamber] - 1.0) > 0.05 ? 1 : 0;
+    if (contraction == 0.0)
+    {
+      faults.volumes += std::abs(volumeMl / asked[chamber] - 1.0) > 0.05 ? 1 : 0;
+    }
+    else if (chamber == 0)
+    {
+      const double ejectedPercent = 100.0 * (1.0 - volumeMl / asked[chamber]);
+      faults.volumes += std::abs(ejectedPercent - contraction * parameters.ejectionPercent) > 10.0 ? 1 : 0;
+    }
   }
   return faults;
 }

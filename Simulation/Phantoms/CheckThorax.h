@@ -11,7 +11,10 @@ struct ThoraxFaults
   int open = 0; ///< voxel faces between a chamber and what is neither its wall, its valve, nor its neighbour behind one
   int apart = 0; ///< chambers of which more than 0.5 % do not hang together, by faces, with their largest part; grooves
                  ///< behind leaflets and muscles leave single voxels
-  int volumes = 0; ///< chambers more than 5 % off the volume that was asked for
+  int volumes =
+    0; ///< chambers more than 5 % off the volume that was asked for; after the end of diastole left
+       ///< ventricles that ejected 10 % of it more or less than phase and fraction say: as the
+       ///< leaflets close, up to 8 % come to the ventricle that stood between them and counted as the atrium's
 
   bool none() const { return open == 0 && apart == 0 && volumes == 0; }
 };

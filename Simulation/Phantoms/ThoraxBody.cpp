@@ -79,6 +79,11 @@ HeartShape heartShape(const ThoraxParameters& p, const HeartFrame& frame, const 
     "defaults.");
 }
 
+ThoraxAorta aortaOf(const HeartFrame& frame, const AortaPhase& phase)
+{
+  return { frame.toWorld(aorticValveCentreMm()), frame.axes * aorticFlowDirection(), phase };
+}
+
 const ThoraxParameters& checked(const ThoraxParameters& parameters)
 {
   requireInRange(parameters);
@@ -114,14 +119,32 @@ HeartFrame heartFrame(const ThoraxParameters& p)
 ThoraxBody::ThoraxBody(const ThoraxParameters& parameters)
   : chest_(chestShape(checked(parameters)))
   , frame_(heartFrame(parameters))
-  , aorta_(frame_.toWorld(aorticValveCentreMm()), frame_.axes * aorticFlowDirection())
+  , aorta_(aortaOf(frame_, {}))
   , heart_(heartShape(parameters, frame_, aorta_))
+  , beat_(heart_, parameters.ejectionPercent, parameters.phase)
 {
+  // What is thin between the left atrium and the aorta is made thicker, since the beat squeezes it.
+  heart_.apartMm = 0.8 * std::min(1.0, 2.0 * contractionAt(parameters.phase));
+  aorta_ = aortaOf(frame_, { outflowOpeningAt(parameters.phase), heart_.apartMm });
+  heart_.valveOpening *= inflowOpeningAt(parameters.phase);
+}
+
+Vec3d ThoraxBody::restingPlaceMm(const Vec3d& world) const
+{
+  const Vec3d now = frame_.fromWorld(world);
+  const Vec3d resting = beat_.restingPlaceMm(now);
+  return resting == now ? world : frame_.toWorld(resting); // what stands still does so to the last digit
+}
+
+Vec3d ThoraxBody::placeMm(const Vec3d& resting) const
+{
+  return frame_.toWorld(beat_.placeMm(frame_.fromWorld(resting)));
 }
 
 ThoraxLabel ThoraxBody::sample(const Vec3d& p) const
 {
-  const Vec3d q = frame_.fromWorld(p);
+  const Vec3d now = frame_.fromWorld(p);
+  const Vec3d q = beat_.restingPlaceMm(now);
   const Vec3d fromHeart = q - heartSphereCentreMm();
   const double reach = heartSphereRadiusMm(heart_);
   HeartSample heart;
@@ -129,11 +152,11 @@ ThoraxLabel ThoraxBody::sample(const Vec3d& p) const
   {
     heart = sampleHeart(q, heart_);
   }
-  if (const ThoraxLabel vessel = aorta_.sample(p))
+  if (const ThoraxLabel vessel = aorta_.sample(q == now ? p : frame_.toWorld(q)))
   {
     heart.label = vessel;
   }
-  return sampleChest(p, heart, q, chest_);
+  return sampleChest(p, heart, now, chest_);
 }
 
 } // namespace sono

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Phantoms/BeatingHeart.h"
 #include "Phantoms/ThoraxAorta.h"
 #include "Phantoms/ThoraxChest.h"
 #include "Phantoms/ThoraxHeart.h"
@@ -30,7 +31,14 @@ public:
   /// What stands at a point, world LPS mm.
   ThoraxLabel sample(const Vec3d& p) const;
 
+  /// Where what the heart's motion brings to a place of this phase stands at the end of diastole, world mm. The chest
+  /// wall, lungs and abdomen are drawn where they are all the same.
+  Vec3d restingPlaceMm(const Vec3d& world) const;
+  /// The reverse.
+  Vec3d placeMm(const Vec3d& resting) const;
+
   const HeartFrame& frame() const { return frame_; }
+  /// At the end of diastole, with the valves of this phase.
   const HeartShape& heart() const { return heart_; }
   const ChestShape& chest() const { return chest_; }
 
@@ -39,6 +47,7 @@ private:
   HeartFrame frame_;
   ThoraxAorta aorta_;
   HeartShape heart_;
+  HeartBeat beat_;
 };
 
 } // namespace sono

@@ -20,7 +20,7 @@ constexpr double outflowRadiusMm = 11.0;
 constexpr double atrialWallMm = 2.5;
 constexpr double pericardiumMm = 1.8;
 
-/// An atrioventricular valve: two leaflets that form a funnel from the annulus into the ventricle, half open.
+/// An atrioventricular valve: two leaflets that form a funnel from the annulus into the ventricle.
 struct Valve
 {
   Vec3d centreMm;
@@ -36,18 +36,30 @@ Vec3d besideLeft(const Vec3d& p, const HeartShape& shape)
   return p - Vec3d(shape.rightwardMm(), 0.0, 0.0);
 }
 
+/// Opens or closes a valve that is given half open: the leaflets keep their length, so that a closed one is flatter; a
+/// wide ring's stretch to meet.
+Valve opened(Valve valve, double opening)
+{
+  const double narrowing = valve.annulusRadiusMm - valve.tipRadiusMm;
+  const double length2 = valve.heightMm * valve.heightMm + narrowing * narrowing;
+  valve.tipRadiusMm *= opening / 0.4;
+  const double narrowed = valve.annulusRadiusMm - valve.tipRadiusMm;
+  const double leastMm = 0.3 * valve.annulusRadiusMm;
+  valve.heightMm = std::sqrt(std::max(length2 - narrowed * narrowed, leastMm * leastMm));
+  return valve;
+}
+
 Valve mitralOf(const HeartShape& shape)
 {
   const double size = std::sqrt(shape.leftScale);
-  const double tips = 6.5 * (shape.valveOpening / 0.4);
-  return { mitralCentre, mitralRadiusMm * size, tips * size, 15.0, Vec3d(2.5, 1.0, 0.0) };
+  return opened({ mitralCentre, mitralRadiusMm * size, 6.5 * size, 15.0, Vec3d(2.5, 1.0, 0.0) }, shape.valveOpening);
 }
 
 Valve tricuspidOf(const HeartShape& shape)
 {
-  const double tips = 7.0 * (shape.valveOpening / 0.4);
-  return { besideLeft(tricuspidCentre, shape), tricuspidRadiusMm * shape.rightScale, tips, 14.0,
-           Vec3d(-2.0, 0.0, 0.0) };
+  return opened(
+    { besideLeft(tricuspidCentre, shape), tricuspidRadiusMm * shape.rightScale, 7.0, 14.0, Vec3d(-2.0, 0.0, 0.0) },
+    shape.valveOpening);
 }
 
 Vec3d leftAtriumCentre(const HeartShape& shape)
@@ -172,7 +184,7 @@ void addAtria(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
   f.leftAtrium = smoothUnion(left, annulusTube(mitralOf(shape), p, 8.0, 8.0), 3.0);
   f.rightAtrium = smoothUnion(right, annulusTube(tricuspidOf(shape), p, 8.0, 8.0), 3.0);
   // The outflow tract and its wall pass between the atria.
-  f.leftAtrium = smoothIntersection(f.leftAtrium, 3.5 - f.outflow, 2.0);
+  f.leftAtrium = smoothIntersection(f.leftAtrium, 3.5 + shape.apartMm - f.outflow, 2.0);
   f.rightAtrium = smoothIntersection(f.rightAtrium, -f.leftEpicardium, 3.0);
 }
 

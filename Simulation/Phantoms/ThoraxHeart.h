@@ -22,6 +22,7 @@ struct HeartShape
   double rightAtriumScale = 1.0; ///< from the annulus away
   double wallMm = 10.0;          ///< of the left ventricle
   double valveOpening = 0.4;     ///< tips' radius over the annulus'
+  double apartMm = 0.0;          ///< by which left atrium and outflow tract are further apart
 
   /// How much wider the left ventricle is on its right side: the right heart makes room.
   double rightwardMm() const { return 22.0 * leftScale + wallMm - 32.0; }

@@ -6,13 +6,15 @@
 
 namespace sono {
 
-/// What tells one body of the bundled family from another. The defaults are the phantom as it always was. Volumes are
-/// those of blood at the drawn moment, an end-diastole, without papillary muscles and leaflets.
+/// What tells one body of the bundled family from another. The defaults are the phantom as it always was. Volumes and
+/// thickness are those at the end of diastole, whatever the phase; volumes of blood, without papillary muscles and
+/// leaflets; of the valves' opening the phase takes its share (BeatingHeart.h).
 ///
 /// Published: Lang et al., "Recommendations for cardiac chamber quantification by echocardiography in adults", JASE
 /// 2015;28:1-39, gives as normal at end-diastole 46 to 150 ml for the left ventricle (both sexes) and walls of 6 to 10
-/// mm, and 16 to 34 ml per square metre of body for the left atrium at its largest. The ranges below go beyond them, to
-/// dilated and hypertrophic hearts.
+/// mm, and 16 to 34 ml per square metre of body for the left atrium at its largest, and 52 to 74 % as the left
+/// ventricle's ejection fraction, down to below 30 in disease. The ranges below go beyond them, to dilated and
+/// hypertrophic hearts.
 struct ThoraxParameters
 {
   double leftVentricleMl = 91.6;
@@ -29,6 +31,8 @@ struct ThoraxParameters
   double ribSpacingMm = 29.0;
   double lungOverlapMm = 0.0;
   double breathing = 0.0;
+  double phase = 0.0;
+  double ejectionPercent = 60.0;
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -66,6 +70,11 @@ struct ThoraxParameters
     visitor(self.breathing,
             Parameter{ "breathing", "Breathing", between(0, 1),
                        "0: breathed out, 1: deeply in, with the diaphragm 35 mm and the heart 10 mm lower." });
+    visitor(self.phase,
+            Parameter{ "phase", "Phase", between(0, 1),
+                       "Of the heart's cycle, 0 to 1, from the end of diastole on; systole ends at 0.35." });
+    visitor(self.ejectionPercent, Parameter{ "ejectionPercent", "Ejection (%)", between(15, 62),
+                                             "Share of its blood that the left ventricle ejects in %, 15 to 62." });
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include "Core/Error.h"
 #include "Core/ParallelFor.h"
-#include "Phantoms/BeatingHeart.h"
 #include "Phantoms/ThoraxBody.h"
 
 #include <glm/common.hpp>
@@ -109,9 +108,9 @@ std::vector<LabelInfo> labelsOf(const std::vector<std::uint16_t>& voxels)
   return labels;
 }
 
-/// `restingMm` says where what is at a place in the world stands in the body.
-template<class Place>
-LabelVolume drawn(const ThoraxBody& body, double spacingMm, const Place& restingMm)
+} // namespace
+
+LabelVolume makeThoraxPhantom(double spacingMm, const ThoraxParameters& parameters)
 {
   if (!(spacingMm >= 0.5 && spacingMm <= 5.0))
   {
@@ -119,6 +118,7 @@ LabelVolume drawn(const ThoraxBody& body, double spacingMm, const Place& resting
     message << "The bundled thorax cannot have a voxel size of " << spacingMm << " mm; choose 0.5 to 5 mm.";
     throw Error(message.str());
   }
+  const ThoraxBody body(parameters);
   LabelVolume volume;
   volume.placement = placementFor(body.chest(), spacingMm);
   volume.voxels.resize(volume.placement.voxelCount());
@@ -129,7 +129,7 @@ LabelVolume drawn(const ThoraxBody& body, double spacingMm, const Place& resting
     {
       for (int i = 0; i < size.x; ++i)
       {
-        *voxel++ = body.sample(restingMm(volume.placement.worldFromIndex(Vec3d(i, j, k))));
+        *voxel++ = body.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
       }
     }
   });
@@ -137,29 +137,9 @@ LabelVolume drawn(const ThoraxBody& body, double spacingMm, const Place& resting
   return volume;
 }
 
-} // namespace
-
-LabelVolume makeThoraxPhantom(double spacingMm, const ThoraxParameters& parameters)
+std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, const ThoraxParameters& parameters)
 {
-  return drawn(ThoraxBody(parameters), spacingMm, [](const Vec3d& place) { return place; });
-}
-
-LabelVolume makeBeatingThorax(double spacingMm, double phase)
-{
-  return drawn(ThoraxBody(ThoraxParameters{}), spacingMm,
-               [phase](const Vec3d& place) { return thoraxRestingPlaceMm(place, phase); });
-}
-
-Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase)
-{
-  static const HeartFrame frame = heartFrame(ThoraxParameters{});
-  const Vec3d now = frame.fromWorld(world);
-  const Vec3d resting = heartRestingPlaceMm(now, phase);
-  return resting == now ? world : frame.toWorld(resting); // what stands still does so to the last digit
-}
-
-std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, double phase)
-{
+  const ThoraxBody body(parameters);
   std::vector<Vec3f> displacementMm(grid.voxelCount(), Vec3f(0.0f));
   parallelFor(grid.size.z, {}, [&](int k) {
     Vec3f* to = displacementMm.data() + std::size_t(k) * grid.size.x * grid.size.y;
@@ -168,7 +148,7 @@ std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, double phase)
       for (int i = 0; i < grid.size.x; ++i)
       {
         const Vec3d now = grid.worldFromIndex(Vec3d(i, j, k));
-        *to++ = Vec3f(now - thoraxRestingPlaceMm(now, phase));
+        *to++ = Vec3f(now - body.restingPlaceMm(now));
       }
     }
   });

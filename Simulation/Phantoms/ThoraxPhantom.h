@@ -18,15 +18,9 @@ namespace sono {
 /// Walls of 2 to 4 mm (atria, right ventricle, valves, pericardium) are closed up to a spacing of 2 mm.
 LabelVolume makeThoraxPhantom(double spacingMm, const ThoraxParameters& parameters = {});
 
-/// The default body at a phase of its heart's cycle (see BeatingHeart.h), 0 to 1; 0 is the end of diastole, the anatomy
-/// as it is drawn. Throws as makeThoraxPhantom.
-LabelVolume makeBeatingThorax(double spacingMm, double phase);
-
-/// Of the default body: where, in world mm, what is at a place at this phase stands at phase 0.
-Vec3d thoraxRestingPlaceMm(const Vec3d& world, double phase);
-
-/// x - thoraxRestingPlaceMm(x) in mm at the voxels of a grid, i fastest.
-std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, double phase);
+/// How far what its heart's motion carries has come since the end of diastole, in mm at the voxels of a grid, i
+/// fastest: the place less ThoraxBody::restingPlaceMm. 0 at phase 0.
+std::vector<Vec3f> thoraxDisplacementMm(const GridPlacement& grid, const ThoraxParameters& parameters);
 
 /// The labels that ride on the motion, the same at each phase: the walls, septa, papillary muscles and valves, not the
 /// blood.

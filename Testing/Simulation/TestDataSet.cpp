@@ -143,6 +143,16 @@ TEST_F(DataSetFile, MistakesOfAPatientAreNamed)
   };
   expectContains(with(R"({"copies": 0})"), "'patients[0].copies' is out of range");
   expectContains(with(R"({"stretch": {"from": 2, "to": 1}})"), "'patients[0].stretch' is a range upside down");
+  expectContains(with(R"({"extraFatMm": -1})"), "'patients[0].extraFatMm' is out of range");
+  expectContains(with(R"({"mirror": 1})"), "'patients[0].mirror' is no switch");
+  expectContains(with(R"({"mirror": {"from": false, "to": true}})"), "'patients[0].mirror' has no range");
+  expectContains(with(R"({"warp": {"amplitudeMm": 3}})"), "lacks 'patients[0].warp.wavelengthMm'");
+  expectContains(with(R"({"warp": {"amplitudeMm": 3, "wavelengthMm": 60, "seed": 1}})"),
+                 "'patients[0].warp.seed' means nothing");
+  expectContains(with(R"({"warp": {"amplitudeMm": {"from": 0, "to": 10}, "wavelengthMm": {"from": 139, "to": 200}}})"),
+                 "'patients[0].warp' could fold the body");
+  EXPECT_EQ(with(R"({"warp": {"amplitudeMm": {"from": 0, "to": 10}, "wavelengthMm": {"from": 140, "to": 200}}})"),
+            "no error");
   expectContains(with(R"({"bundled": "abdomen"})"), "'patients[0].bundled' names no bundled anatomy");
   expectContains(with(R"({"labels": "nowhere.nii"})"), "'patients[0].labels' names");
   expectContains(with(R"({"split": "dev"})"), "'patients[0].split' is no split");
@@ -206,6 +216,13 @@ TEST_F(DataSetFile, SchemaNamesTheParameters)
   for (const auto& entry : schema["properties"].items())
   {
     expectContains(said, entry.key());
+  }
+  Json stranger = apical();
+  stranger["patients"][0]["?"] = 1;
+  const std::string ofPatient = refusal(stranger);
+  for (const auto& entry : schema["$defs"]["patient"]["properties"].items())
+  {
+    expectContains(ofPatient, entry.key() == "names" ? "" : entry.key()); // of a label map's
   }
 }
 
@@ -359,6 +376,35 @@ TEST_F(DataSetFile, DrawnBodiesDiffer)
   Json wrong = apical();
   wrong["patients"][0]["drawn"] = 1;
   expectContains(refusal(wrong), "'patients[0].drawn' is no switch");
+}
+
+/// As it draws them, whatever else is drawn.
+TEST_F(DataSetFile, BodiesAreAugmentedByThemselves)
+{
+  Json json = apical();
+  Json& patient = json["patients"][0];
+  patient["copies"] = 400;
+  const DataSetPlan plain(read(json));
+  patient.update(Json::parse(R"({"mirror": {"oneOf": [true, false]}, "extraFatMm": {"from": 2, "to": 12},
+                                 "warp": {"amplitudeMm": {"from": 0, "to": 8}, "wavelengthMm": 120}})"));
+  const DataSetPlan plan(read(json));
+  const DataSetPlan again(read(json));
+  int mirrored = 0;
+  std::set<std::uint64_t> seeds;
+  for (std::size_t b = 0; b < plan.bodies().size(); ++b)
+  {
+    const BodyAugmentation& drawn = plan.bodies()[b].augmentation;
+    EXPECT_EQ(drawn.warpAmplitudeMm, again.bodies()[b].augmentation.warpAmplitudeMm);
+    EXPECT_EQ(drawn.stretch, plain.bodies()[b].augmentation.stretch);
+    EXPECT_FALSE(plain.bodies()[b].augmentation.isMirrored);
+    EXPECT_EQ(plain.bodies()[b].augmentation.extraFatMm, 0.0);
+    EXPECT_TRUE(drawn.extraFatMm >= 2.0 && drawn.extraFatMm <= 12.0);
+    EXPECT_EQ(drawn.warpWavelengthMm, 120.0);
+    seeds.insert(drawn.warpSeed);
+    mirrored += drawn.isMirrored ? 1 : 0;
+  }
+  EXPECT_EQ(seeds.size(), plan.bodies().size());
+  EXPECT_NEAR(mirrored, 200, 50); // five sigma
 }
 
 TEST_F(DataSetFile, ProcessesShareEachImageOnce)

@@ -2,6 +2,7 @@
 // has.
 #include "ApicalImage.h"
 #include "Labels/AssignTissues.h"
+#include "Phantoms/ThoraxBody.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Simulator.h"
 #include "Stage.h"
@@ -29,29 +30,25 @@ constexpr int halfSearchLines = 4;
 
 using Wall = std::vector<Vec3d>; // from base to apex, world mm
 
+ThoraxParameters bodyAt(double phase)
+{
+  ThoraxParameters parameters;
+  parameters.phase = phase;
+  return parameters;
+}
+
 std::shared_ptr<const Scene> sceneAt(double phase, bool locked)
 {
-  LabelVolume volume = makeBeatingThorax(1.0, phase);
+  LabelVolume volume = makeThoraxPhantom(1.0, bodyAt(phase));
   const auto table = TissueTable::read(data + "/tissues.csv");
   assignTissues(volume, LabelTissueMap::read(data + "/label_tissues.csv"), table, "soft_tissue");
   std::shared_ptr<const TissueMotion> motion;
   if (locked)
   {
-    motion = std::make_shared<const TissueMotion>(volume.placement, thoraxDisplacementMm(volume.placement, phase),
-                                                  thoraxMovingLabels());
+    motion = std::make_shared<const TissueMotion>(
+      volume.placement, thoraxDisplacementMm(volume.placement, bodyAt(phase)), thoraxMovingLabels());
   }
   return std::make_shared<const Scene>(std::move(volume), table, "air", std::vector<std::uint8_t>{}, motion);
-}
-
-/// Where a point of the end of diastole is, by iteration on the map that leads there.
-Vec3d placeAt(const Vec3d& rest, double phase)
-{
-  Vec3d now = rest;
-  for (int i = 0; i < 100; ++i)
-  {
-    now += 0.7 * (rest - thoraxRestingPlaceMm(now, phase));
-  }
-  return now;
 }
 
 /// Along the middle of a wall in the image plane, by the shapes that draw it; `side` is -1 for the septum, 1 for the
@@ -264,11 +261,12 @@ Tracked track(const std::vector<Frame>& cine)
         ++likenessCount;
       }
       const std::vector<Vec2d> along = smoothed(steps, weights);
+      const ThoraxBody body(bodyAt(double(f) / phases));
       std::vector<Vec2d> known;
       for (std::size_t i = 0; i < points.size(); ++i)
       {
         points[i] += along[i];
-        known.push_back(inPlane(placeAt(wall[i], double(f) / phases)));
+        known.push_back(inPlane(body.placeMm(wall[i])));
       }
       const double measured = 100.0 * (lengthMm(points) / lengthBefore - 1.0);
       const double truth = 100.0 * (lengthMm(known) / lengthBefore - 1.0);
