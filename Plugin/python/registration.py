@@ -136,9 +136,12 @@ def _blood(image):
     scene = vtkSonoSceneBuilder()
     scene.SetBuildSurfaces(False)
     scene.SetInputData(image)
+    errors = _hear(scene)
     table = vtkSonoLabelTable()
     table.SetInputConnection(scene.GetOutputPort())
     table.Update()
+    if errors:
+        raise ValueError(errors[0])
     rows = table.GetOutput()
     return {int(rows.GetValueByName(row, "id").ToInt()) for row in range(rows.GetNumberOfRows())
             if rows.GetValueByName(row, "tissue").ToString() == "blood"}
