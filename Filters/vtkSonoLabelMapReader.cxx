@@ -51,9 +51,8 @@ void nameLabels(const std::string& fileName, vtkImageData* image, sono::LabelVol
   sono::nameKnownNumbers(volume);
 }
 
-sono::LabelVolume readVti(const std::string& fileName)
+sono::LabelVolume readVti(const std::string& fileName, vtkImageData* image)
 {
-  vtkNew<vtkImageData> image;
   sono::readVtkImage(fileName, image);
   sono::LabelVolume volume;
   try
@@ -66,6 +65,18 @@ sono::LabelVolume readVti(const std::string& fileName)
   }
   nameLabels(fileName, image, volume);
   return volume;
+}
+
+void passMotion(vtkImageData* from, vtkImageData* to)
+{
+  if (vtkDataArray* displacement = from->GetPointData()->GetArray(sono::displacementArray))
+  {
+    to->GetPointData()->AddArray(displacement);
+  }
+  if (vtkDataArray* labels = from->GetFieldData()->GetArray(sono::movingLabelsArray))
+  {
+    to->GetFieldData()->AddArray(labels);
+  }
 }
 
 /// The bundled list of this name: "CT-ORG" is label_lists/ct_org.csv.
@@ -218,12 +229,12 @@ std::string vtkSonoLabelMapReader::ContentKey()
   }
 }
 
-sono::LabelVolume vtkSonoLabelMapReader::ReadPhase(int phase)
+sono::LabelVolume vtkSonoLabelMapReader::ReadPhase(int phase, vtkImageData* vti)
 {
   const bool isOne = this->FileNames.size() == 1;
   const std::string& fileName = this->FileNames[isOne ? 0 : std::size_t(phase)];
   sono::LabelVolume volume =
-    isVti(fileName) ? readVti(fileName) : sono::readLabelMap(fileName, isOne ? phase : 0, sono::progressOf(this));
+    isVti(fileName) ? readVti(fileName, vti) : sono::readLabelMap(fileName, isOne ? phase : 0, sono::progressOf(this));
   if (this->LabelNames != "From File")
   {
     sono::readLabelTable(listOfNames(this->LabelNames), volume);
@@ -253,7 +264,8 @@ int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVec
     this->Times = timesOf(this->FileNames);
     vtkInformation* outInfo = output->GetInformationObject(0);
     const std::string& first = this->FileNames[0];
-    sono::announceLabelImage(isVti(first) ? readVti(first).placement : sono::readLabelPlacement(first), outInfo);
+    vtkNew<vtkImageData> vti;
+    sono::announceLabelImage(isVti(first) ? readVti(first, vti).placement : sono::readLabelPlacement(first), outInfo);
     outInfo->Remove(Pipeline::TIME_STEPS());
     outInfo->Remove(Pipeline::TIME_RANGE());
     if (this->Times.size() > 1)
@@ -280,7 +292,8 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
     const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time + 1e-9);
     const int phase = std::max(0, static_cast<int>(after - this->Times.begin()) - 1);
 
-    sono::LabelVolume volume = this->ReadPhase(phase);
+    vtkNew<vtkImageData> vti;
+    sono::LabelVolume volume = this->ReadPhase(phase, vti);
     vtkImageData* image = vtkImageData::GetData(output);
     int announced[6];
     outInfo->Get(Pipeline::WHOLE_EXTENT(), announced);
@@ -292,6 +305,7 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
       throw sono::Error("The label map " + name +
                         " has another number of voxels than the first one; resample it to the same grid.");
     }
+    passMotion(vti, image);
     if (this->Times.size() > 1)
     {
       image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[std::size_t(phase)]);

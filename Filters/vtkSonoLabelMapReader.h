@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+class vtkImageData;
+
 namespace sono {
 struct LabelVolume;
 class ReadFiles;
@@ -28,7 +30,8 @@ class ReadFiles;
  * names none, a table beside it does (CSV, ITK-SNAP .label, 3D Slicer .ctbl, BIDS .tsv or .txt).
  *
  * Several files, or a NIfTI file with a fourth axis, are the phases of a motion: time steps 0, 1, 2, ... for files, in
- * seconds for NIfTI. All have the same number of voxels along each axis.
+ * seconds for NIfTI. All have the same number of voxels along each axis. The point array DisplacementMm and the field
+ * array MovingLabels of a .vti file are passed on.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLabelMapReader : public vtkImageAlgorithm
 {
@@ -87,7 +90,8 @@ private:
   vtkSonoLabelMapReader(const vtkSonoLabelMapReader&) = delete;
   void operator=(const vtkSonoLabelMapReader&) = delete;
 
-  sono::LabelVolume ReadPhase(int phase);
+  /// Of a .vti file also the image that it holds.
+  sono::LabelVolume ReadPhase(int phase, vtkImageData* vti);
   std::vector<std::string> FilesToRead() const;
 
   std::string LabelNames = "From File";

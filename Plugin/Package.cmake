@@ -33,6 +33,8 @@ math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_SONOVDB_PACKAGE_DEPENDS
   "python3-paraview, python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_python})")
 
+set(CPACK_DEBIAN_SONOVDB_PACKAGE_SUGGESTS elastix) # for sonovdb.register_phases
+
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsonovdb-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries to simulate ultrasound from C++")

@@ -33,7 +33,7 @@ vtk_module_wrap_python(
   INSTALL_EXPORT SonoVDB)
 
 # Beside them in the same package what is Python itself.
-foreach(file __init__.py datasets.py)
+foreach(file __init__.py datasets.py elastix.py registration.py)
   configure_file("${CMAKE_CURRENT_LIST_DIR}/python/${file}" "${CMAKE_BINARY_DIR}/${sono_python_dir}/sonovdb/${file}" COPYONLY)
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/python/${file}" DESTINATION "${sono_python_dir}/sonovdb" COMPONENT python)
 endforeach()
@@ -55,6 +55,7 @@ paraview_plugin_build(
 install(PROGRAMS
   "${CMAKE_SOURCE_DIR}/Plugin/examples/dataset.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/plain_vtk.py"
+  "${CMAKE_SOURCE_DIR}/Plugin/examples/register_phases.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/simulate.py"
   "${CMAKE_SOURCE_DIR}/Plugin/examples/state.py"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/sonovdb/examples"

@@ -25,6 +25,8 @@ if [[ ${1:-} == tests ]]; then
     clang-format doxygen
     # readers of the learning study
     python3-pil python3-nibabel
+    # registers phases
+    elastix
   )
 fi
 

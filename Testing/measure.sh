@@ -13,10 +13,10 @@ list_stages()
   local file
   for file in "$stages"/*; do
     local name="${file##*/}"
-    printf '  %-8s %s\n' "${name%.*}" "$(sed -n '1s,^\(//\|#\) *,,p' "$file")"
+    printf '  %-10s %s\n' "${name%.*}" "$(sed -n '1s,^\(//\|#\) *,,p' "$file")"
   done
-  printf '  %-8s %s\n' gpu "What the stages cost on a GPU; see run-gpu.sh for a machine that only has a driver."
-  printf '  %-8s %s\n' study "The phantom study and run time against error, with a report (half an hour)."
+  printf '  %-10s %s\n' gpu "What the stages cost on a GPU; see run-gpu.sh for a machine that only has a driver."
+  printf '  %-10s %s\n' study "The phantom study and run time against error, with a report (half an hour)."
 }
 
 stage="${1:-}"

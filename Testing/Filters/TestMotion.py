@@ -1,12 +1,14 @@
 """A heart that beats: the thorax has time steps, and its walls' speckle rides on the displacement that it brings."""
+import tempfile
 import unittest
 
 import numpy as np
 from chain import listen
-from sonovdb.vtkSonoFilters import vtkSonoThoraxSource, vtkSonoUltrasound
+from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoThoraxSource, vtkSonoUltrasound
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 TIME_STEPS = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
 
@@ -43,6 +45,23 @@ class TestMotion(unittest.TestCase):
         source.Update()
         self.assertFalse(source.GetOutputInformation(0).Has(TIME_STEPS))
         self.assertIsNone(source.GetOutput().GetPointData().GetArray("DisplacementMm"))
+
+    def test_a_file_keeps_it(self):
+        source = beating(4)
+        with tempfile.TemporaryDirectory() as folder:
+            reader = vtkSonoLabelMapReader()
+            for phase in range(2):
+                source.UpdateTimeStep(phase / 4)
+                writer = vtkXMLImageDataWriter()
+                writer.SetInputData(source.GetOutput())
+                writer.SetFileName(f"{folder}/phase{phase}.vti")
+                writer.Write()
+                reader.AddFileName(writer.GetFileName())
+            for phase in range(2):
+                for kept, made in zip(arrays(reader, phase), arrays(source, phase / 4)):
+                    np.testing.assert_array_equal(kept, made)
+                named = [vtk_to_numpy(of.GetOutput().GetFieldData().GetArray("MovingLabels")) for of in (reader, source)]
+                np.testing.assert_array_equal(*named)
 
     def test_a_field_of_two_components_is_refused(self):
         source = beating(1)

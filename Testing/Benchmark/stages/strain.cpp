@@ -1,5 +1,6 @@
 // Speckle tracking on the bundled thorax's beating heart in its apical four-chamber view, against the strain that it
-// has.
+// has. With SONOVDB_REGISTERED, a folder that the stage `registered` has filled, the walls ride on displacements from
+// there.
 #include "ApicalImage.h"
 #include "Labels/AssignTissues.h"
 #include "Phantoms/ThoraxBody.h"
@@ -9,8 +10,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,24 +36,52 @@ constexpr int halfSearchLines = 4;
 
 using Wall = std::vector<Vec3d>; // from base to apex, world mm
 
-ThoraxParameters bodyAt(double phase)
+using Motion = std::shared_ptr<const TissueMotion>;
+using MotionAt = std::function<Motion(const GridPlacement&, int frame)>;
+
+ThoraxParameters bodyAt(int frame)
 {
   ThoraxParameters parameters;
-  parameters.phase = phase;
+  parameters.phase = double(frame) / phases;
   return parameters;
 }
 
-std::shared_ptr<const Scene> sceneAt(double phase, bool locked)
+Motion still(const GridPlacement& /*grid*/, int /*frame*/)
 {
-  LabelVolume volume = makeThoraxPhantom(1.0, bodyAt(phase));
+  return nullptr;
+}
+
+Motion known(const GridPlacement& grid, int frame)
+{
+  return std::make_shared<const TissueMotion>(grid, thoraxDisplacementMm(grid, bodyAt(frame)), thoraxMovingLabels());
+}
+
+template<class Value>
+std::vector<Value> readAll(const std::string& fileName)
+{
+  std::ifstream file(fileName, std::ios::binary | std::ios::ate);
+  std::vector<Value> values(file ? std::size_t(file.tellg()) / sizeof(Value) : 0);
+  file.seekg(0);
+  if (!file.read(reinterpret_cast<char*>(values.data()), std::streamsize(values.size() * sizeof(Value))))
+  {
+    throw Error(fileName + " cannot be read; run Testing/measure.sh registered");
+  }
+  return values;
+}
+
+Motion registered(const std::string& folder, const GridPlacement& grid, int frame)
+{
+  const auto ids = readAll<std::int32_t>(folder + "/moving_labels");
+  return std::make_shared<const TissueMotion>(grid, readAll<Vec3f>(folder + "/displacement_" + std::to_string(frame)),
+                                              std::set<int>(ids.begin(), ids.end()));
+}
+
+std::shared_ptr<const Scene> sceneAt(int frame, const MotionAt& motionAt)
+{
+  LabelVolume volume = makeThoraxPhantom(1.0, bodyAt(frame));
   const auto table = TissueTable::read(data + "/tissues.csv");
   assignTissues(volume, LabelTissueMap::read(data + "/label_tissues.csv"), table, "soft_tissue");
-  std::shared_ptr<const TissueMotion> motion;
-  if (locked)
-  {
-    motion = std::make_shared<const TissueMotion>(
-      volume.placement, thoraxDisplacementMm(volume.placement, bodyAt(phase)), thoraxMovingLabels());
-  }
+  const Motion motion = motionAt(volume.placement, frame);
   return std::make_shared<const Scene>(std::move(volume), table, "air", std::vector<std::uint8_t>{}, motion);
 }
 
@@ -106,14 +140,14 @@ struct Frame
   }
 };
 
-Frame frameAt(double phase, bool locked)
+Frame frameAt(int number, const MotionAt& motionAt)
 {
   ImageInput input;
   input.settings = a4cWith(InterfaceModel::Acoustic);
   input.settings.tracing.pathsPerLine = 64;
   input.settings.setDevice(Device::Cpu);
   input.pose = thoraxPhantomA4C().orthonormalized();
-  Simulator simulator(sceneAt(phase, locked));
+  Simulator simulator(sceneAt(number, motionAt));
   const RfLines rf = simulator.rf(input).host();
   const std::vector<ScanLine> lines = a4cLines(input.settings);
   const auto angleOf = [&](const ScanLine& line) {
@@ -261,15 +295,15 @@ Tracked track(const std::vector<Frame>& cine)
         ++likenessCount;
       }
       const std::vector<Vec2d> along = smoothed(steps, weights);
-      const ThoraxBody body(bodyAt(double(f) / phases));
-      std::vector<Vec2d> known;
+      const ThoraxBody body(bodyAt(f));
+      std::vector<Vec2d> truly;
       for (std::size_t i = 0; i < points.size(); ++i)
       {
         points[i] += along[i];
-        known.push_back(inPlane(body.placeMm(wall[i])));
+        truly.push_back(inPlane(body.placeMm(wall[i])));
       }
       const double measured = 100.0 * (lengthMm(points) / lengthBefore - 1.0);
-      const double truth = 100.0 * (lengthMm(known) / lengthBefore - 1.0);
+      const double truth = 100.0 * (lengthMm(truly) / lengthBefore - 1.0);
       std::fprintf(stderr, "%s wall, frame %d: strain %.2f %%, known %.2f %%\n", side < 0.0 ? "septal" : "lateral", f,
                    measured, truth);
       result.errorPoints = std::max(result.errorPoints, std::abs(measured - truth));
@@ -284,26 +318,39 @@ Tracked track(const std::vector<Frame>& cine)
   return result;
 }
 
-std::vector<Frame> cineOf(bool locked)
+std::vector<Frame> cineOf(const MotionAt& motionAt)
 {
   std::vector<Frame> cine;
   for (int f = 0; f < frames; ++f)
   {
-    cine.push_back(frameAt(double(f) / phases, locked));
+    cine.push_back(frameAt(f, motionAt));
   }
   return cine;
 }
 
+void measureRegistered(const std::string& folder)
+{
+  const Tracked found =
+    track(cineOf([&folder](const GridPlacement& grid, int frame) { return registered(folder, grid, frame); }));
+  printFigure("strain_registered_error_points", found.errorPoints, "points", "at most 2");
+  printFigure("strain_registered_end_error_points", found.endErrorPoints, "points");
+  printFigure("strain_registered_correlation", found.likeness, "");
+}
+
 void measureStrain()
 {
-  const Tracked locked = track(cineOf(true));
+  if (const char* folder = std::getenv("SONOVDB_REGISTERED"))
+  {
+    return measureRegistered(folder);
+  }
+  const Tracked locked = track(cineOf(known));
   printFigure("strain_true_percent", locked.trueEndPercent, "%");
   printFigure("strain_error_percent_points", locked.errorPoints, "points", "at most 2");
   printFigure("strain_end_error_percent_points", locked.endErrorPoints, "points");
   printFigure("strain_correlation", locked.likeness, "");
-  const Tracked still = track(cineOf(false));
-  printFigure("strain_unlocked_error_percent_points", still.errorPoints, "points");
-  printFigure("strain_unlocked_correlation", still.likeness, "");
+  const Tracked standing = track(cineOf(still));
+  printFigure("strain_unlocked_error_percent_points", standing.errorPoints, "points");
+  printFigure("strain_unlocked_correlation", standing.likeness, "");
 }
 
 const Stage stage("strain", measureStrain);
