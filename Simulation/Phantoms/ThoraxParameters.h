@@ -29,6 +29,7 @@ struct ThoraxParameters
   double ribSpacingMm = 29.0;
   double lungOverlapMm = 0.0;
   double breathing = 0.0;
+  double leftLateral = 0.0;
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -66,6 +67,10 @@ struct ThoraxParameters
     visitor(self.breathing,
             Parameter{ "breathing", "Breathing", between(0, 1),
                        "0: breathed out, 1: deeply in, with the diaphragm 35 mm and the heart 10 mm lower." });
+    visitor(self.leftLateral,
+            Parameter{ "leftLateral", "Left Lateral", between(0, 1),
+                       "0: supine, 1: on the left side, with the apex 15 mm further left and the left lung's edge 25 "
+                       "mm beside the sternum." });
   }
 };
 
