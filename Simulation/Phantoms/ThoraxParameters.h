@@ -13,6 +13,13 @@ namespace sono {
 /// 2015;28:1-39, gives as normal at end-diastole 46 to 150 ml for the left ventricle (both sexes) and walls of 6 to 10
 /// mm, and 16 to 34 ml per square metre of body for the left atrium at its largest. The ranges below go beyond them, to
 /// dilated and hypertrophic hearts.
+///
+/// On the left side, for which echocardiography turns its patients, the apex goes by 15 mm and the base stays
+/// ("Inconsistency in LVOT measurement between cardiac computed tomography, magnetic resonance imaging and 3D
+/// echocardiography", abstract). The left lung's edge then lies 25 mm beside the sternum, as Gray (Anatomy of the Human
+/// Body, 1918) draws the cardiac notch at the fourth costal cartilage, and this from the sixth up to the second rib,
+/// since the parasternal window is the second or third space (chosen: how high, and how much of the heart's front is
+/// free with it). The apex swings along the chest wall, about the aortic valve; liver and stomach stay.
 struct ThoraxParameters
 {
   double leftVentricleMl = 91.6;
