@@ -11,6 +11,10 @@ namespace sono {
 
 namespace {
 
+constexpr double apexAsideMm = 15.0;
+constexpr double apexToValveMm = 81.0; // of the default heart, along its axis
+constexpr double lungAsideMm = 30.0;   // from behind the sternum's middle to 25 mm beside its edge
+
 /// Left ventricle, right ventricle, left atrium, right atrium.
 using Chambers = std::array<double, 4>;
 
@@ -84,6 +88,17 @@ ThoraxAorta aortaOf(const HeartFrame& frame, const AortaPhase& phase)
   return { frame.toWorld(aorticValveCentreMm()), frame.axes * aorticFlowDirection(), phase };
 }
 
+/// Of a body on its left side: the apex has swung to the left about the aortic valve, by which the heart hangs.
+HeartFrame swung(const HeartFrame& frame, double leftLateral)
+{
+  const double sine = leftLateral * apexAsideMm / apexToValveMm;
+  const double cosine = std::sqrt(1.0 - sine * sine);
+  const Vec3d lateral = cosine * frame.axes[0] + sine * frame.axes[2];
+  const Vec3d axial = cosine * frame.axes[2] - sine * frame.axes[0];
+  const Mat3d axes(lateral, frame.axes[1], axial);
+  return { frame.originMm + (frame.axes - axes) * aorticValveCentreMm(), axes };
+}
+
 const ThoraxParameters& checked(const ThoraxParameters& parameters)
 {
   requireInRange(parameters);
@@ -100,6 +115,7 @@ ChestShape chestShape(const ThoraxParameters& p)
   shape.ribSpacingMm = p.ribSpacingMm;
   shape.lungOverlapMm = p.lungOverlapMm;
   shape.diaphragmDownMm = 35.0 * p.breathing;
+  shape.lungAsideMm = lungAsideMm * p.leftLateral;
   return shape;
 }
 
@@ -113,7 +129,8 @@ HeartFrame heartFrame(const ThoraxParameters& p)
   ChestShape lean = chestShape(p);
   lean.extraFatMm = 0.0;
   const Vec3d shift(p.heartLeftMm, p.heartBackMm, p.heartUpMm - 10.0 * p.breathing);
-  return { skinPointMm(lean, 88.0, -86.7, -45.0) + shift, Mat3d(lateral, glm::cross(axial, lateral), axial) };
+  const Vec3d originMm = skinPointMm(lean, 88.0, -86.7, -45.0) + shift;
+  return swung({ originMm, Mat3d(lateral, glm::cross(axial, lateral), axial) }, p.leftLateral);
 }
 
 ThoraxBody::ThoraxBody(const ThoraxParameters& parameters)

@@ -166,16 +166,18 @@ ThoraxLabel abdomen(const Vec3d& p, double belowDiaphragmMm)
   return liver < 0.0 ? Liver : VisceralFat;
 }
 
-ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Vec3d& q, double overlapMm)
+ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Vec3d& q, const ChestShape& chest)
 {
-  const double halfWidth = 7.0 + 25.0 * smoothStep(-75.0, -10.0, p.y) - 6.0 * smoothStep(35.0, 60.0, p.y);
+  const double asideMm =
+    p.x > 3.0 ? chest.lungAsideMm * smoothStep(-20.0, -60.0, p.y) * smoothStep(100.0, 70.0, p.z) : 0.0;
+  const double halfWidth = 7.0 + 25.0 * smoothStep(-75.0, -10.0, p.y) - 6.0 * smoothStep(35.0, 60.0, p.y) + asideMm;
   const bool mediastinum = std::abs(p.x - 3.0) < halfWidth + 2.0 * std::sin(0.06 * p.z);
   // The cardiac notch: between the apex, the right ventricle and the chest wall there is no lung.
   const double notch = smoothUnion(capsule(q, Vec3d(0.0, 0.0, 0.0), Vec3d(4.0, 0.0, 62.0), 25.0, 41.0),
                                    ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)), 10.0);
   const double hilum =
     ellipsoid(Vec3d(std::abs(p.x - 3.0), p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0));
-  if (mediastinum || hilum < 0.0 || heart.outsideMm < 2.0 || notch < -overlapMm)
+  if (mediastinum || hilum < 0.0 || heart.outsideMm < 2.0 + asideMm || notch < -chest.lungOverlapMm)
   {
     return MediastinalFat;
   }
@@ -236,8 +238,7 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
   }
   const Vec3d raised = p + Vec3d(0.0, 0.0, chest.diaphragmDownMm);
   const double belowDiaphragmMm = diaphragmMm(raised) - raised.z;
-  return belowDiaphragmMm > 0.0 ? abdomen(raised, belowDiaphragmMm)
-                                : mediastinumOrLung(p, heart, inHeartFrame, chest.lungOverlapMm);
+  return belowDiaphragmMm > 0.0 ? abdomen(raised, belowDiaphragmMm) : mediastinumOrLung(p, heart, inHeartFrame, chest);
 }
 
 double skinDepthMm(const Vec3d& p, const ChestShape& chest)

@@ -14,6 +14,7 @@ struct ChestShape
   double ribSpacingMm = 29.0;   ///< from rib to rib
   double lungOverlapMm = 0.0;   ///< how far the lungs' edges come in over the heart
   double diaphragmDownMm = 0.0; ///< how much lower diaphragm, liver and stomach stand
+  double lungAsideMm = 0.0;     ///< how far the left lung's front has gone to the left of the middle and off the heart
 };
 
 /// Box that holds the torso with a margin of air at its sides; above and below the torso goes on (world LPS mm).

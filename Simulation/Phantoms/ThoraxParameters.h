@@ -15,6 +15,13 @@ namespace sono {
 /// mm, and 16 to 34 ml per square metre of body for the left atrium at its largest, and 52 to 74 % as the left
 /// ventricle's ejection fraction, down to below 30 in disease. The ranges below go beyond them, to dilated and
 /// hypertrophic hearts.
+///
+/// On the left side, for which echocardiography turns its patients, the apex goes by 15 mm and the base stays
+/// ("Inconsistency in LVOT measurement between cardiac computed tomography, magnetic resonance imaging and 3D
+/// echocardiography", abstract). The left lung's edge then lies 25 mm beside the sternum, as Gray (Anatomy of the Human
+/// Body, 1918) draws the cardiac notch at the fourth costal cartilage, and this from the sixth up to the second rib,
+/// since the parasternal window is the second or third space (chosen: how high, and how much of the heart's front is
+/// free with it). The apex swings along the chest wall, about the aortic valve; liver and stomach stay.
 struct ThoraxParameters
 {
   double leftVentricleMl = 91.6;
@@ -31,6 +38,7 @@ struct ThoraxParameters
   double ribSpacingMm = 29.0;
   double lungOverlapMm = 0.0;
   double breathing = 0.0;
+  double leftLateral = 0.0;
   double phase = 0.0;
   double ejectionPercent = 60.0;
 
@@ -70,6 +78,10 @@ struct ThoraxParameters
     visitor(self.breathing,
             Parameter{ "breathing", "Breathing", between(0, 1),
                        "0: breathed out, 1: deeply in, with the diaphragm 35 mm and the heart 10 mm lower." });
+    visitor(self.leftLateral,
+            Parameter{ "leftLateral", "Left Lateral", between(0, 1),
+                       "0: supine, 1: on the left side, with the apex 15 mm further left and the left lung's edge 25 "
+                       "mm beside the sternum." });
     visitor(self.phase,
             Parameter{ "phase", "Phase", between(0, 1),
                        "Of the heart's cycle, 0 to 1, from the end of diastole on; systole ends at 0.35." });

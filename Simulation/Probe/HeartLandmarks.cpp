@@ -212,20 +212,25 @@ Annulus fitRing(std::vector<Vec3d> places, const Vec3d& from)
   return ring;
 }
 
-/// Of leaflets, which hang along the wall for a while, only where they begin: in each sector what is highest.
+/// Of leaflets, which hang along the wall for a while, only where they begin: in each sector what is highest and
+/// outermost, millimetre by millimetre.
 std::vector<Vec3d> hinges(const std::vector<Vec3d>& places, const Annulus& ring, double cellMm)
 {
   const Around around = aroundOf(ring);
-  const auto height = [&](const Vec3d& place) { return glm::dot(place - ring.centreMm, ring.normal); };
+  const auto reach = [&](const Vec3d& place) {
+    const Vec3d from = place - ring.centreMm;
+    const double up = glm::dot(from, ring.normal);
+    return up + glm::length(from - up * ring.normal);
+  };
   std::vector<double> top(sectorCount, -1e9);
   for (const Vec3d& place : places)
   {
     double& sector = top[around.sector(place)];
-    sector = std::max(sector, height(place));
+    sector = std::max(sector, reach(place));
   }
   std::vector<Vec3d> highest;
   std::copy_if(places.begin(), places.end(), std::back_inserter(highest),
-               [&](const Vec3d& place) { return height(place) > top[around.sector(place)] - cellMm; });
+               [&](const Vec3d& place) { return reach(place) > top[around.sector(place)] - cellMm; });
   return highest;
 }
 

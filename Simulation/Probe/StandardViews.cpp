@@ -56,6 +56,7 @@ struct Outcome
   };
   Stage stage = OffPlane;
   StandardView view;
+  ProbePose local; ///< the view's pose, in local coordinates
 };
 
 class ViewSearch
@@ -92,7 +93,8 @@ public:
     return {};
   }
 
-  Outcome tryAt(const Trial& trial) const
+  /// What becomes of a trial; of one that cannot be better than `best`, only that it is not.
+  Outcome tryAt(const Trial& trial, const Outcome& best) const
   {
     Outcome outcome;
     StandardView& view = outcome.view;
@@ -116,6 +118,13 @@ public:
       return outcome;
     }
     outcome.stage = Outcome::OffSkin;
+    const double mostScore =
+      nearness(view) *
+      std::exp(-0.5 * (std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0) + std::pow(trial.rockDeg / rockedDeg, 2.0)));
+    if (best.stage == Outcome::Shown && mostScore <= best.view.score)
+    {
+      return outcome;
+    }
     const Vec3d place = grid_.entry(trial.place.localMm, axis);
     const Vec3d across = glm::cross(axis, normal);
     const Vec3d lateral = glm::dot(glm::transpose(toLocal_) * across, plan_.rightward) < 0.0 ? -across : across;
@@ -126,9 +135,9 @@ public:
     outcome.stage = Outcome::Shown;
     const Mat3d toWorld = glm::transpose(toLocal_);
     view.pose = ProbePose{ grid_.scene().worldFromLocal(place), toWorld * axis, toWorld * lateral }.orthonormalized();
-    show(ProbePose{ place, axis, lateral }, view);
-    view.score *=
-      std::exp(-0.5 * (std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0) + std::pow(trial.rockDeg / rockedDeg, 2.0)));
+    outcome.local = ProbePose{ place, axis, lateral };
+    view.score = mostScore;
+    show(outcome.local, view);
     return outcome;
   }
 
@@ -155,7 +164,7 @@ public:
         const bool isPlace = other.place.outward != Vec3d(0.0) &&
                              grid_.isCovered(other.place.localMm, other.place.outward) &&
                              std::abs(other.rockDeg) <= mostRocks * rockStepDeg;
-        const Outcome outcome = isPlace ? tryAt(other) : Outcome();
+        const Outcome outcome = isPlace ? tryAt(other, best) : Outcome();
         if (isFurther(outcome, best))
         {
           best = outcome;
@@ -166,6 +175,43 @@ public:
       moveMm *= isBetter ? 1.0 : 0.5;
     }
     return best;
+  }
+
+  /// What takes most from what a view is to show.
+  void sayShadow(const ProbePose& pose, StandardView& view) const
+  {
+    const auto lines = makeScanLines(probe_.geometry(), pose);
+    const std::vector<double> areas = probe_.stepAreas(lines);
+    double met = 0.0;                                                        // mm^2
+    std::vector<double> excessOfTissue(grid_.scene().tissues().size(), 0.0); // dB mm^2
+    std::vector<double> own(excessOfTissue.size());                          // dB until here
+    for (const ScanLine& line : lines)
+    {
+      std::fill(own.begin(), own.end(), 0.0);
+      double before = 0.0;
+      probe_.walk(line.originMm, line.axis, probe_.geometry().depthMm,
+                  [&](double r, const Vec3d& at, std::size_t cell, double, double excessDb) {
+                    own[std::size_t(grid_.tissue(cell))] += excessDb - before;
+                    before = excessDb;
+                    if (structures_.at(at) >= 0)
+                    {
+                      const double area = areas[std::min(areas.size() - 1, std::size_t(r / grid_.stepMm()))];
+                      met += area;
+                      for (std::size_t i = 0; i < own.size(); ++i)
+                      {
+                        excessOfTissue[i] += own[i] * area;
+                      }
+                    }
+                  });
+    }
+    const auto most = std::max_element(excessOfTissue.begin(), excessOfTissue.end());
+    const double db = met > 0.0 ? *most / met : 0.0;
+    if (db >= leastShadowDb)
+    {
+      view.shadow = grid_.scene().tissues()[std::size_t(most - excessOfTissue.begin())].name;
+      std::replace(view.shadow.begin(), view.shadow.end(), '_', ' ');
+      view.shadowDb = db;
+    }
   }
 
   static bool isFurther(const Outcome& a, const Outcome& b)
@@ -180,21 +226,15 @@ private:
     const std::vector<double> areas = probe_.stepAreas(lines);
     const double stepMm = grid_.stepMm();
     std::vector<double> seen(structures_.count(), 0.0);
-    double met = 0.0;        // with what lies in a shadow, mm^2
     double seenExcess = 0.0; // dB mm^2
     std::vector<double> inside(areas.size(), 0.0);
-    std::vector<double> excessOfTissue(grid_.scene().tissues().size(), 0.0); // dB mm^2
     double farMm = 0.0;
     for (const ScanLine& line : lines)
     {
-      std::vector<double> own(excessOfTissue.size(), 0.0); // dB until here
-      double before = 0.0;
       probe_.walk(line.originMm, line.axis, probe_.geometry().depthMm,
-                  [&](double r, const Vec3d& at, std::size_t cell, double, double excessDb) {
+                  [&](double r, const Vec3d& at, std::size_t, double, double excessDb) {
                     const auto bin = std::min(areas.size() - 1, std::size_t(r / stepMm));
                     inside[bin] += areas[bin];
-                    own[std::size_t(grid_.tissue(cell))] += excessDb - before;
-                    before = excessDb;
                     const int demand = structures_.at(at);
                     if (demand < 0)
                     {
@@ -202,13 +242,8 @@ private:
                     }
                     const double clear = std::clamp((goneDb - excessDb) / (goneDb - dimDb), 0.0, 1.0);
                     seen[std::size_t(demand)] += clear * areas[bin];
-                    met += areas[bin];
                     seenExcess += clear * areas[bin] * excessDb;
                     farMm = std::max(farMm, r);
-                    for (std::size_t i = 0; i < own.size(); ++i)
-                    {
-                      excessOfTissue[i] += own[i] * areas[bin];
-                    }
                   });
     }
     const double reachMm = std::floor(probe_.geometry().depthMm / depthStepMm) * depthStepMm;
@@ -216,7 +251,6 @@ private:
     rate(seen, view);
     const double seenMm2 = std::accumulate(seen.begin(), seen.end(), 0.0);
     view.score *= std::pow(10.0, -seenExcess / std::max(1e-9, seenMm2) / lossScaleDb);
-    sayShadow(excessOfTissue, met, view);
     double all = 0.0;
     double within = 0.0;
     for (std::size_t bin = 0; bin < areas.size() && double(bin) * stepMm < view.depthMm; ++bin)
@@ -240,20 +274,12 @@ private:
       sum += share / double(seen.size());
       worst = std::min(worst, 100.0 * share / demand.leastPercent);
     }
-    const double off = std::pow(view.planeOffDeg / offDeg, 2.0) + std::pow(view.markOffMm / offMm, 2.0);
-    view.score = sum * worst * std::exp(-0.5 * off);
+    view.score *= sum * worst;
   }
 
-  void sayShadow(const std::vector<double>& excessOfTissue, double areaMm2, StandardView& view) const
+  static double nearness(const StandardView& view)
   {
-    const auto most = std::max_element(excessOfTissue.begin(), excessOfTissue.end());
-    const double db = areaMm2 > 0.0 ? *most / areaMm2 : 0.0;
-    if (db >= leastShadowDb)
-    {
-      view.shadow = grid_.scene().tissues()[std::size_t(most - excessOfTissue.begin())].name;
-      std::replace(view.shadow.begin(), view.shadow.end(), '_', ' ');
-      view.shadowDb = db;
-    }
+    return std::exp(-0.5 * (std::pow(view.planeOffDeg / offDeg, 2.0) + std::pow(view.markOffMm / offMm, 2.0)));
   }
 
   const ProbeOnSkin& probe_;
@@ -361,7 +387,7 @@ StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std:
     for (int rock = 0; rock < rocks; ++rock)
     {
       const Trial trial{ places[at], (rock % 2 == 0 ? -1.0 : 1.0) * double((rock + 1) / 2) * rockStepDeg };
-      const Outcome outcome = search.tryAt(trial);
+      const Outcome outcome = search.tryAt(trial, outcomes[at]);
       if (rock == 0 || ViewSearch::isFurther(outcome, outcomes[at]))
       {
         trials[at] = trial;
@@ -384,6 +410,10 @@ StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std:
   Outcome::Stage stage = Outcome::OffPlane;
   for (Outcome& outcome : refined)
   {
+    if (outcome.stage == Outcome::Shown)
+    {
+      search.sayShadow(outcome.local, outcome.view);
+    }
     outcome.view.refusal = refusalOf(outcome, plan);
     const bool isBetter = outcome.view.refusal.empty() != best.refusal.empty() ? outcome.view.refusal.empty()
                           : outcome.stage != stage                             ? outcome.stage > stage

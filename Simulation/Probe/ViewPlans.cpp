@@ -17,6 +17,7 @@ constexpr const char* curved = "curvilinear_c5-2";
 const Vec3d backwards(0.0, 1.0, 0.0); // the chest's, of a probe beside the sternum
 constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double besideMm = 30.0;     // of points that tell how a plane lies about an axis
+constexpr double aroundMm = 81.0;     // the square root of 2 degrees in a radian
 constexpr double aortaMm = 25.0;      // what of the aorta belongs to a view of the heart
 constexpr double cavaMm = 70.0;       // what of the inferior vena cava is near the right atrium
 constexpr double organReachMm = 60.0; // what of a long organ is near its middle
@@ -84,6 +85,7 @@ public:
     const PlaneFit fit = fitPlane(view.points);
     view.middleMm = fit.middleMm;
     view.normal = fit.normal();
+    view.points = pointsAround(view.markMm, fit);
     const bool isParasternal = isShortAxis || name == "PLAX";
     view.look = isParasternal    ? glm::normalize(inferolateral_ + backwards)
                 : name == "SC4C" ? glm::normalize(0.5 * axis_ - septal_)
@@ -93,6 +95,15 @@ public:
   }
 
 private:
+  /// Of least squares through them and a place on the skin is a plane whose turn from theirs and whose distance from
+  /// the mark weigh alike, degree by millimetre.
+  static std::vector<Vec3d> pointsAround(const Vec3d& markMm, const PlaneFit& plane)
+  {
+    const Vec3d u = aroundMm * plane.axes[1];
+    const Vec3d v = aroundMm * plane.axes[2];
+    return { markMm + u, markMm - u, markMm + v, markMm - v };
+  }
+
   void planShortAxis(ViewPlan& view) const
   {
     const double level = view.name == "PSAX base" ? 0.85 : view.name == "PSAX mid" ? 0.55 : 0.25;

@@ -28,7 +28,8 @@ struct ViewPlan
 
   Vec3d middleMm{ 0.0 };     ///< a point of the ideal plane
   Vec3d normal{ 0.0 };       ///< of the ideal plane, unit
-  std::vector<Vec3d> points; ///< of the ideal plane, which a plane through a place on the skin keeps to
+  std::vector<Vec3d> points; ///< of the ideal plane, which a plane through a place on the skin keeps to; of a heart's
+                             ///< views such that a degree off weighs as much as a millimetre from the mark
   Vec3d markMm{ 0.0 };       ///< how far a view is beside it is said: the apex; of a short axis its level's centre
   Vec3d look{ 0.0 };         ///< unit: which way a probe looks from the skin to the structures, within
   double lookDeg = 0.0;

@@ -1,7 +1,10 @@
 #include "Probe/ViewStructures.h"
 
+#include "Core/ParallelFor.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sono {
 namespace {
@@ -25,10 +28,50 @@ ViewStructures::ViewStructures(const Scene& scene, const ViewPlan& plan)
     nearLocal_.push_back(scene.localFromWorld(demand.nearMm));
     withinMm_.push_back(demand.withinMm);
   }
+  findBox();
+}
+
+void ViewStructures::findBox()
+{
+  const Vec3i n = scene_.placement().size;
+  struct Box
+  {
+    Vec3i low{ std::numeric_limits<int>::max() };
+    Vec3i high{ -1 };
+  };
+  std::vector<Box> ofLayer(std::size_t(n.z));
+  parallelFor(n.z, {}, [&](int k) {
+    Box& box = ofLayer[std::size_t(k)];
+    for (int j = 0; j < n.y; ++j)
+    {
+      const std::uint16_t* row = scene_.volume().voxels.data() + (std::size_t(k) * n.y + j) * n.x;
+      for (int i = 0; i < n.x; ++i)
+      {
+        if (demandOfLabel_[row[i]] >= 0)
+        {
+          box.low = glm::min(box.low, Vec3i(i, j, k));
+          box.high = glm::max(box.high, Vec3i(i, j, k));
+        }
+      }
+    }
+  });
+  Box all;
+  for (const Box& box : ofLayer)
+  {
+    all.low = glm::min(all.low, box.low);
+    all.high = glm::max(all.high, box.high);
+  }
+  const bool isEmpty = all.high.x < 0;
+  boxLowMm_ = isEmpty ? Vec3d(0.0) : scene_.placement().spacingMm * (Vec3d(all.low) - 0.5); // a margin for rounding
+  boxHighMm_ = isEmpty ? Vec3d(0.0) : scene_.placement().spacingMm * (Vec3d(all.high) + 1.5);
 }
 
 int ViewStructures::at(const Vec3d& local) const
 {
+  if (glm::any(glm::lessThan(local, boxLowMm_)) || glm::any(glm::greaterThanEqual(local, boxHighMm_)))
+  {
+    return -1; // most of a body
+  }
   const Vec3i n = scene_.placement().size;
   const Vec3i v = Vec3i(glm::floor(local / scene_.placement().spacingMm));
   if (glm::any(glm::lessThan(v, Vec3i(0))) || glm::any(glm::greaterThanEqual(v, n)))

@@ -18,8 +18,12 @@ public:
   int at(const Vec3d& local) const; ///< by its number among the plan's demands; -1: none
 
 private:
+  void findBox();
+
   const Scene& scene_;
   std::vector<int> demandOfLabel_;
+  Vec3d boxLowMm_{ 0.0 }; ///< around all of them, local; the empty one where there is none
+  Vec3d boxHighMm_{ 0.0 };
   std::vector<Vec3d> nearLocal_;
   std::vector<double> withinMm_;
 };

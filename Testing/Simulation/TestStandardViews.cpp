@@ -3,6 +3,7 @@
 #include "Labels/AssignTissues.h"
 #include "Phantoms/ThoraxLandmarks.h"
 #include "Phantoms/ThoraxPhantom.h"
+#include "Probe/PlaneFit.h"
 #include "TestScenes.h"
 
 #include <gtest/gtest.h>
@@ -78,7 +79,28 @@ TEST(ViewPlans, OfLandmarksOnTheAxes)
   }
 }
 
-/// The plane of each view by the numbers that draw the bundled thorax, in the world.
+/// Of all planes through a place the one with the least sum of its angle's square, in degrees, and of its distance's
+/// from the mark, in millimetres: closed form for small angles.
+TEST(ViewPlans, ADegreeOffWeighsAsAMillimetre)
+{
+  HeartLandmarks marks;
+  marks.mitral.centreMm = Vec3d(0.0, 0.0, 90.0);
+  marks.tricuspid = Annulus{ Vec3d(-45.0, 0.0, 85.0), Vec3d(0.0, 0.0, 1.0), 18.0 };
+  const ViewPlan a4c = planHeartViews(marks, LabelVolume()).front();
+  ASSERT_EQ(a4c.name, "A4C");
+  const double degree = 1.0 / 57.29577951308232;
+  for (const double alongMm : { 20.0, 60.0, 120.0 })
+  {
+    const double asideMm = 3.0;
+    const Vec3d place(0.0, asideMm, -alongMm);
+    const PlaneFit fit = fitPlaneThrough(place, a4c.points, std::vector<double>(a4c.points.size(), 1.0));
+    const double turn = asideMm * alongMm / (1.0 / (degree * degree) + alongMm * alongMm);
+    EXPECT_NEAR(degreesBetween(fit.normal(), Vec3d(0.0, 1.0, 0.0)), turn / degree, 0.01);
+    EXPECT_NEAR(std::abs(glm::dot(fit.normal(), place)), asideMm - turn * alongMm, 0.01);
+  }
+}
+
+/// The plane of a view by the numbers that draw a thorax, in the world.
 struct KnownPlane
 {
   const char* name;
@@ -86,35 +108,48 @@ struct KnownPlane
   Vec3d markMm;
 };
 
+std::vector<KnownPlane> knownPlanes(const HeartLandmarks& drawn)
+{
+  const Vec3d apex = drawn.apexMm;
+  const Vec3d longAxis = drawn.mitral.centreMm - apex;
+  const Vec3d toAorta = drawn.aortic->centreMm - apex;
+  const Vec3d toTricuspid = drawn.tricuspid->centreMm - apex;
+  const auto across = [&](const Vec3d& v) {
+    return v - glm::dot(v, longAxis) / glm::dot(longAxis, longAxis) * longAxis;
+  };
+  const Vec3d fourChambers = glm::cross(longAxis, toTricuspid);
+  const Vec3d outflow = glm::cross(longAxis, toAorta);
+  return {
+    { "A4C", fourChambers, apex },
+    { "A3C", outflow, apex },
+    { "A5C", glm::cross(across(toTricuspid), toAorta), apex },
+    { "A2C", glm::cross(longAxis, glm::normalize(across(toTricuspid)) - glm::normalize(across(toAorta))), apex },
+    { "PSAX apex", longAxis, apex + 0.25 * longAxis },
+    { "PLAX", outflow, apex },
+    { "PSAX mid", longAxis, apex + 0.55 * longAxis },
+    { "PSAX base", longAxis, apex + 0.85 * longAxis },
+    { "SC4C", fourChambers, apex },
+  };
+}
+
+void expectNear(const StandardView& view, const KnownPlane& plane)
+{
+  EXPECT_EQ(view.refusal, "") << plane.name;
+  const Vec3d normal = glm::cross(view.pose.axial, view.pose.lateral);
+  EXPECT_LT(degreesBetween(normal, plane.normal), 5.0) << plane.name;
+  EXPECT_LT(std::abs(glm::dot(normal, plane.markMm - view.pose.positionMm)), 5.0) << plane.name;
+}
+
 /// What was found is held against where the valves were drawn, not against landmarks that were found.
 TEST(StandardViews, OfTheBundledThorax)
 {
   const auto scene = sceneOf(makeThoraxPhantom(2.0));
   const auto views = findStandardViews(*scene, probeOf);
   const ProbePose frame = thoraxPhantomA4C();
-  const HeartLandmarks drawn = thoraxLandmarks(ThoraxBody(ThoraxParameters{}));
-  const Vec3d apex = drawn.apexMm;
-  const Vec3d mitral = drawn.mitral.centreMm;
-  const Vec3d aortic = drawn.aortic->centreMm;
-  const Vec3d longAxis = mitral - apex;
-  const auto across = [&](const Vec3d& v) {
-    return v - glm::dot(v, longAxis) / glm::dot(longAxis, longAxis) * longAxis;
-  };
-  const Vec3d toTricuspid = drawn.tricuspid->centreMm - apex;
-  const KnownPlane known[] = {
-    { "A4C", glm::cross(longAxis, toTricuspid), apex },
-    { "A3C", glm::cross(longAxis, aortic - apex), apex },
-    { "A5C", glm::cross(across(toTricuspid), aortic - apex), apex },
-    { "A2C", glm::cross(longAxis, glm::normalize(across(toTricuspid)) - glm::normalize(across(aortic - apex))), apex },
-    { "PSAX apex", longAxis, apex + 0.25 * longAxis },
-  };
-  for (const KnownPlane& plane : known)
+  const std::vector<KnownPlane> known = knownPlanes(thoraxLandmarks(ThoraxBody(ThoraxParameters{})));
+  for (std::size_t i = 0; i < 5; ++i) // the apical ones, and across the apex
   {
-    const StandardView& view = viewOf(views, plane.name);
-    EXPECT_EQ(view.refusal, "") << plane.name;
-    const Vec3d normal = glm::cross(view.pose.axial, view.pose.lateral);
-    EXPECT_LT(degreesBetween(normal, plane.normal), 5.0) << plane.name;
-    EXPECT_LT(std::abs(glm::dot(normal, plane.markMm - view.pose.positionMm)), 5.0) << plane.name;
+    expectNear(viewOf(views, known[i].name), known[i]);
   }
   for (const StandardView& view : views)
   {
@@ -138,7 +173,21 @@ TEST(StandardViews, OfTheBundledThorax)
   EXPECT_GT(glm::dot(a4c.pose.lateral, frame.lateral), 0.9);
   EXPECT_NE(viewOf(views, "IVC").refusal.find("inferior vena cava, which the label map does not have"),
             std::string::npos);
-  EXPECT_EQ(viewOf(views, "PLAX").shadow, "lung"); // its left lung reaches to the sternum
+  EXPECT_NE(viewOf(views, "PSAX base").refusal, ""); // its left lung reaches to the sternum
+  EXPECT_EQ(viewOf(views, "PSAX base").shadow, "lung");
+}
+
+/// The same body on its left side, whose lung gives the parasternal windows free.
+TEST(StandardViews, AllOfABodyOnItsLeftSide)
+{
+  ThoraxParameters parameters;
+  parameters.leftLateral = 1.0;
+  const auto scene = sceneOf(makeThoraxPhantom(2.0, parameters));
+  const auto views = findStandardViews(*scene, probeOf);
+  for (const KnownPlane& plane : knownPlanes(thoraxLandmarks(ThoraxBody(parameters))))
+  {
+    expectNear(viewOf(views, plane.name), plane);
+  }
 }
 
 /// A kidney and a liver in a body of soft tissue, behind bone or not: closed forms of what is shown.
