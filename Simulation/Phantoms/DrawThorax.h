@@ -10,7 +10,7 @@ namespace sono {
 /// dilated left ventricle and atrium, and with a thick wall. Numbers are uniform within their ranges. Those of the
 /// normal left ventricle (70 to 140 ml) and its wall (7 to 10 mm) lie within the published ones (see ThoraxParameters);
 /// all others are chosen, as far as bodies stay valid (checkThorax): diseases, right heart, atria, habitus, ribs, lungs
-/// and breath. They lie as in an echo laboratory: more or less on the left side, 4 of 100 nearly on their backs. Not
+/// and breath. They lie as in an echo laboratory: more or less on the left side, 2 of 100 nearly on their backs. Not
 /// drawn, since the family has none: the phase of the cycle (an end-diastole).
 ThoraxParameters drawThoraxParameters(std::uint64_t seed);
 
