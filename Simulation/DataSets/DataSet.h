@@ -49,7 +49,7 @@ struct DataSetView
   std::string name;
   std::optional<ProbePose> pose; ///< world LPS mm, of the patient as the file has it
   /// Of what findAcousticWindows finds for a label or an organ the best; empty, and no pose: the standard view of that
-  /// name (findStandardViews), of the bundled thorax's A4C the pose that it brings along.
+  /// name (findStandardViews), of the bundled thorax that is not drawn its A4C the pose that it brings along.
   std::string window;
 };
 

@@ -15,7 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace sono {
@@ -101,7 +103,7 @@ std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patien
   std::vector<StandardView> standard;
   for (const DataSetView& view : patient.views)
   {
-    const bool isBundled = patient.labels.empty() && view.name == "A4C";
+    const bool isBundled = patient.labels.empty() && !patient.isDrawn && view.name == "A4C";
     if (!view.window.empty())
     {
       views.push_back({ findAcousticWindows(scene, windowTarget(scene, view.window), probe, 1).front().pose, {} });
@@ -114,8 +116,11 @@ std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patien
     {
       if (standard.empty())
       {
+        std::set<std::string> names;
+        std::transform(patient.views.begin(), patient.views.end(), std::inserter(names, names.end()),
+                       [](const DataSetView& wanted) { return wanted.name; });
         standard = findStandardViews(
-          scene, [&](const std::string&) { return probe; }, progress);
+          scene, [&](const std::string&) { return probe; }, progress, names);
       }
       views.push_back(standardView(standard, view.name));
       if (views.back().pose && augmentation.isMirrored)

@@ -28,7 +28,7 @@ ThoraxParameters drawThoraxParameters(std::uint64_t seed)
   p.ribSpacingMm = draw(26.0, 32.0);
   p.lungOverlapMm = draw(0.0, 20.0);
   p.breathing = draw(0.0, 0.6);
-  const bool supine = draw(0.0, 1.0) < 0.04; // few cannot turn
+  const bool supine = draw(0.0, 1.0) < 0.02; // few cannot turn
   p.leftLateral = supine ? draw(0.0, 0.4) : draw(0.6, 1.0);
   p.phase = draw(0.0, 1.0);
   p.ejectionPercent = dilated ? draw(20.0, 45.0) : draw(52.0, 62.0);

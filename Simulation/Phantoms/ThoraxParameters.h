@@ -20,8 +20,9 @@ namespace sono {
 /// ("Inconsistency in LVOT measurement between cardiac computed tomography, magnetic resonance imaging and 3D
 /// echocardiography", abstract). The left lung's edge then lies 25 mm beside the sternum, as Gray (Anatomy of the Human
 /// Body, 1918) draws the cardiac notch at the fourth costal cartilage, and this from the sixth up to the second rib,
-/// since the parasternal window is the second or third space (chosen: how high, and how much of the heart's front is
-/// free with it). The apex swings along the chest wall, about the aortic valve; liver and stomach stay.
+/// since the parasternal window is the second or third space. Chosen: how high, and that it keeps 30 mm off the heart's
+/// front, which is then free of lung up to the chest's side. The apex swings along the chest wall, about the aortic
+/// valve; liver and stomach stay.
 struct ThoraxParameters
 {
   double leftVentricleMl = 91.6;

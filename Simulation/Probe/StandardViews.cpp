@@ -429,7 +429,8 @@ StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std:
 
 } // namespace
 
-std::vector<StandardView> findStandardViews(const Scene& scene, const ProbeByPreset& probeOf, const Progress& progress)
+std::vector<StandardView> findStandardViews(const Scene& scene, const ProbeByPreset& probeOf, const Progress& progress,
+                                            const std::set<std::string>& names)
 {
   const WindowGrid grid(scene, WindowTarget());
   const std::vector<WindowGrid::SkinPlace> places = grid.skinPlaces();
@@ -440,8 +441,9 @@ std::vector<StandardView> findStandardViews(const Scene& scene, const ProbeByPre
     report(progress, double(i) / double(plans.size()));
     const ViewPlan& plan = plans[i];
     StandardView view;
-    view.refusal = plan.refusal;
-    if (plan.refusal.empty())
+    const bool isWanted = names.empty() || names.count(plan.name) == 1;
+    view.refusal = isWanted ? plan.refusal : "It was not looked for.";
+    if (view.refusal.empty())
     {
       view = findView(ProbeOnSkin(grid, probeOf(plan.preset)), plan, places);
     }

@@ -5,6 +5,7 @@
 #include "Scene/Scene.h"
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct StandardView
 /// Gives the settings of a bundled probe by its preset's name.
 using ProbeByPreset = std::function<ProbeSettings(const std::string& preset)>;
 
-/// Looks for every view of planStandardViews, in its order.
+/// Looks for every view of planStandardViews, in its order; of those alone whose `names` are given, the others being
+/// refused without a look.
 ///
 /// A probe stands on the skin as for an acoustic window (findAcousticWindows), at no more than 55 degrees to its
 /// normal, and looks as the plan says. Its plane contains the place on the skin and is that of least squares through
@@ -54,7 +56,7 @@ using ProbeByPreset = std::function<ProbeSettings(const std::string& preset)>;
 ///
 /// The same at each call. Throws what `probeOf` throws.
 std::vector<StandardView> findStandardViews(const Scene& scene, const ProbeByPreset& probeOf,
-                                            const Progress& progress = {});
+                                            const Progress& progress = {}, const std::set<std::string>& names = {});
 
 /// "A4C, apical four-chamber: shows 97 % of the left ventricle, ..., 2 degrees and 1 mm off the ideal plane." or "A4C,
 /// apical four-chamber: not obtainable from this patient. ..."

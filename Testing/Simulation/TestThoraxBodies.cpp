@@ -86,14 +86,14 @@ TEST(ThoraxBodies, DrawsAreWithinTheRanges)
     EXPECT_NO_THROW(requireInRange(drawn)) << seed;
     turned += drawn.leftLateral >= 0.6 ? 1 : 0;
   }
-  EXPECT_NEAR(turned, 1920, 5 * std::sqrt(2000 * 0.96 * 0.04)); // five standard deviations
+  EXPECT_NEAR(turned, 1960, 5 * std::sqrt(2000 * 0.98 * 0.02)); // five standard deviations
 }
 
-/// Where the left lung begins beside the middle, straight behind the chest wall at the third intercostal space.
+/// Where the left lung begins beside the middle, straight behind the chest wall and above the heart.
 double lungEdgeMm(const ThoraxBody& body)
 {
   double x = 4.0;
-  while (body.sample(Vec3d(x, -80.0, 20.0)) != LungLeft)
+  while (x < 140.0 && body.sample(Vec3d(x, -75.0, 65.0)) != LungLeft)
   {
     x += 0.5;
   }
@@ -115,7 +115,7 @@ TEST(ThoraxBodies, OnTheLeftSideTheApexSwingsAndTheLungGivesWay)
   EXPECT_LT(glm::distance(before.mitral.centreMm, after.mitral.centreMm), 3.0);
   constexpr double sternumEdgeMm = 15.0;
   EXPECT_LT(lungEdgeMm(supine), sternumEdgeMm);
-  EXPECT_GE(lungEdgeMm(turned), sternumEdgeMm + 23.0);
+  EXPECT_NEAR(lungEdgeMm(turned), sternumEdgeMm + 25.0, 2.0);
   EXPECT_TRUE(checkThorax(makeThoraxPhantom(2.0, parameters), parameters).none());
 }
 
