@@ -19,17 +19,25 @@ cudaStream_t openStream()
   return stream;
 }
 
-/// Of a lane alone: one that takes over what another has freed would wait for it.
+/// The device's, of which no lane waits for what another frees.
 cudaMemPool_t openPool(int device)
 {
-  cudaMemPoolProps properties{};
-  properties.allocType = cudaMemAllocationTypePinned;
-  properties.location = { cudaMemLocationTypeDevice, device };
   cudaMemPool_t pool = nullptr;
-  check(cudaMemPoolCreate(&pool, &properties), "setting up its memory");
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "asking for its memory");
   std::uint64_t kept = keptDeviceBytes;
   check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept), "setting up its memory");
+  int waits = 0;
+  check(cudaMemPoolSetAttribute(pool, cudaMemPoolReuseAllowInternalDependencies, &waits), "setting up its memory");
   return pool;
+}
+
+__global__ void clearWords(std::uint32_t* words, std::size_t count)
+{
+  const std::size_t step = std::size_t(gridDim.x) * blockDim.x;
+  for (std::size_t i = std::size_t(blockIdx.x) * blockDim.x + threadIdx.x; i < count; i += step)
+  {
+    words[i] = 0;
+  }
 }
 
 /// Uploads go through pinned memory: from pageable memory a copy may wait for all that the device has to do before.
@@ -249,6 +257,16 @@ void freeOnDevice(const DeviceBlock& block)
 void trimDeviceMemory()
 {
   cudaMemPoolTrimTo(currentLane->pool, 0);
+}
+
+void clearOnDevice(void* memory, std::size_t bytes, cudaStream_t stream)
+{
+  constexpr int threads = 256;
+  constexpr std::size_t mostBlocks = 1024;
+  const std::size_t words = bytes / sizeof(std::uint32_t); // all that is cleared consists of such
+  const auto blocks = unsigned(std::min(mostBlocks, (words + threads - 1) / threads));
+  clearWords<<<blocks, threads, 0, stream>>>(static_cast<std::uint32_t*>(memory), words);
+  check(cudaGetLastError(), "clearing memory");
 }
 
 void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t stream)

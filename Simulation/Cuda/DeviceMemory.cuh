@@ -114,6 +114,9 @@ void freeOnDevice(const DeviceBlock& block);
 /// Gives back what the lane's pool keeps.
 void trimDeviceMemory();
 
+/// Zeros, by a kernel: the driver's own call holds its lock for half a millisecond, for which other lanes wait.
+void clearOnDevice(void* memory, std::size_t bytes, cudaStream_t stream);
+
 /// Uploads without waiting, unless it is much; `from` may go afterwards.
 void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t stream);
 
@@ -197,7 +200,7 @@ public:
   {
     if (size_ > 0)
     {
-      check(cudaMemsetAsync(data(), 0, size_ * sizeof(T), stream), "clearing memory");
+      clearOnDevice(data(), size_ * sizeof(T), stream);
     }
   }
 

@@ -19,7 +19,7 @@ struct BodyAugmentation
   bool isMirrored = false;       ///< at the world's plane x = 0, left for right; labels keep their names
 };
 
-/// The body. @param volume whose labels have their tissues (prepareBody). Throws Error as addFat and SmoothWarp do.
+/// The body, of a volume whose labels have their tissues (prepareBody). Throws Error as addFat and SmoothWarp do.
 LabelVolume augmented(LabelVolume volume, const BodyAugmentation& augmentation);
 
 /// Where the augmentation brings a probe that is held on the label map, whose grid is `grid`; with more fat it is still

@@ -18,8 +18,7 @@ public:
   /// The wavelength over the amplitude must be at least this: s is at most 0.45.
   static constexpr double leastWavelengths = 14.0;
 
-  /// @param amplitudeMm at least 0; 0: everything stays
-  /// Throws Error where it could fold.
+  /// The amplitude is at least 0; 0: everything stays. Throws Error where it could fold.
   SmoothWarp(double amplitudeMm, double wavelengthMm, std::uint64_t seed);
 
   double amplitudeMm() const { return amplitudeMm_; }

@@ -89,8 +89,8 @@ public:
   /// have rounded them otherwise.
   const SurfacePieces& surfacePieces(bool ofDevice = false) const;
 
-  /// From now on whoever wants a box within this one gets the tracer's cache of this one, so that poses share it. Nobody
-  /// else may use the scene meanwhile. Throws Error where the box is beside the volume.
+  /// From now on whoever wants a box within this one gets the tracer's cache of this one, so that poses share it.
+  /// Nobody else may use the scene meanwhile. Throws Error where the box is beside the volume.
   void shareRegion(const VoxelBox& box);
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
