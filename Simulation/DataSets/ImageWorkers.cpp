@@ -45,18 +45,26 @@ int imageWorkers(const DataSetImager& imager)
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers)
 {
   const std::int64_t perExam = plan.set().imagesPerExam;
-  const std::int64_t exams = (images.end - images.first) / perExam;
-  const std::int64_t most = workers > 1 ? std::max<std::int64_t>(1, exams / (4 * workers)) * perExam : exams * perExam;
-  std::vector<PlannedRange> units;
+  std::vector<PlannedRange> ofBodies;
   for (std::int64_t image = images.first; image < images.end; image += perExam)
   {
-    const bool goesOn = !units.empty() && units.back().end - units.back().first < most &&
-                        (workers == 1 || plan.bodyOf(image / perExam) == plan.bodyOf(image / perExam - 1));
-    if (!goesOn)
+    if (ofBodies.empty() || plan.bodyOf(image / perExam) != plan.bodyOf(image / perExam - 1))
     {
-      units.push_back({ image, image });
+      ofBodies.push_back({ image, image });
     }
-    units.back().end = image + perExam;
+    ofBodies.back().end = image + perExam;
+  }
+  const auto parts = std::max<std::int64_t>(1, workers / std::max<std::int64_t>(1, std::int64_t(ofBodies.size())));
+  std::vector<PlannedRange> units;
+  for (const PlannedRange& body : ofBodies)
+  {
+    const std::int64_t exams = (body.end - body.first) / perExam;
+    const std::int64_t count = std::min(parts, exams);
+    for (std::int64_t part = 0; part < count; ++part)
+    {
+      units.push_back(
+        { body.first + exams * part / count * perExam, body.first + exams * (part + 1) / count * perExam });
+    }
   }
   return units;
 }

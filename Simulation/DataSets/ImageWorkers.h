@@ -12,8 +12,8 @@ namespace sono {
 /// that it works on several while cores prepare and write others.
 int imageWorkers(const DataSetImager& imager);
 
-/// Images that are made one after the other by one worker: those of a body, or a part of them, so that each worker
-/// finds work. Of `images`, whole exams.
+/// Images that are made one after the other by one worker: those of a body, whose preparation takes as long as hundreds
+/// of its images, or of fewer bodies than workers equal parts. Of `images`, whole exams.
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers);
 
 /// Runs work(imager, image, progress) for the images of all units, in their order on the calling thread by `imager`, or

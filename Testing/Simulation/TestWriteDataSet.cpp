@@ -2,6 +2,7 @@
 #include "ErrorText.h"
 #include "TemporaryFolder.h"
 
+#include "DataSets/ImageWorkers.h"
 #include "DataSets/WriteDataSet.h"
 #include "Labels/ReadLabelMap.h"
 #include "Trace/ProbeContact.h"
@@ -226,6 +227,24 @@ TEST_F(DataSetFolder, GoesOnWhereItWasCutOff)
   EXPECT_TRUE(fs::remove(root_ / "cut/info/another.part"));
   EXPECT_EQ(content("cut"), whole);
   EXPECT_EQ(write("cut").made, 0);
+}
+
+/// A body is prepared by one worker, as long as there are bodies for all; of fewer each is shared alike.
+TEST_F(DataSetFolder, WorkersShareBodies)
+{
+  const auto unitsOf = [&](const PlannedRange& images, int workers) {
+    std::vector<std::pair<std::int64_t, std::int64_t>> units;
+    for (const PlannedRange& unit : workUnits(*plan(), images, workers))
+    {
+      units.emplace_back(unit.first, unit.end);
+    }
+    return units;
+  };
+  using Units = std::vector<std::pair<std::int64_t, std::int64_t>>;
+  EXPECT_EQ(unitsOf({ 0, 12 }, 1), (Units{ { 0, 6 }, { 6, 12 } }));
+  EXPECT_EQ(unitsOf({ 0, 12 }, 3), (Units{ { 0, 6 }, { 6, 12 } }));
+  EXPECT_EQ(unitsOf({ 0, 12 }, 4), (Units{ { 0, 2 }, { 2, 6 }, { 6, 8 }, { 8, 12 } }));
+  EXPECT_EQ(unitsOf({ 4, 12 }, 8), (Units{ { 4, 6 }, { 6, 8 }, { 8, 10 }, { 10, 12 } }));
 }
 
 /// Threads share the images: the folder is the same, an error is that of its image, and a stop leaves no half image.
