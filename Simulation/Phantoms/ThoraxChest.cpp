@@ -220,7 +220,9 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
     return SubcutaneousFat;
   }
   const double pleuraMm = pleuraDepthMm(p, w);
-  if (const ThoraxLabel bone = boneOfWall(p, w, pleuraMm, chest))
+  const ThoraxLabel bone = boneOfWall(p, w, pleuraMm, chest);
+  const bool isInPericardium = heart.label != Background && heart.label != Pericardium; // where bone would open a wall
+  if (bone && !isInPericardium)
   {
     return bone;
   }
@@ -228,9 +230,9 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
   {
     return heart.label;
   }
-  if (const ThoraxLabel bone = spine(p - Vec3d(0.0, spineBackMm, 0.0)))
+  if (const ThoraxLabel vertebra = spine(p - Vec3d(0.0, spineBackMm, 0.0)))
   {
-    return bone;
+    return vertebra;
   }
   if (w.depthMm < pleuraMm)
   {
