@@ -17,9 +17,12 @@ DeviceStatus askForStatus()
   if (error != cudaSuccess || count == 0)
   {
     cudaGetLastError();
-    return { false, error == cudaErrorInsufficientDriver || error == cudaErrorNoDevice || count == 0
-                      ? "no NVIDIA GPU with a driver for CUDA " + std::to_string(CUDART_VERSION / 1000) + " was found"
-                      : std::string("the GPU does not answer (") + cudaGetErrorString(error) + ")" };
+    return { false,
+             error == cudaErrorInsufficientDriver || error == cudaErrorNoDevice || count == 0
+               ? "no NVIDIA GPU with a driver for CUDA " + std::to_string(CUDART_VERSION / 1000) + " was found"
+               : std::string("the GPU does not answer (") + cudaGetErrorString(error) + ")",
+             0,
+             {} };
   }
   DeviceStatus status;
   for (int device = 0; device < count; ++device)

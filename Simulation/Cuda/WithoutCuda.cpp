@@ -16,7 +16,7 @@ class DeviceImager::Download
 
 const DeviceStatus& cudaStatus()
 {
-  static const DeviceStatus status{ false, "this SonoVDB was built without CUDA" };
+  static const DeviceStatus status{ false, "this SonoVDB was built without CUDA", 0, {} };
   return status;
 }
 
