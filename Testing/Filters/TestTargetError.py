@@ -162,10 +162,10 @@ class TestUltrasound(unittest.TestCase):
         ultrasound.GetProbe().SetPreview(True)
         ultrasound.Update()  # prepares the anatomy
         ultrasound.GetProbe().SetPreview(False)
-        begin = time.time()
         ultrasound.Update()
-        self.assertLess(time.time() - begin, 5)
-        self.assertGreaterEqual(number(ultrasound.GetOutputDataObject(IMAGE), "TracedPaths"), 64)
+        traced = number(ultrasound.GetOutputDataObject(IMAGE), "TracedPaths")
+        self.assertGreaterEqual(traced, 64)
+        self.assertLess(traced, 1000000)  # all would take minutes, however quick the machine
 
 
 if __name__ == "__main__":
