@@ -66,12 +66,19 @@ WallPoint wallPoint(const Vec3d& p, const ChestShape& chest)
   // Distance to the outline's tangent where the point's radius meets it.
   const double slopeX = (2.0 * x1 * x1 * x1 + outlineBlend * x1 * y1 * y1) / (2.0 * a);
   const double slopeY = (2.0 * y1 * y1 * y1 + outlineBlend * y1 * x1 * x1) / (2.0 * b);
-  return { (1.0 - r) / std::hypot(slopeX, slopeY), x1, y1 };
+  return { (1.0 - r) / std::sqrt(slopeX * slopeX + slopeY * slopeY), x1, y1 };
 }
 
-double fatDepthMm(const Vec3d& p, const WallPoint& w)
+bool isFat(const Vec3d& p, const WallPoint& w)
 {
-  return skinMm + 5.5 + 0.8 * std::sin(3.0 * w.side + 0.04 * p.z) + 1.5 * smoothStep(-20.0, -110.0, p.z);
+  constexpr double meanMm = skinMm + 5.5;
+  constexpr double wavesMm = 0.8;
+  constexpr double sagMm = 1.5;
+  if (w.depthMm < meanMm - wavesMm || w.depthMm >= meanMm + wavesMm + sagMm)
+  {
+    return w.depthMm < meanMm; // without the sine, which takes as long as the rest
+  }
+  return w.depthMm < meanMm + wavesMm * std::sin(3.0 * w.side + 0.04 * p.z) + sagMm * smoothStep(-20.0, -110.0, p.z);
 }
 
 /// Depth of the pleura: the chest wall is thin at the front and the sides, thick at the back and the shoulders.
@@ -89,11 +96,16 @@ double ribHeightMm(int rib, const WallPoint& w, double spacingMm)
   return bone + climb;
 }
 
+/// Of an ellipse.
+bool isWithin(double x, double halfX, double y, double halfY)
+{
+  return x * x / (halfX * halfX) + y * y / (halfY * halfY) < 1.0;
+}
+
 bool isSternum(const Vec3d& p, const WallPoint& w, double middleDepthMm)
 {
   const double halfWidth = 15.0 + 7.0 * smoothStep(55.0, 90.0, p.z) - 7.0 * smoothStep(-25.0, -55.0, p.z);
-  return w.back < 0.0 && p.z > -58.0 && p.z < 98.0 &&
-         std::hypot(p.x / halfWidth, (w.depthMm - middleDepthMm) / 5.5) < 1.0;
+  return w.back < 0.0 && p.z > -58.0 && p.z < 98.0 && isWithin(p.x, halfWidth, w.depthMm - middleDepthMm, 5.5);
 }
 
 ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm, const ChestShape& chest)
@@ -128,16 +140,19 @@ ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm, cons
 
 ThoraxLabel spine(const Vec3d& p)
 {
+  if (std::abs(p.x) > 28.0 || p.y < 43.0 || p.y > 96.0) // most of the chest
+  {
+    return Background;
+  }
   const double waist = 1.3 * std::cos(2.0 * 3.14159265358979 * p.z / 25.0); // one vertebra each 25 mm
-  if (std::hypot(p.x, p.y - 81.0) < 6.0)
+  if (isWithin(p.x, 6.0, p.y - 81.0, 6.0))
   {
     return SpinalCord;
   }
-  const bool body = std::hypot(p.x / (18.0 + waist), (p.y - 60.0) / (15.5 + waist)) < 1.0;
-  const bool arch = std::hypot(p.x / 12.0, (p.y - 80.0) / 10.0) < 1.0;
+  const bool body = isWithin(p.x, 18.0 + waist, p.y - 60.0, 15.5 + waist);
+  const bool arch = isWithin(p.x, 12.0, p.y - 80.0, 10.0);
   const bool level = std::cos(2.0 * 3.14159265358979 * (p.z + 8.0) / 25.0) > -0.2;
-  const bool process =
-    level && (std::hypot(p.x / 4.0, (p.y - 86.0) / 10.0) < 1.0 || std::hypot(p.x / 28.0, (p.y - 78.0) / 5.0) < 1.0);
+  const bool process = level && (isWithin(p.x, 4.0, p.y - 86.0, 10.0) || isWithin(p.x, 28.0, p.y - 78.0, 5.0));
   return body || arch || process ? Vertebrae : Background;
 }
 
@@ -171,13 +186,16 @@ ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Ve
   const double asideMm =
     p.x > 3.0 ? chest.lungAsideMm * smoothStep(-20.0, -60.0, p.y) * smoothStep(100.0, 70.0, p.z) : 0.0;
   const double halfWidth = 7.0 + 25.0 * smoothStep(-75.0, -10.0, p.y) - 6.0 * smoothStep(35.0, 60.0, p.y) + asideMm;
-  const bool mediastinum = std::abs(p.x - 3.0) < halfWidth + 2.0 * std::sin(0.06 * p.z);
+  const auto isMediastinum = [&] { return std::abs(p.x - 3.0) < halfWidth + 2.0 * std::sin(0.06 * p.z); };
+  const auto isHilum = [&] {
+    return ellipsoid(Vec3d(std::abs(p.x - 3.0), p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0)) < 0.0;
+  };
   // The cardiac notch: between the apex, the right ventricle and the chest wall there is no lung.
-  const double notch = smoothUnion(capsule(q, Vec3d(0.0, 0.0, 0.0), Vec3d(4.0, 0.0, 62.0), 25.0, 41.0),
-                                   ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)), 10.0);
-  const double hilum =
-    ellipsoid(Vec3d(std::abs(p.x - 3.0), p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0));
-  if (mediastinum || hilum < 0.0 || heart.outsideMm < 2.0 + asideMm || notch < -chest.lungOverlapMm)
+  const auto notch = [&] {
+    return smoothUnion(capsule(q, Vec3d(0.0, 0.0, 0.0), Vec3d(4.0, 0.0, 62.0), 25.0, 41.0),
+                       ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)), 10.0);
+  };
+  if (heart.outsideMm < 2.0 + asideMm || isMediastinum() || isHilum() || notch() < -chest.lungOverlapMm)
   {
     return MediastinalFat;
   }
@@ -215,7 +233,7 @@ ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& i
     return Skin;
   }
   w.depthMm -= chest.extraFatMm; // the lean body lies below
-  if (w.depthMm < fatDepthMm(p, w))
+  if (isFat(p, w))
   {
     return SubcutaneousFat;
   }
