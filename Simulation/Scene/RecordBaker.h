@@ -3,6 +3,7 @@
 #include "Kernel/BoundaryRecord.h"
 #include "Kernel/NormalDeviate.h"
 #include "Scene/BoundaryFits.h"
+#include "Scene/FaceColumns.h"
 #include "Scene/SmoothedMask.h"
 
 #include <algorithm>
@@ -138,25 +139,20 @@ private:
     // Sums of faces by axis and way.
     double toward[3] = { 0.0, 0.0, 0.0 };
     double away[3] = { 0.0, 0.0, 0.0 };
-    for (int k = low.z; k <= high.z; ++k)
+    FaceColumns columns;
+    const Vec3i corner = low - voxel + normal_.radius; // of the weights
+    for (int first = low.x; first <= high.x; first += FaceColumns::most)
     {
-      for (int j = low.y; j <= high.y; ++j)
+      const Vec3i count(std::min(FaceColumns::most, high.x - first + 1), high.y - low.y + 1, high.z - low.z + 1);
+      sumFaces(tissues_ + first + pitch[1] * low.y + pitch[2] * low.z, size_, tissue, count,
+               &normal_.weight[1][std::size_t(corner.y)], &normal_.weight[2][std::size_t(corner.z)], columns);
+      for (int n = 0; n < count.x; ++n)
       {
-        const std::uint8_t* t = tissues_ + pitch[1] * j + pitch[2] * k;
-        const float wk = normal_.weight[2][std::size_t(k - voxel.z + normal_.radius.z)] *
-                         normal_.weight[1][std::size_t(j - voxel.y + normal_.radius.y)];
-        for (int i = low.x; i <= high.x; ++i)
+        const double w = normal_.weight[0][std::size_t(first + n - voxel.x + normal_.radius.x)];
+        for (int a = 0; a < 3; ++a)
         {
-          if (t[i] != tissue)
-          {
-            continue;
-          }
-          const double w = wk * normal_.weight[0][std::size_t(i - voxel.x + normal_.radius.x)];
-          for (int a = 0; a < 3; ++a)
-          {
-            toward[a] += t[i + pitch[a]] != tissue ? w : 0.0;
-            away[a] += t[i - pitch[a]] != tissue ? w : 0.0;
-          }
+          toward[a] += w * columns.toward[a][n];
+          away[a] += w * columns.away[a][n];
         }
       }
     }

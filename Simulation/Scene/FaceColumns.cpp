@@ -1,0 +1,96 @@
+#include "Scene/FaceColumns.h"
+
+#include "Core/Simd.h"
+
+#include <cstddef>
+#include <cstring>
+
+namespace sono {
+
+namespace {
+
+using Bytes = std::int8_t __attribute__((vector_size(16)));
+using Masks = std::int32_t __attribute__((vector_size(64)));
+using Sums = float __attribute__((vector_size(64)));
+
+inline void load(const std::uint8_t* from, Bytes& to)
+{
+  std::memcpy(&to, from, sizeof to);
+}
+
+/// The weight where the mask's byte is set.
+inline void addWhere(const Bytes& mask, const Masks& weight, Sums& sum)
+{
+  sum += (Sums)(__builtin_convertvector(mask, Masks) & weight);
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* corner, const std::ptrdiff_t* pitch,
+                                                            std::uint8_t tissue, const Vec3i& count,
+                                                            const float* weightY, const float* weightZ, FaceColumns& to)
+{
+  const Bytes wanted = Bytes{} + std::int8_t(tissue);
+  for (int a = 0; a < 3; ++a)
+  {
+    Sums toward{};
+    Sums away{};
+    for (int k = 0; k < count.z; ++k)
+    {
+      for (int j = 0; j < count.y; ++j)
+      {
+        const std::uint8_t* row = corner + pitch[1] * j + pitch[2] * k;
+        const Sums weights = Sums{} + weightY[j] * weightZ[k];
+        const Masks weight = (Masks)weights;
+        Bytes own;
+        Bytes next;
+        Bytes before;
+        load(row, own);
+        load(row + pitch[a], next);
+        load(row - pitch[a], before);
+        addWhere((own == wanted) & (next != wanted), weight, toward);
+        addWhere((own == wanted) & (before != wanted), weight, away);
+      }
+    }
+    std::memcpy(to.toward[a], &toward, sizeof toward);
+    std::memcpy(to.away[a], &away, sizeof away);
+  }
+}
+
+void addRows(const std::uint8_t* corner, const std::ptrdiff_t* pitch, std::uint8_t tissue, const Vec3i& count,
+             const float* weightY, const float* weightZ, FaceColumns& to)
+{
+  to = {};
+  for (int k = 0; k < count.z; ++k)
+  {
+    for (int j = 0; j < count.y; ++j)
+    {
+      const std::uint8_t* row = corner + pitch[1] * j + pitch[2] * k;
+      for (int i = 0; i < count.x; ++i)
+      {
+        for (int a = 0; a < 3 && row[i] == tissue; ++a)
+        {
+          to.toward[a][i] += row[i + pitch[a]] != tissue ? weightY[j] * weightZ[k] : 0.0f;
+          to.away[a][i] += row[i - pitch[a]] != tissue ? weightY[j] * weightZ[k] : 0.0f;
+        }
+      }
+    }
+  }
+}
+
+} // namespace
+
+void sumFaces(const std::uint8_t* corner, const Vec3i& size, std::uint8_t tissue, const Vec3i& count,
+              const float* weightY, const float* weightZ, FaceColumns& to)
+{
+  const std::ptrdiff_t pitch[3] = { 1, size.x, std::ptrdiff_t(size.x) * size.y };
+  // The box's last row is not the volume's: a whole vector of it ends in the volume, unless that is narrower.
+  if (size.x > FaceColumns::most)
+  {
+    addWholeRows(corner, pitch, tissue, count, weightY, weightZ, to);
+  }
+  else
+  {
+    addRows(corner, pitch, tissue, count, weightY, weightZ, to);
+  }
+}
+
+} // namespace sono
