@@ -25,6 +25,7 @@ constexpr double leastShare = 0.16;
 constexpr double nothing = -80.0;    // log of an amplitude
 constexpr double leastBeside = 3e-3; // coherent power that counts beside the diffuse one
 constexpr double largePiece = 16.0;  // squares of its blob
+constexpr double negligible = 1e-9;  // of a sum
 
 /// The surface that counts of two, the rougher.
 const Tissue& rougher(const Tissue& a, const Tissue& b)
@@ -82,7 +83,12 @@ private:
       for (int n = 1; n <= 40; ++n)
       {
         poisson *= g / n;
-        sum += poisson * lobe(n / cosSquared, f2, tangent, lateral);
+        const double term = poisson * lobe(n / cosSquared, f2, tangent, lateral);
+        sum += term;
+        if (term < negligible * sum)
+        {
+          break; // terms rise, and then fall for good
+        }
       }
     }
     return sum / (4.0 * pi * cosSquared * cosSquared * f2);
@@ -262,16 +268,18 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, 
                             t.correlationMm });
   }
   using Kept = std::pair<std::vector<double>, std::shared_ptr<const SurfaceRows>>;
-  constexpr std::size_t most = 8;
+  constexpr std::size_t most = 64; // of a data set's workers some each
   static std::mutex mutex;
   static std::deque<Kept> kept;
-  const std::lock_guard<std::mutex> lock(mutex);
+  std::unique_lock<std::mutex> lock(mutex);
   const auto found = std::find_if(kept.begin(), kept.end(), [&](const Kept& k) { return k.first == key; });
   if (found != kept.end())
   {
     return found->second;
   }
+  lock.unlock(); // who wants others need not wait
   auto rows = std::make_shared<const SurfaceRows>(media, settings, beam, finestMm, widestMm);
+  lock.lock();
   kept.emplace_front(std::move(key), rows);
   if (kept.size() > most)
   {
