@@ -168,7 +168,8 @@ std::shared_ptr<const TracedLines> Simulator::arrivals(const TracedResult& trace
 {
   if (!traced.onDevice())
   {
-    return { std::shared_ptr<void>(), &traced.host() };
+    const auto held = std::make_shared<const TracedResult>(traced);
+    return { held, &held->host() };
   }
   auto lines = std::make_shared<TracedLines>(traced.layout());
   FetchedArrivals fetched = DeviceImager::instance().fetchArrivals(*traced.onDevice());

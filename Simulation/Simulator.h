@@ -34,6 +34,13 @@ struct SweptPictures
 };
 using SweepSink = std::function<void(const SweptPictures&)>;
 
+/// A picture with labels, and of its lines the intensity and the depth offsets.
+struct SeenPicture
+{
+  ScanPicture picture;
+  std::shared_ptr<const TracedLines> arrivals;
+};
+
 /// Composes the stages, each on the CPU or the GPU as its settings want, and keeps the last result of each. Asked again
 /// with the same arguments, a stage gives the same result and does nothing; so only those run again whose arguments
 /// changed. A stage that follows another takes its result where it lies. Not for several threads at a time.
@@ -69,8 +76,7 @@ public:
   /// The stages one by one.
   TracedResult trace(const std::vector<ScanLine>& lines, const TraceSettings& settings,
                      const std::vector<TargetSurface>& targets = {}, const Progress& progress = {});
-  /// Of traced lines the intensity and depth offsets, without the rest where that would have to come from a device. Not
-  /// longer than the result.
+  /// Of traced lines the intensity and depth offsets, without the rest where that would have to come from a device.
   static std::shared_ptr<const TracedLines> arrivals(const TracedResult& traced);
   /// `count` of these paths, see recordPaths.
   std::shared_ptr<const std::vector<RecordedPath>> paths(const std::vector<ScanLine>& lines,
@@ -117,6 +123,11 @@ public:
   /// do those with a target error or a time budget.
   void sweep(const std::vector<ProbePose>& poses, const ImageSettings& settings, bool withLabels, const SweepSink& sink,
              const Progress& progress = {}, const std::vector<TargetSurface>& targets = {});
+
+  /// Of each input what picture() and arrivals() give when it is asked for alone, to the bit. On a GPU those whose
+  /// settings differ in path seed and display alone, and whose fans lie in the region that the scene shares, go through
+  /// the stages together. Throws Error for a matrix.
+  std::vector<SeenPicture> pictures(const std::vector<ImageInput>& inputs, const Progress& progress = {});
 
   /// Begins to prepare, in the background, what trace() wants of the scene for a probe that moves from here.
   void prepareInteractive(const std::vector<ScanLine>& lines, const TraceSettings& settings);

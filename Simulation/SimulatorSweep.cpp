@@ -4,7 +4,7 @@
 #include "Cuda/RunOnDevice.h"
 #include "Echo/EchoSetup.h"
 #include "Image/LabelSlice.h"
-#include "Kernel/TracePath.h"
+#include "ImageGroup.h"
 #include "Simulator.h"
 #include "Trace/TraceSetup.h"
 
@@ -14,31 +14,6 @@
 namespace sono {
 
 namespace {
-
-/// Some line of each image meets the label map, as where each is asked for alone.
-void requireEachMeets(const TraceSetup& setup, std::size_t images)
-{
-  const CellSpace<NoTargets> space{ setup.region->view(), {} };
-  const std::size_t perImage = setup.lines.size() / images;
-  for (std::size_t image = 0; image < images; ++image)
-  {
-    const auto first = setup.lines.begin() + std::ptrdiff_t(image * perImage);
-    PathState path;
-    if (std::none_of(first, first + std::ptrdiff_t(perImage),
-                     [&](const TraceLine& line) { return enterSpace(space, line, setup.view.depthMm, path); }))
-    {
-      throw Error("no scan line of pose " + std::to_string(image) +
-                  " meets the label map: move the probe onto the skin or increase the depth");
-    }
-  }
-}
-
-/// Bytes that the stages need for an image, without what a single launch of the tracer needs.
-double bytesPerImage(const TracedLines& traced, const RfLines& rf, int linesPerImage, const PlaneScan& scan)
-{
-  const double bytesPerLine = 32.0 * traced.echoCount + 20.0 * traced.binCount + 48.0 * rf.sampleCount;
-  return bytesPerLine * linesPerImage + 6.0 * scan.width * scan.height;
-}
 
 void sweepOneByOne(const std::shared_ptr<const Scene>& scene, const std::vector<ProbePose>& poses,
                    const ImageSettings& settings, bool withLabels, const SweepSink& sink, const Progress& progress,
@@ -85,8 +60,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   }
   const Progress running = partOf(progress, 0.3, 1.0);
   DeviceImager& imager = DeviceImager::instance();
-  const int together =
-    std::min(imagesTogether, imager.imagesThatFit(bytesPerImage(tracedOfOne, rfOfOne, perImage, scan)));
+  const int together = std::min(imagesTogether, imagesThatFit(settings));
   const EchoSources sources{ &scene, nullptr, points, settings.tracing.model, &targets };
   std::shared_ptr<const BModeJob> bmodeJob; // made while the first lines are traced
   SweptPictures before;
@@ -107,7 +81,7 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
     // For the lines of one group at a time: the device has work while the next one's is made.
     const auto firstLine = lines.begin() + range.first;
     const std::vector<ScanLine> groupLines(firstLine, firstLine + range.count);
-    const EchoSetup setup(sources, groupLines, settings.echo);
+    const EchoSetup setup(sources, groupLines, settings.echo, perImage);
     const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));
     if (!bmodeJob)
     {

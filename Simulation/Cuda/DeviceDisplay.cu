@@ -333,15 +333,25 @@ const float* DeviceDisplay::receive(const float* envelope, std::size_t count, in
   return envelope;
 }
 
-GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines, int samples, cudaStream_t stream)
+GreyArrays DeviceDisplay::room(int images, int lines, int samples)
 {
+  GreyArrays arrays;
+  arrays.lines = lines;
+  arrays.samples = samples;
+  arrays.reference.resize(std::size_t(images));
+  arrays.grey.resize(std::size_t(lines) * samples * images);
+  return arrays;
+}
+
+void DeviceDisplay::compress(const float* envelopes, int firstImage, int images, GreyArrays& to, cudaStream_t stream)
+{
+  const int lines = to.lines;
+  const int samples = to.samples;
   const std::size_t perImage = std::size_t(lines) * samples;
   const std::size_t count = perImage * images;
-  GreyArrays out;
-  out.reference.resize(images);
-  out.grey.resize(count);
+  double* reference = to.reference.data() + firstImage;
   const int imageBlocks = (images + threads - 1) / threads;
-  envelope = receive(envelope, count, lines, samples, stream);
+  const float* envelope = receive(envelopes + firstImage * perImage, count, lines, samples, stream);
   if (settings_.automaticReference)
   {
     rank_.resize(sizeof(RankState) * std::size_t(images));
@@ -354,19 +364,18 @@ GreyArrays DeviceDisplay::compress(const float* envelope, int images, int lines,
     for (const auto pass : { findRank<0>, findRank<1>, findRank<2> })
     {
       pass<<<grid, threads, 0, stream>>>(envelope, factor_.data(), samples, first, lines, counted, rank, states,
-                                         out.reference.data());
+                                         reference);
     }
   }
   else
   {
-    setReference<<<imageBlocks, threads, 0, stream>>>(out.reference.data(), images, settings_.referenceAmplitude);
+    setReference<<<imageBlocks, threads, 0, stream>>>(reference, images, settings_.referenceAmplitude);
   }
   const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 1024, 2048))), images);
-  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), lateralGainDb_.data(), out.reference.data(),
-                                                samples, perImage, settings_.rangeDb, settings_.rejectDb,
-                                                greyMap_.data(), int(settings_.greyMap.size()), out.grey.data());
+  compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), lateralGainDb_.data(), reference, samples,
+                                                perImage, settings_.rangeDb, settings_.rejectDb, greyMap_.data(),
+                                                int(settings_.greyMap.size()), to.grey.data() + firstImage * perImage);
   check(cudaGetLastError(), "compressing grey levels");
-  return out;
 }
 
 DeviceArray<std::uint8_t> DeviceDisplay::convert(const PlaneScan& scan, const float* grey, int images,

@@ -8,8 +8,10 @@ namespace sono {
 /// Grey levels in beam space on the device.
 struct GreyArrays
 {
-  DeviceArray<float> grey;       ///< lines x samples
+  DeviceArray<float> grey;       ///< images x lines x samples
   DeviceArray<double> reference; ///< of each image
+  int lines = 0;                 ///< of an image
+  int samples = 0;
 };
 
 /// Grey levels and pixels on the device.
@@ -18,8 +20,10 @@ class DeviceDisplay
 public:
   /// Uploads the tables of a job.
   void prepare(const BModeJob& job, cudaStream_t stream, Traffic& traffic);
-  /// Grey levels of `images` images of `lines` lines each, from their envelopes.
-  GreyArrays compress(const float* envelope, int images, int lines, int samples, cudaStream_t stream);
+  /// For the grey levels of `images` images of `lines` lines each.
+  static GreyArrays room(int images, int lines, int samples);
+  /// Of some of those images the grey levels, from the envelopes of all.
+  void compress(const float* envelopes, int firstImage, int images, GreyArrays& to, cudaStream_t stream);
   /// Of each image its pixels as bytes (see greyByte).
   DeviceArray<std::uint8_t> convert(const PlaneScan& scan, const float* grey, int images, cudaStream_t stream);
   /// The same as levels from 0 to 1, and 0 outside.

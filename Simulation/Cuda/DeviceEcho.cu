@@ -1,40 +1,23 @@
 #include "Cuda/DeviceEcho.cuh"
 
+#include "Cuda/DevicePieces.cuh"
 #include "Cuda/LineFinish.cuh"
 #include "Cuda/NestedSplat.cuh"
 #include "Cuda/SplatKernels.cuh"
 #include "Cuda/SurfaceSplat.cuh"
+#include "Cuda/WithKind.cuh"
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace sono {
 
-namespace {
-
-/// Calls launch with the kind as a constant.
-template<class Launch>
-void withKind(BeamKind kind, const Launch& launch)
+DeviceEcho::DeviceEcho()
+  : pieces_(std::make_unique<DevicePieces>())
 {
-  switch (kind)
-  {
-    case BeamKind::Gaussian:
-      launch(std::integral_constant<BeamKind, BeamKind::Gaussian>());
-      break;
-    case BeamKind::Aperture:
-      launch(std::integral_constant<BeamKind, BeamKind::Aperture>());
-      break;
-    case BeamKind::Field:
-      launch(std::integral_constant<BeamKind, BeamKind::Field>());
-      break;
-    case BeamKind::Array:
-      launch(std::integral_constant<BeamKind, BeamKind::Array>());
-      break;
-  }
 }
 
-} // namespace
+DeviceEcho::~DeviceEcho() = default;
 
 TracedOnDevice DeviceEcho::given(int first) const
 {

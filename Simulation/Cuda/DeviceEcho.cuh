@@ -5,6 +5,7 @@
 #include "Cuda/ImageJob.h"
 #include "Cuda/LineChunk.cuh"
 
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -26,16 +27,8 @@ struct TracedOnDevice
   const float2* echo = nullptr; ///< or lines x rangeCount amplitudes
 };
 
-/// Neighbouring pieces of surfaces, as many as a warp has lanes at most, and a ball that holds them. They lie in a
-/// brick.
-struct SurfaceGroup
-{
-  Vec3f brickMm; ///< its centre
-  Vec3f centreMm;
-  float radiusMm;
-  int first;
-  int count;
-};
+struct SurfaceGroup;
+class DevicePieces;
 
 /// Surfaces: pieces of boundaries, or points of targets.
 struct SurfaceSet
@@ -59,6 +52,8 @@ struct SplatLaunch;
 class DeviceEcho
 {
 public:
+  DeviceEcho();
+  ~DeviceEcho();
   void prepare(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   /// Forms the lines [first, first + count) of the job: their envelopes, and IQ where it is wanted.
   void run(int first, int count, const TracedOnDevice& traced, bool wantsIq, cudaStream_t stream);
@@ -91,7 +86,6 @@ private:
   void splatPoints(int first, int count, cudaStream_t stream);
   void uploadVoxels(const VoxelJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic& traffic);
-  void uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffic& traffic);
   void splatNested(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
   void splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream);
@@ -151,12 +145,7 @@ private:
   float nestedScale_ = 1.0f;
 
   bool surfaces_ = false;
-  std::uint64_t piecesId_ = 0;
-  std::vector<bool> pieceBlocks_;    ///< which of the scene's the device has
-  std::vector<SurfacePiece> pieces_; ///< of those, as they came
-  std::vector<SurfaceGroup> pieceGroups_;
-  DeviceArray<SurfacePiece> devicePieces_;
-  DeviceArray<SurfaceGroup> devicePieceGroups_;
+  std::unique_ptr<DevicePieces> pieces_;
   DeviceArray<SurfaceRow> surfaceRows_;
   DeviceArray<float> diffuseL_, diffuseE_;
   SurfaceSet pieceSet_{};

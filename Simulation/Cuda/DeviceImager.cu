@@ -2,7 +2,6 @@
 
 #include "Core/Policy.h"
 #include "Cuda/DeviceLabels.cuh"
-#include "Cuda/DevicePieces.cuh"
 #include "Cuda/DeviceResults.cuh"
 #include "Cuda/OwnImager.h"
 
@@ -77,16 +76,16 @@ SharedSpan<T> pinnedSpan(const std::shared_ptr<void>& memory, std::size_t count)
 class DeviceImager::Download
 {
 public:
-  Download() { check(cudaEventCreateWithFlags(&done, cudaEventDisableTiming), "creating an event"); }
   ~Download()
   {
     cudaEventSynchronize(done);
     cudaEventDestroy(done);
   }
+  Download() = default;
   Download(const Download&) = delete;
   Download& operator=(const Download&) = delete;
 
-  cudaEvent_t done = nullptr;
+  cudaEvent_t done = openEvent();
   PictureCopy copy;
   std::shared_ptr<const DevicePicture> picture;
   std::shared_ptr<const DeviceLabelSlice> labels;
@@ -101,7 +100,6 @@ struct DeviceImager::Work
   std::unique_ptr<DeviceEcho> echo = std::make_unique<DeviceEcho>();
   std::unique_ptr<DeviceDisplay> display = std::make_unique<DeviceDisplay>();
   std::unique_ptr<DeviceLabels> labels = std::make_unique<DeviceLabels>();
-  std::unique_ptr<DevicePieces> pieces = std::make_unique<DevicePieces>();
   // The jobs whose numbers are on the device.
   std::shared_ptr<const TraceJob> traceJob;
   std::shared_ptr<const EchoJob> echoJob;
@@ -123,9 +121,18 @@ struct DeviceImager::Work
     echo = std::make_unique<DeviceEcho>();
     display = std::make_unique<DeviceDisplay>();
     labels = std::make_unique<DeviceLabels>();
-    pieces = std::make_unique<DevicePieces>();
-    cudaStreamSynchronize(deviceStream());
+    await(deviceStream());
     trimDeviceMemory();
+  }
+
+  void prepare(const std::shared_ptr<const BModeJob>& job)
+  {
+    if (bmodeJob != job)
+    {
+      bmodeJob = nullptr; // stays so when the upload fails
+      display->prepare(*job, deviceStream(), traffic);
+      bmodeJob = job;
+    }
   }
 
   template<class T, class U>
@@ -146,7 +153,7 @@ struct DeviceImager::Work
     const auto made = std::make_shared<const DeviceArray<std::uint8_t>>(display->maskOf(wanted, deviceStream()));
     const std::shared_ptr<void> memory = pinnedMemory(made->size());
     download(made->data(), made->size(), static_cast<std::uint8_t*>(memory.get()), deviceStream(), traffic);
-    check(cudaStreamSynchronize(deviceStream()), "computing");
+    check(await(deviceStream()), "computing");
     hostMask = pinnedSpan<std::uint8_t>(memory, made->size());
     scan = wanted;
     mask = made;
@@ -172,9 +179,9 @@ thread_local DeviceImager* own = nullptr;
 
 } // namespace
 
-DeviceImager::DeviceImager(int device)
+DeviceImager::DeviceImager(int device, Waiting waiting)
 {
-  DeviceLane* lane = openLane(device);
+  DeviceLane* lane = openLane(device, waiting);
   const OnLane onLane(lane);
   work_ = std::make_unique<Work>();
   work_->lane = lane;
@@ -189,7 +196,7 @@ DeviceImager& DeviceImager::instance()
     throw Error("the GPU cannot be used: " + status.what + "; choose the CPU");
   }
   // Never destroyed: at the end of a process the driver may go first.
-  static auto* const first = new DeviceImager(status.devices.front());
+  static auto* const first = new DeviceImager(status.devices.front(), Waiting::Busy);
   return own ? *own : *first;
 }
 
@@ -210,7 +217,7 @@ OwnImager::OwnImager(int number)
       idle().imagers.erase(found);
     }
   }
-  imager_ = imager_ ? imager_ : new DeviceImager(device_);
+  imager_ = imager_ ? imager_ : new DeviceImager(device_, Waiting::Asleep);
   own = imager_;
 }
 
@@ -243,7 +250,7 @@ auto DeviceImager::guarded(const Do& work)
   }
   catch (const Aborted&)
   {
-    cudaStreamSynchronize(deviceStream());
+    await(deviceStream());
     throw;
   }
   catch (...)
@@ -311,16 +318,30 @@ std::shared_ptr<const DeviceGrey> DeviceImager::compress(const std::shared_ptr<c
                                                          int images)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
-    if (w.bmodeJob != job)
-    {
-      w.bmodeJob = nullptr;
-      w.display->prepare(*job, stream, w.traffic);
-      w.bmodeJob = job;
-    }
-    w.compressing.start();
     const auto made = std::make_shared<DeviceGrey>();
-    made->arrays = w.display->compress(rf.envelope.data(), images, rf.lineCount / images, rf.sampleCount, stream);
     made->images = images;
+    made->arrays = w.display->room(images, rf.lineCount / images, rf.sampleCount);
+    w.prepare(job);
+    w.compressing.start();
+    w.display->compress(rf.envelope.data(), 0, images, made->arrays, stream);
+    w.compressing.stop();
+    return std::shared_ptr<const DeviceGrey>(made);
+  });
+}
+
+std::shared_ptr<const DeviceGrey> DeviceImager::compress(const std::vector<std::shared_ptr<const BModeJob>>& ofImages,
+                                                         const DeviceRf& rf)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const auto made = std::make_shared<DeviceGrey>();
+    made->images = int(ofImages.size());
+    made->arrays = w.display->room(made->images, rf.lineCount / made->images, rf.sampleCount);
+    w.compressing.start();
+    for (int image = 0; image < made->images; ++image)
+    {
+      w.prepare(ofImages[std::size_t(image)]);
+      w.display->compress(rf.envelope.data(), image, 1, made->arrays, stream);
+    }
     w.compressing.stop();
     return std::shared_ptr<const DeviceGrey>(made);
   });
@@ -356,11 +377,6 @@ std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob& job,
   });
 }
 
-std::vector<SurfacePiece> DeviceImager::fitPieces(const VoxelJob& voxels, const std::vector<SurfaceFace>& faces)
-{
-  return guarded([&](Work& w, cudaStream_t stream) { return w.pieces->fit(voxels, faces, stream, w.traffic); });
-}
-
 FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
@@ -381,7 +397,7 @@ FetchedTrace DeviceImager::fetch(const DeviceTraced& traced)
     }
     out.boundaryEcho = w.bring<float2, std::complex<float>>(echo.data(), echo.size());
     download(arrays.segments.data(), 1, &out.segments, stream, w.traffic);
-    check(cudaStreamSynchronize(stream), "computing");
+    check(await(stream), "computing");
     return out;
   });
 }
@@ -398,7 +414,7 @@ FetchedArrivals DeviceImager::fetchArrivals(const DeviceTraced& traced)
       pinned.push_back(pinnedMemory(values.size() * sizeof(float)));
       download(values.data(), values.size(), static_cast<float*>(pinned.back().get()), stream, w.traffic);
     }
-    check(cudaStreamSynchronize(stream), "computing");
+    check(await(stream), "computing");
     const auto valuesOf = [&](std::size_t n, int array) {
       const auto* from = static_cast<const float*>(pinned[n].get());
       return std::vector<float>(from, from + bins[std::size_t(array)].size());
@@ -413,7 +429,7 @@ std::vector<std::complex<float>> DeviceImager::fetchIq(const DeviceRf& rf)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
     auto iq = w.bring<float2, std::complex<float>>(rf.iq.data(), rf.iq.size());
-    check(cudaStreamSynchronize(stream), "computing");
+    check(await(stream), "computing");
     return iq;
   });
 }
@@ -423,7 +439,7 @@ std::vector<float> DeviceImager::fetch(const DeviceGrey& grey, std::vector<doubl
   return guarded([&](Work& w, cudaStream_t stream) {
     auto levels = w.bring<float, float>(grey.arrays.grey.data(), grey.arrays.grey.size());
     reference = w.bring<double, double>(grey.arrays.reference.data(), grey.arrays.reference.size());
-    check(cudaStreamSynchronize(stream), "computing");
+    check(await(stream), "computing");
     return levels;
   });
 }
@@ -434,7 +450,7 @@ std::vector<float> DeviceImager::fetchLevels(const DevicePicture& picture)
     const DeviceArray<float> levels =
       w.display->convertLevels(picture.scan, picture.grey->arrays.grey.data(), picture.images, stream);
     auto values = w.bring<float, float>(levels.data(), levels.size());
-    check(cudaStreamSynchronize(stream), "computing");
+    check(await(stream), "computing");
     return values;
   });
 }
@@ -471,7 +487,7 @@ std::shared_ptr<DeviceImager::Download> DeviceImager::beginDownload(std::shared_
 
 PictureCopy DeviceImager::wait(const std::shared_ptr<Download>& download)
 {
-  const cudaError_t error = cudaEventSynchronize(download->done);
+  const cudaError_t error = await(download->done);
   guarded([&](Work&, cudaStream_t) { check(error, "computing"); });
   return download->copy;
 }
@@ -485,7 +501,7 @@ int DeviceImager::imagesThatFit(double bytesPerImage)
 DeviceTimes DeviceImager::lastTimes()
 {
   return guarded([&](Work& w, cudaStream_t stream) {
-    check(cudaStreamSynchronize(stream), "computing");
+    check(await(stream), "computing");
     return DeviceTimes{ w.tracing.ms(),    w.forming.ms(), w.compressing.ms(),
                         w.converting.ms(), w.traffic.up,   w.traffic.down };
   });

@@ -72,6 +72,8 @@ struct DeviceStatus
 };
 const DeviceStatus& cudaStatus();
 
+enum class Waiting;
+
 /// Runs the stages on a CUDA device. A stage returns when its work is asked for; whoever fetches waits for it.
 /// What a scene does not change (voxels, boundary records, fields), and the tables of a job that was given before, are
 /// on the device already. One caller at a time; others wait. The result does not depend on the order in which threads
@@ -93,12 +95,12 @@ public:
                                          const DeviceTraced* traced, bool wantsIq);
   std::shared_ptr<const DeviceGrey> compress(const std::shared_ptr<const BModeJob>& job, const DeviceRf& rf,
                                              int images);
+  /// The same, each image of `rf` by a job of its own.
+  std::shared_ptr<const DeviceGrey> compress(const std::vector<std::shared_ptr<const BModeJob>>& ofImages,
+                                             const DeviceRf& rf);
   std::shared_ptr<const DevicePicture> convert(const PlaneScan& scan, std::shared_ptr<const DeviceGrey> grey);
   std::shared_ptr<const DeviceLabelSlice> slice(const LabelJob& job, const DevicePicture& picture,
                                                 const DeviceTraced* traced);
-
-  /// The smooth pieces of faces between these voxels, see SurfacePieces::Fit.
-  std::vector<SurfacePiece> fitPieces(const VoxelJob& voxels, const std::vector<SurfaceFace>& faces);
 
   FetchedTrace fetch(const DeviceTraced& traced);
   FetchedArrivals fetchArrivals(const DeviceTraced& traced);
@@ -124,7 +126,7 @@ public:
 
 private:
   friend class OwnImager;
-  explicit DeviceImager(int device);
+  DeviceImager(int device, Waiting waiting);
   /// Gives back what is kept on the device.
   void forget();
   struct Work;

@@ -12,6 +12,8 @@ namespace sono {
 
 namespace {
 
+thread_local DeviceLane* currentLane = nullptr;
+
 cudaStream_t openStream()
 {
   cudaStream_t stream = nullptr;
@@ -55,7 +57,7 @@ public:
     {
       check(cudaEventRecord(read_[part_], stream), "uploading");
       part_ = (part_ + 1) % parts;
-      check(cudaEventSynchronize(read_[part_]), "uploading");
+      check(await(read_[part_]), "uploading");
       used_ = 0;
     }
     char* at = memory_ + part_ * partBytes + used_;
@@ -75,7 +77,7 @@ private:
     }
     for (cudaEvent_t& event : read_)
     {
-      check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "creating an event");
+      event = openEvent();
     }
     void* memory = nullptr;
     check(cudaMallocHost(&memory, parts * partBytes), "pinning memory for uploads");
@@ -92,6 +94,18 @@ private:
 class PinnedPool
 {
 public:
+  /// Sizes in steps of an eighth, so that those of another depth or sector find what is free: pinning takes the
+  /// driver's lock, for which all lanes wait.
+  static std::size_t roomFor(std::size_t bytes)
+  {
+    std::size_t step = 4096;
+    while (16 * step <= bytes)
+    {
+      step *= 2;
+    }
+    return (bytes + step - 1) / step * step;
+  }
+
   void* take(std::size_t bytes)
   {
     {
@@ -138,38 +152,33 @@ PinnedPool& pinnedPool()
 
 struct DeviceLane
 {
-  explicit DeviceLane(int number)
+  DeviceLane(int number, Waiting howToWait)
     : device(number)
+    , waiting(howToWait)
   {
-    int before = 0;
-    check(cudaGetDevice(&before), "choosing it");
-    check(cudaSetDevice(device), "choosing it");
+    const OnLane lane(this);
     pool = openPool(device);
     compute = openStream();
     beside = openStream();
     copy = openStream();
     check(cudaEventCreateWithFlags(&earlier, cudaEventDisableTiming), "creating an event");
-    check(cudaSetDevice(before), "choosing it");
+    asked = openEvent();
   }
 
   int device;
+  Waiting waiting;
   cudaMemPool_t pool = nullptr;
   cudaStream_t compute = nullptr;
   cudaStream_t beside = nullptr;
   cudaStream_t copy = nullptr;
   cudaEvent_t earlier = nullptr;
+  cudaEvent_t asked = nullptr; // the last that somebody waits for
   UploadRing ring;
 };
 
-namespace {
-
-thread_local DeviceLane* currentLane = nullptr;
-
-} // namespace
-
-DeviceLane* openLane(int device)
+DeviceLane* openLane(int device, Waiting waiting)
 {
-  return new DeviceLane(device);
+  return new DeviceLane(device, waiting);
 }
 
 OnLane::OnLane(DeviceLane* lane)
@@ -184,6 +193,29 @@ OnLane::~OnLane()
 {
   currentLane = laneBefore_;
   cudaSetDevice(deviceBefore_);
+}
+
+cudaEvent_t openEvent()
+{
+  cudaEvent_t event = nullptr;
+  const unsigned asleep = currentLane->waiting == Waiting::Asleep ? cudaEventBlockingSync : cudaEventDefault;
+  check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming | asleep), "creating an event");
+  return event;
+}
+
+cudaError_t await(cudaStream_t stream)
+{
+  if (currentLane->waiting == Waiting::Busy)
+  {
+    return cudaStreamSynchronize(stream);
+  }
+  const cudaError_t error = cudaEventRecord(currentLane->asked, stream);
+  return error == cudaSuccess ? await(currentLane->asked) : error;
+}
+
+cudaError_t await(cudaEvent_t event)
+{
+  return cudaEventSynchronize(event);
 }
 
 cudaStream_t deviceStream()
@@ -227,7 +259,7 @@ DeviceBlock allocateOnDevice(std::size_t bytes)
   if (error == cudaErrorMemoryAllocation)
   {
     cudaGetLastError();
-    cudaStreamSynchronize(deviceStream());
+    await(deviceStream());
     trimDeviceMemory();
     error = cudaMallocFromPoolAsync(&memory, bytes, lane.pool, lane.compute);
   }
@@ -278,11 +310,12 @@ void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t str
     return;
   }
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream), "uploading");
-  check(cudaStreamSynchronize(stream), "uploading"); // what was uploaded may go
+  check(await(stream), "uploading"); // what was uploaded may go
 }
 
-std::shared_ptr<void> pinnedMemory(std::size_t bytes)
+std::shared_ptr<void> pinnedMemory(std::size_t wanted)
 {
+  const std::size_t bytes = PinnedPool::roomFor(wanted);
   return { pinnedPool().take(bytes), [bytes](void* memory) { pinnedPool().give(memory, bytes); } };
 }
 

@@ -57,10 +57,17 @@ std::size_t sharedMemoryFor(Kernel kernel)
   return known[{ kernel, device }] = bytes;
 }
 
+/// Whoever waits for a device keeps a core busy, which costs it the least time, or leaves it to other threads.
+enum class Waiting
+{
+  Busy,
+  Asleep
+};
+
 /// Streams, memory and uploads of a device, for one caller at a time. What is asked for in one lane waits for nothing
 /// in another. A lane lives as long as the process.
 struct DeviceLane;
-DeviceLane* openLane(int device);
+DeviceLane* openLane(int device, Waiting waiting);
 
 /// While it lives, the thread works in a lane, and with its device.
 class OnLane
@@ -81,6 +88,12 @@ private:
 cudaStream_t deviceStream();
 cudaStream_t besideStream();
 cudaStream_t copyStream();
+
+/// An event of the thread's lane, without times, for await().
+cudaEvent_t openEvent();
+/// Waits for all that the stream was asked for, or the event, as the lane does.
+cudaError_t await(cudaStream_t stream);
+cudaError_t await(cudaEvent_t event);
 
 /// What `later` is asked for from now on waits for all that `earlier` was asked for. An error stays for the next call
 /// to find.
@@ -111,10 +124,10 @@ struct DeviceBlock
 /// own. From a pool, so that both cost little. Throws Error naming the bytes when there is no room.
 DeviceBlock allocateOnDevice(std::size_t bytes);
 void freeOnDevice(const DeviceBlock& block);
-/// Gives back what the lane's pool keeps.
+/// Gives back what the pool of the lane's device keeps.
 void trimDeviceMemory();
 
-/// Zeros, by a kernel: the driver's own call holds its lock for half a millisecond, for which other lanes wait.
+/// Zeros, by a kernel.
 void clearOnDevice(void* memory, std::size_t bytes, cudaStream_t stream);
 
 /// Uploads without waiting, unless it is much; `from` may go afterwards.
@@ -180,22 +193,21 @@ public:
     upload(from.data(), from.size(), stream, traffic);
   }
 
-  /// Makes the contents those of `from`, whose first `kept` values are here already; room for more is taken ahead.
-  void extend(const std::vector<T>& from, std::size_t kept, cudaStream_t stream, Traffic& traffic)
+  /// Keeps its contents; room for more is taken ahead.
+  void grow(std::size_t count, cudaStream_t stream)
   {
-    if (from.size() > capacity_)
+    if (count > capacity_)
     {
-      resize(2 * from.size());
-      kept = 0;
+      DeviceArray larger;
+      larger.resize(2 * count);
+      if (size_ > 0)
+      {
+        check(cudaMemcpyAsync(larger.data(), data(), size_ * sizeof(T), cudaMemcpyDeviceToDevice, stream), "copying");
+      }
+      *this = std::move(larger);
     }
-    size_ = from.size();
-    if (from.size() > kept)
-    {
-      uploadBytes(data() + kept, from.data() + kept, (from.size() - kept) * sizeof(T), stream);
-      traffic.up += (from.size() - kept) * sizeof(T);
-    }
+    size_ = count;
   }
-
   void clear(cudaStream_t stream)
   {
     if (size_ > 0)

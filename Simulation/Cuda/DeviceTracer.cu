@@ -113,7 +113,7 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
     const std::size_t rows = std::size_t(cells_.size.y + 2) * std::size_t(cells_.size.z + 2);
     layOutRows<<<unsigned(rows), 128, 0, stream>>>(cells_, cells_, words_.data());
     check(cudaGetLastError(), "laying out the tissues");
-    check(cudaStreamSynchronize(stream), "laying out the tissues");
+    check(await(stream), "laying out the tissues");
     region_ = job.region;
   }
   cells_.cell = nullptr;
@@ -125,6 +125,7 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
   targets_ = { nodes_.data(), triangles_.data(), std::int32_t(job.targets.nodes.size()) };
   media_.upload(job.media, stream, traffic);
   lines_.upload(job.lines, stream, traffic);
+  seeds_.upload(job.seeds, stream, traffic);
   view_ = job.view;
   view_.media = media_.data();
   linesPerImage_ = linesPerImage;
@@ -211,6 +212,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                    echo_.data() + skip * std::size_t(echoCount_) * 2,
                    manyPaths ? echoRest_.data() + skip * std::size_t(echoCount_) * 2 : nullptr,
                    segments_.data(),
+                   seeds_.data(),
                    first + from,
                    linesPerImage_,
                    paths_,
@@ -260,7 +262,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
     }
     if (progress && perLaunch < count)
     {
-      check(cudaStreamSynchronize(stream), "tracing");
+      check(await(stream), "tracing");
       report(progress, double(from + lines) / count);
     }
   }

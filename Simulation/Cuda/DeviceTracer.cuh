@@ -47,6 +47,7 @@ private:
   DeviceArray<BvhTriangle> triangles_;
   DeviceArray<TraceMedium> media_;
   DeviceArray<TraceLine> lines_;
+  DeviceArray<std::uint64_t> seeds_;
   DeviceArray<std::uint8_t> starts_;
   DeviceArray<BinSums<double>> sums_;
   DeviceArray<BinSums<float>> bins_;

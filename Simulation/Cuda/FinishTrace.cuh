@@ -110,7 +110,7 @@ struct LinesOfImage
 template<class Targets>
 __device__ LinesOfImage linesOfImage(const TraceLaunch<Targets>& launch, int line, int lines)
 {
-  const int inImage = (launch.firstInImage + line) % launch.linesPerImage;
+  const int inImage = (launch.first + line) % launch.linesPerImage;
   return { max(0, line - inImage), min(lines, line - inImage + launch.linesPerImage) };
 }
 

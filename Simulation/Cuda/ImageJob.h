@@ -40,6 +40,7 @@ struct TraceJob
   std::vector<TraceMedium> media; ///< at most 65536
   std::vector<TraceLine> lines;
   int linesPerImage = 1;
+  std::vector<std::uint64_t> seeds;          ///< of the paths of each image
   std::shared_ptr<const TraceRegion> region; ///< kept on the device while it is the same
   TargetBvh targets;
   int paths = 0; ///< of a line
@@ -141,8 +142,9 @@ struct TargetPointJob
 /// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
 struct SurfaceJob
 {
-  const SurfacePieces* pieces = nullptr; ///< belong to the scene, which the job must not outlive; kept on the device
-  std::vector<int> blocks;               ///< of theirs, that a beam may see; made
+  VoxelJob voxels;
+  const SurfacePieces* pieces = nullptr; ///< belong to the scene, which the job must not outlive
+  std::vector<int> blocks;               ///< of theirs, that a beam may see
   float longestStepMm = 0.0f;            ///< between voxels
   PieceNets nets{};
   std::uint64_t seed = 1;

@@ -2,12 +2,10 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/SoundSpeed.h"
-#include "Cuda/DeviceImager.h"
 #include "Echo/EchoSetup.h"
 #include "Echo/Pulse.h"
 #include "Image/LabelSlice.h"
 #include "Image/ReceiverNoise.h"
-#include "Kernel/TracePath.h"
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
@@ -244,11 +242,9 @@ SurfaceJob makeSurfaces(const EchoSetup& setup, const std::vector<Beam>& sceneBe
   const SurfaceEchoes& surfaces = *setup.surfaces;
   const Scene& scene = *setup.sources.scene;
   SurfaceJob job;
-  job.pieces = &scene.surfacePieces(true);
+  job.voxels = makeVoxels(scene);
+  job.pieces = &scene.surfacePieces();
   job.blocks = seenBlocks(setup, sceneBeams, *job.pieces);
-  job.pieces->makeBlocks(job.blocks, [&](const std::vector<SurfaceFace>& faces) {
-    return DeviceImager::instance().fitPieces(makeVoxels(scene), faces);
-  });
   job.longestStepMm = surfaces.longestStepMm();
   job.nets = surfaces.nets();
   job.seed = setup.settings.seed;
@@ -304,6 +300,7 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.view.media = nullptr;
   job.lines = setup.lines;
   job.linesPerImage = linesPerImage;
+  job.seeds.assign(setup.lines.size() / std::size_t(linesPerImage), setup.seed);
   job.region = setup.region;
   job.targets = buildTargetBvh(setup.targets->triangles());
   job.paths = setup.paths;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Cuda/DeviceEcho.cuh"
+#include "Cuda/DevicePieces.cuh"
 #include "Cuda/SplatChunk.cuh"
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/SurfacePiece.h"

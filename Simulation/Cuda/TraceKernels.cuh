@@ -37,7 +37,8 @@ struct TraceLaunch
   EchoSum* echo;
   EchoSum* echoRest; // what rounding left of each echo, 2^restBits a unit of `echo`; null: not kept
   std::uint64_t* segments;
-  int firstInImage; // number of the launch's first line, to be taken modulo linesPerImage
+  const std::uint64_t* seeds; // of the images' paths
+  int first;                  // of all images' lines, the launch's first
   int linesPerImage;
   int paths;
   int batches;
@@ -80,7 +81,8 @@ struct TraceLaunch
     return reverberation +
            (std::size_t(line) * batches + std::size_t(batch)) * reverberationSumCount * tissueBins().count;
   }
-  __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((firstInImage + line) % linesPerImage); }
+  __device__ std::uint32_t keyOf(int line) const { return std::uint32_t((first + line) % linesPerImage); }
+  __device__ std::uint64_t seedOf(int line) const { return seeds[(first + line) / linesPerImage]; }
 };
 
 template<bool KeepsRest, class Launch>
@@ -295,12 +297,13 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     }
   }
   const std::uint32_t lineKey = launch.keyOf(line);
+  const std::uint64_t seed = launch.seedOf(line);
   const std::size_t lineBins = std::size_t(line) * launch.binCount;
   const ReverberationRow reverberation{ launch.batchReverberation(line, batch), launch.absorbedByTissue + 2 * lineBins,
                                         launch.cellMm + lineBins, lineKey, launch.tissueBins() };
   for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
   {
-    scrambles[b] = makeScramble(launch.view, lineKey, std::uint32_t(batch), b);
+    scrambles[b] = makeScramble(launch.view, seed, lineKey, std::uint32_t(batch), b);
   }
   __syncthreads();
 
@@ -309,7 +312,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   const int step = launch.slices * int(blockDim.x);
   TraceLine beam = launch.lines[line];
   LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, beam, staged[lane]);
-  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * int(blockDim.x) + int(threadIdx.x) - step),
+  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * int(blockDim.x) + int(threadIdx.x) - step), seed,
                scrambles };
   PathState path;
   bool walks = false;

@@ -1,5 +1,6 @@
 #include "Cuda/DeviceEcho.cuh"
 
+#include "Cuda/DevicePieces.cuh"
 #include "Cuda/SplatKernels.cuh"
 #include "Kernel/DetailCode.h"
 
@@ -240,47 +241,10 @@ void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t en
 
 } // namespace
 
-/// The pieces of a scene stay, those that are new are added.
-void DeviceEcho::uploadPieces(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic)
-{
-  const SurfacePieces& scene = *job.pieces;
-  if (piecesId_ != scene.id())
-  {
-    pieces_.clear();
-    pieceGroups_.clear();
-    pieceBlocks_.assign(std::size_t(scene.blockCount()), false);
-  }
-  const std::size_t kept = pieces_.size();
-  const std::size_t keptGroups = pieceGroups_.size();
-  const bool isFirst = piecesId_ != scene.id();
-  piecesId_ = 0; // stays so when the upload fails
-  const auto ballOf = [&](const SurfacePiece& piece) {
-    return std::pair<Vec3f, float>(piece.positionMm, pieceBounds(piece, job.longestStepMm).radiusMm);
-  };
-  for (const int block : job.blocks)
-  {
-    if (!pieceBlocks_[std::size_t(block)])
-    {
-      pieceBlocks_[std::size_t(block)] = true;
-      scene.forBricksOf(block, [&](const Vec3i& brick, const std::vector<SurfacePiece>& pieces) {
-        const std::size_t first = pieces_.size();
-        pieces_.insert(pieces_.end(), pieces.begin(), pieces.end());
-        addGroups(pieces_, first, pieces_.size(), (Vec3f(brick) + 0.5f) * scene.edgeMm(), ballOf, pieceGroups_);
-      });
-    }
-  }
-  if (isFirst || pieces_.size() > kept)
-  {
-    devicePieces_.extend(pieces_, kept, stream, traffic);
-    devicePieceGroups_.extend(pieceGroups_, keptGroups, stream, traffic);
-  }
-  piecesId_ = scene.id();
-}
-
 void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffic& traffic)
 {
   const SurfaceJob& job = *echo.surfaces;
-  uploadPieces(job, stream, traffic);
+  uploadVoxels(job.voxels, stream, traffic);
   surfaceRows_.upload(job.rows, stream, traffic);
   diffuseL_.upload(job.diffuseL, stream, traffic);
   diffuseE_.upload(job.diffuseE, stream, traffic);
@@ -291,9 +255,6 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
     return table;
   };
   pieceSet_.table = withTables(job.pieceTable);
-  pieceSet_.groups = devicePieceGroups_.data();
-  pieceSet_.groupCount = int(pieceGroups_.size());
-  pieceSet_.pieces = devicePieces_.data();
   pieceSet_.longestStepMm = job.longestStepMm;
   pieceSet_.media = job.media;
   pieceSet_.nets = job.nets;
@@ -301,6 +262,12 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   pieceSet_.marginMm = 1.5f * job.longestStepMm;
   pieceSet_.seed = job.seed;
   uploadFieldSight(job.sight, pieceSight_, stream, traffic);
+  pieces_->prepare(job, voxels_.data(),
+                   { splat(sceneBeams_.data(), 1.0f, pieceSight_), echo.lineCount, kind_, pieceSet_.table, job.media },
+                   stream, traffic);
+  pieceSet_.groups = pieces_->groups();
+  pieceSet_.groupCount = pieces_->groupCount();
+  pieceSet_.pieces = pieces_->pieces();
   targets_ = job.targets.has_value();
   if (targets_)
   {
@@ -351,7 +318,7 @@ void DeviceEcho::drawSpeckle(const EchoJob& job, cudaStream_t stream, Traffic& t
     convolveSamples<<<grid(std::size_t(job.sampleCount)), threads, 0, stream>>>(
       drawn.data(), int(samples), pulse_.data(), half_, complexPulse_, job.sampleCount, reverberationSpeckle_.data());
     check(cudaGetLastError(), "drawing speckle");
-    check(cudaStreamSynchronize(stream), "drawing speckle");
+    check(await(stream), "drawing speckle");
   }
   linesPerImage_ = job.linesPerImage;
   noise_ = job.noise;

@@ -45,6 +45,12 @@ std::shared_ptr<const DeviceGrey> DeviceImager::compress(const std::shared_ptr<c
   return nullptr;
 }
 
+std::shared_ptr<const DeviceGrey> DeviceImager::compress(const std::vector<std::shared_ptr<const BModeJob>>&,
+                                                         const DeviceRf&)
+{
+  return nullptr;
+}
+
 std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan&, std::shared_ptr<const DeviceGrey>)
 {
   return nullptr;
@@ -53,16 +59,6 @@ std::shared_ptr<const DevicePicture> DeviceImager::convert(const PlaneScan&, std
 std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob&, const DevicePicture&, const DeviceTraced*)
 {
   return nullptr;
-}
-
-std::vector<SurfacePiece> DeviceImager::fitPieces(const VoxelJob&, const std::vector<SurfaceFace>&)
-{
-  return {};
-}
-
-FetchedArrivals DeviceImager::fetchArrivals(const DeviceTraced&)
-{
-  return {};
 }
 
 FetchedTrace DeviceImager::fetch(const DeviceTraced&)

@@ -1,5 +1,6 @@
 #include "DataSets/DataSetImager.h"
 
+#include "Core/MadeOnce.h"
 #include "Cuda/RunOnDevice.h"
 #include "DataSets/DataSetInfo.h"
 #include "DataSets/ImageChannels.h"
@@ -182,11 +183,19 @@ void shareRegion(Scene& scene, const DataSetPlan& plan, const std::vector<BodyVi
 /// A patient's labels with tissues, and skin around them; not augmented.
 struct DataSetImager::Patient
 {
-  PlannedBody body; ///< for whom it was made, and for all that do not differ from it but by augmentation
+  /// Patients are the same that do not differ but by augmentation.
+  using Key = std::pair<int, std::optional<std::uint64_t>>;
+  static Key keyOf(const PlannedBody& body) { return { body.patient, body.thoraxSeed }; }
+
+  Key key;
   ThoraxParameters thorax;
   LabelVolume volume;
-  std::vector<std::uint8_t> groups; ///< of each label id of the last body
   std::vector<bool> groupIsThere;
+};
+
+/// Imagers of several threads share the patients that they hold.
+struct DataSetImager::Patients : MadeOnce<Patient::Key, Patient>
+{
 };
 
 /// One of the patient's bodies, in the last exam.
@@ -198,20 +207,31 @@ struct DataSetImager::Body
   Simulator simulator;
   std::vector<BodyView> views; ///< of the patient's
   FoundLandmarks landmarks;
+  std::vector<std::uint8_t> groups; ///< the mask's value of each label id
 };
 
-struct DataSetImager::Placed
+/// An image before it is made; its view is one that is obtainable.
+struct DataSetImager::PlacedImage
 {
-  int view = 0;
-  ProbePose pose;
-  PoseJitter jitter;
+  ImageInput input;
+  DataSetFacts facts;
 };
 
 DataSetImager::DataSetImager(std::shared_ptr<const DataSetPlan> plan, Device device)
   : plan_(std::move(plan))
   , device_(device)
+  , patients_(std::make_shared<Patients>())
 {
 }
+
+DataSetImager DataSetImager::another() const
+{
+  DataSetImager imager(plan_, device_);
+  imager.patients_ = patients_;
+  return imager;
+}
+
+DataSetImager::DataSetImager(DataSetImager&&) noexcept = default;
 
 DataSetImager::~DataSetImager() = default;
 
@@ -220,18 +240,13 @@ bool DataSetImager::runsOnGpu() const
   return runsOnDevice(plan_->settings(plan_->image(0)).image(plan_->set().pixelMm, device_).tracing);
 }
 
-void DataSetImager::preparePatient(const PlannedBody& body, const Progress& progress)
+std::shared_ptr<const DataSetImager::Patient> DataSetImager::makePatient(const PlannedBody& body,
+                                                                         const Progress& progress) const
 {
-  if (patient_ && patient_->body.patient == body.patient && patient_->body.thoraxSeed == body.thoraxSeed)
-  {
-    return;
-  }
-  body_ = nullptr;
-  patient_ = nullptr;
   const DataSet& set = plan_->set();
   const DataSetPatient& patient = set.patients[std::size_t(body.patient)];
-  auto made = std::make_unique<Patient>();
-  made->body = body;
+  auto made = std::make_shared<Patient>();
+  made->key = Patient::keyOf(body);
   made->thorax = thoraxOf(body);
   made->volume = patient.labels.empty() ? makeThoraxPhantom(patient.spacingMm, made->thorax)
                                         : readLabelMap(patient.labels, 0, progress);
@@ -241,9 +256,8 @@ void DataSetImager::preparePatient(const PlannedBody& body, const Progress& prog
   }
   sono::prepareBody(made->volume, LabelTissueMap::read(set.labelTissues), set.tissues, fallbackTissue,
                     BodyFillMode::Auto);
-  made->groups = groupsOf(made->volume.labels, set.masks);
   made->groupIsThere.assign(set.masks.size(), false);
-  for (const std::uint8_t value : made->groups)
+  for (const std::uint8_t value : groupsOf(made->volume.labels, set.masks))
   {
     if (value > 0)
     {
@@ -254,22 +268,28 @@ void DataSetImager::preparePatient(const PlannedBody& body, const Progress& prog
   {
     throw Error("patient '" + patient.id + "' has no label of any group of 'masks'; correct their 'labels'.");
   }
-  patient_ = std::move(made);
+  return made;
 }
 
 void DataSetImager::prepareBody(int number, const Progress& progress)
 {
-  preparePatient(plan_->bodies()[std::size_t(number)], progress);
   if (body_ && body_->number == number)
   {
     return;
   }
-  body_ = nullptr; // before the next one takes as much memory
   const DataSet& set = plan_->set();
-  const BodyAugmentation& augmentation = plan_->bodies()[std::size_t(number)].augmentation;
+  const PlannedBody& planned = plan_->bodies()[std::size_t(number)];
+  const Patient::Key key = Patient::keyOf(planned);
+  body_ = nullptr; // before the next one takes as much memory
+  if (!patient_ || patient_->key != key)
+  {
+    patient_ = nullptr;
+    patient_ = patients_->get(key, [&] { return makePatient(planned, progress); });
+  }
+  const BodyAugmentation& augmentation = planned.augmentation;
   LabelVolume volume = augmented(patient_->volume, augmentation);
-  patient_->groups = groupsOf(volume.labels, set.masks); // fat may be new
   auto body = std::make_unique<Body>();
+  body->groups = groupsOf(volume.labels, set.masks); // fat may be new
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
   body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
@@ -291,91 +311,130 @@ void DataSetImager::prepareExam(const PlannedImage& image, const Progress& progr
   }
 }
 
-DataSetImager::Placed DataSetImager::place(const PlannedImage& image, const ImageSettings& settings)
+DataSetImager::PlacedImage DataSetImager::place(const PlannedImage& image)
 {
-  Placed placed;
-  placed.view = image.view;
-  while (!body_->views[std::size_t(placed.view)].pose)
+  PlacedImage placed;
+  placed.facts.image = image;
+  placed.facts.settings = plan_->settings(image);
+  placed.input.settings = placed.facts.settings.image(plan_->set().pixelMm, device_);
+  placed.facts.onGpu = runsOnDevice(placed.input.settings.tracing);
+  const ScanGeometry& geometry = placed.input.settings.geometry;
+  if (geometry.isVolume())
   {
-    placed.view = (placed.view + 1) % int(body_->views.size());
+    throw Error("a matrix makes volumes; choose a probe with lines in a plane.");
   }
-  const ProbePose view = *body_->views[std::size_t(placed.view)].pose;
-  const bool isCatheter = settings.geometry.lineOrigin() == LineOrigin::Catheter;
+  int& number = placed.facts.image.view;
+  while (!body_->views[std::size_t(number)].pose)
+  {
+    number = (number + 1) % int(body_->views.size());
+  }
+  const ProbePose view = *body_->views[std::size_t(number)].pose;
+  const bool isCatheter = geometry.lineOrigin() == LineOrigin::Catheter;
   std::string why = "No surface of the body lies there.";
   for (int attempt = 0; attempt < mostAttempts; ++attempt)
   {
-    placed.jitter = plan_->jitter(image.index, attempt);
-    placed.pose = jittered(view, placed.jitter);
+    placed.facts.jitter = plan_->jitter(image.index, attempt);
+    ProbePose pose = jittered(view, placed.facts.jitter);
     if (!isCatheter)
     {
-      const std::optional<ProbePose> onSkin = poseOnSkin(*body_->scene, placed.pose);
+      const std::optional<ProbePose> onSkin = poseOnSkin(*body_->scene, pose);
       if (!onSkin)
       {
         continue;
       }
-      placed.pose = *onSkin;
+      pose = *onSkin;
     }
-    why = probeContactWarning(*body_->scene, makeScanLines(settings.geometry, placed.pose));
-    why = why.empty() ? probePlaceWarning(*body_->scene, settings.geometry, placed.pose) : why;
+    why = probeContactWarning(*body_->scene, makeScanLines(geometry, pose));
+    why = why.empty() ? probePlaceWarning(*body_->scene, geometry, pose) : why;
     if (why.empty())
     {
+      placed.input.pose = placed.facts.pose = pose;
       return placed;
     }
   }
   throw Error("none of " + std::to_string(mostAttempts) + " poses drawn for view '" +
-              plan_->patientOf(image.body).views[std::size_t(placed.view)].name +
+              plan_->patientOf(image.body).views[std::size_t(number)].name +
               "' stands on the skin; narrow 'jitter' or correct the view. " + why);
 }
 
 DataSetImage DataSetImager::make(std::int64_t index, const Progress& progress)
 {
-  plan_->requireImage(index);
-  const PlannedImage image = plan_->image(index);
+  DataSetImage made;
+  makeEach(
+    { index }, [&](std::int64_t, DataSetImage image) { made = std::move(image); }, progress);
+  return made;
+}
+
+void DataSetImager::makeEach(const std::vector<std::int64_t>& indices, const DataSetSink& sink,
+                             const Progress& progress)
+{
+  std::vector<PlacedImage> images;
+  for (const std::int64_t index : indices)
+  {
+    plan_->requireImage(index);
+    const PlannedImage planned = plan_->image(index);
+    named(planned, [&] {
+      prepareExam(planned, partOf(progress, 0.0, 0.2));
+      images.push_back(place(planned));
+    });
+  }
+  // Channels ask the stages for more of one image than those of several keep.
+  const std::size_t together = plan_->set().channels.empty() && runsOnGpu() ? images.size() : 1;
+  for (std::size_t i = 0; i < images.size(); i += together)
+  {
+    const double done = 0.2 + 0.8 * double(i) / double(images.size());
+    std::vector<ImageInput> inputs;
+    for (std::size_t n = i; n < i + together; ++n)
+    {
+      inputs.push_back(images[n].input);
+    }
+    named(images[i].facts.image, [&] {
+      const std::vector<SeenPicture> pictures = body_->simulator.pictures(
+        inputs, partOf(progress, done, done + 0.8 * double(together) / double(images.size())));
+      for (std::size_t n = 0; n < together; ++n)
+      {
+        DataSetImage f = finish(images[i + n], pictures[n]);
+
+        sink(images[i + n].facts.image.index, std::move(f));
+      }
+    });
+  }
+}
+
+/// What goes wrong is told with the data set and the image.
+template<class Do>
+void DataSetImager::named(const PlannedImage& image, const Do& work) const
+{
   try
   {
-    return makePlanned(image, progress);
+    work();
   }
   catch (const Error& error)
   {
-    throw Error("'" + plan_->set().path + "': image " + std::to_string(index) + " of patient '" +
+    throw Error("'" + plan_->set().path + "': image " + std::to_string(image.index) + " of patient '" +
                 plan_->patientOf(image.body).id + "': " + error.what());
   }
 }
 
-DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progress& progress)
+DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture& seen)
 {
-  prepareExam(image, partOf(progress, 0.0, 0.2));
-  DataSetFacts facts;
-  facts.image = image;
-  facts.settings = plan_->settings(image);
-  ImageInput input;
-  input.settings = facts.settings.image(plan_->set().pixelMm, device_);
-  const Placed placed = place(image, input.settings);
-  input.pose = facts.pose = placed.pose;
-  facts.image.view = placed.view;
-  facts.jitter = placed.jitter;
-  facts.onGpu = runsOnDevice(input.settings.tracing);
-
-  const ImageResult result = body_->simulator.image(input, partOf(progress, 0.2, 0.95));
-  if (result.isVolume())
-  {
-    throw Error("a matrix makes volumes; choose a probe with lines in a plane.");
-  }
-  const TracedResult traced = body_->simulator.traced(input);
-  const ScanPicture picture = body_->simulator.picture(result, input.settings.geometry, input.pose, traced);
-  const PlaneImage layout = plan_->layout(image);
+  const ImageInput& input = placed.input;
+  DataSetFacts facts = placed.facts;
+  const PlaneImage layout = plan_->layout(facts.image);
   DataSetImage made{
     layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}, {}, {}
   };
-  made.grey.assign(picture.grey.begin(), picture.grey.end());
+  made.grey.assign(seen.picture.grey.begin(), seen.picture.grey.end());
   made.mask.resize(made.grey.size());
-  std::transform(picture.labels.begin(), picture.labels.end(), made.mask.begin(),
-                 [&](std::uint16_t label) { return patient_->groups[label]; });
+  std::transform(seen.picture.labels.begin(), seen.picture.labels.end(), made.mask.begin(),
+                 [&](std::uint16_t label) { return body_->groups[label]; });
   const std::vector<ImageChannel>& channels = plan_->set().channels;
-  made.channels = pixelChannels(channels, input, body_->simulator, picture, made.mask);
-  made.beam = beamChannels(channels, input, body_->simulator);
-  const auto arrivals = Simulator::arrivals(traced);
-  const ImageSight sight(input.settings, input.pose, layout, *arrivals);
+  if (!channels.empty())
+  {
+    made.channels = pixelChannels(channels, input, body_->simulator, seen.picture, made.mask);
+    made.beam = beamChannels(channels, input, body_->simulator);
+  }
+  const ImageSight sight(input.settings, input.pose, layout, *seen.arrivals);
   const std::vector<MaskGroup>& groups = plan_->set().masks;
   const std::vector<double> visible = sight.visibleShares(made.mask, groups.size());
   for (std::size_t group = 0; group < groups.size(); ++group)
@@ -384,7 +443,7 @@ DataSetImage DataSetImager::makePlanned(const PlannedImage& image, const Progres
     facts.groups.push_back({ std::size_t(std::count(made.mask.begin(), made.mask.end(), std::uint8_t(group + 1))),
                              patient_->groupIsThere[group], visible[group] });
   }
-  const BodyView& view = body_->views[std::size_t(placed.view)];
+  const BodyView& view = body_->views[std::size_t(facts.image.view)];
   facts.found = view.found ? &*view.found : nullptr;
   facts.noLandmarks = body_->landmarks.refusal;
   if (body_->landmarks.heart)

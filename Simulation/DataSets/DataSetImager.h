@@ -6,11 +6,14 @@
 #include "DataSets/DataSetPlan.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace sono {
+
+struct SeenPicture;
 
 /// A picture of a data set with its mask, rows from the transducer on, lateral fastest.
 struct DataSetImage
@@ -33,6 +36,8 @@ struct DataSetImage
   ///@}
 };
 
+using DataSetSink = std::function<void(std::int64_t index, DataSetImage image)>;
+
 /// Makes the images of a plan, whichever are asked for. Keeps the last patient's labels and the last body's scene, so
 /// that images of one body are quick one after the other. An image does not depend on those before it, to the bit. Not
 /// for several threads at a time.
@@ -46,30 +51,37 @@ public:
   ~DataSetImager();
   DataSetImager(const DataSetImager&) = delete;
   DataSetImager& operator=(const DataSetImager&) = delete;
+  DataSetImager(DataSetImager&&) noexcept;
+  /// Of the same plan, for another thread: they share the patients.
+  DataSetImager another() const;
 
   const DataSetPlan& plan() const { return *plan_; }
-  const std::shared_ptr<const DataSetPlan>& sharedPlan() const { return plan_; }
-  Device device() const { return device_; }
   /// Throws Error where the device is a GPU that cannot be used.
   bool runsOnGpu() const;
   /// Throws Error, naming the data set and the image, when there is no such image, its patient cannot be read or no
   /// pose that is drawn for it stands on the skin; Aborted.
   DataSetImage make(std::int64_t index, const Progress& progress = {});
+  /// Several images of one exam, to the sink as they are there; a GPU makes them together. Throws as make().
+  void makeEach(const std::vector<std::int64_t>& indices, const DataSetSink& sink, const Progress& progress = {});
 
 private:
   struct Patient;
+  struct Patients;
   struct Body;
-  struct Placed;
+  struct PlacedImage;
 
-  void preparePatient(const PlannedBody& body, const Progress& progress);
+  std::shared_ptr<const Patient> makePatient(const PlannedBody& body, const Progress& progress) const;
   void prepareBody(int body, const Progress& progress);
   void prepareExam(const PlannedImage& image, const Progress& progress);
-  Placed place(const PlannedImage& image, const ImageSettings& settings);
-  DataSetImage makePlanned(const PlannedImage& image, const Progress& progress);
+  template<class Do>
+  void named(const PlannedImage& image, const Do& work) const;
+  PlacedImage place(const PlannedImage& image);
+  DataSetImage finish(const PlacedImage& placed, const SeenPicture& seen);
 
   std::shared_ptr<const DataSetPlan> plan_;
   Device device_;
-  std::unique_ptr<Patient> patient_;
+  std::shared_ptr<Patients> patients_;
+  std::shared_ptr<const Patient> patient_;
   std::unique_ptr<Body> body_;
 };
 

@@ -16,7 +16,7 @@ namespace sono {
 
 namespace {
 
-constexpr int mostWorkersOfDevice = 8;
+constexpr int mostWorkersOfDevice = 16;
 
 /// What the workers share.
 struct Shared
@@ -39,7 +39,7 @@ int imageWorkers(const DataSetImager& imager)
     return 1;
   }
   const int cores = int(std::thread::hardware_concurrency());
-  return std::clamp(cores / 2, 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
+  return std::clamp(cores, 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
 }
 
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers)
@@ -69,39 +69,43 @@ std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange&
   return units;
 }
 
-void forImages(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers,
-               const std::function<void(DataSetImager&, std::int64_t, const Progress&)>& work,
-               const std::function<void()>& hear, const Progress& keepsOn)
+void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers, const ExamWork& work,
+              const std::function<void()>& hear, const Progress& keepsOn)
 {
+  const std::int64_t perExam = imager.plan().set().imagesPerExam;
+  const auto forExamsOf = [&](const PlannedRange& unit, const auto& ofExam) {
+    for (std::int64_t image = unit.first; image < unit.end; image += perExam)
+    {
+      ofExam({ image, image + perExam });
+    }
+  };
   if (workers == 1)
   {
+    const auto done = [&] {
+      hear();
+      report(keepsOn, 0.0);
+    };
     for (const PlannedRange& unit : units)
     {
-      for (std::int64_t image = unit.first; image < unit.end; ++image)
-      {
-        work(imager, image, keepsOn);
-        hear();
-        report(keepsOn, 0.0);
-      }
+      forExamsOf(unit, [&](const PlannedRange& exam) { work(imager, exam, done, keepsOn); });
     }
     return;
   }
   Shared shared;
   const Progress untilStopped = [&shared](double) { return !shared.stop; };
+  const auto done = [&shared] {
+    const std::lock_guard<std::mutex> lock(shared.mutex);
+    ++shared.made;
+    shared.changed.notify_one();
+  };
   const auto run = [&](int number) {
     try
     {
       const OwnImager onDevice(number);
-      DataSetImager own(imager.sharedPlan(), imager.device());
+      DataSetImager own = imager.another();
       for (std::size_t unit = shared.nextUnit++; unit < units.size(); unit = shared.nextUnit++)
       {
-        for (std::int64_t image = units[unit].first; image < units[unit].end; ++image)
-        {
-          work(own, image, untilStopped);
-          const std::lock_guard<std::mutex> lock(shared.mutex);
-          ++shared.made;
-          shared.changed.notify_one();
-        }
+        forExamsOf(units[unit], [&](const PlannedRange& exam) { work(own, exam, done, untilStopped); });
       }
     }
     catch (...)

@@ -8,7 +8,7 @@
 
 namespace sono {
 
-/// How many images to make side by side: one on a CPU, where an image takes all cores; up to eight for each GPU, so
+/// How many images to make side by side: one on a CPU, where an image takes all cores; up to sixteen for each GPU, so
 /// that it works on several while cores prepare and write others.
 int imageWorkers(const DataSetImager& imager);
 
@@ -16,12 +16,14 @@ int imageWorkers(const DataSetImager& imager);
 /// of its images, or of fewer bodies than workers equal parts. Of `images`, whole exams.
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers);
 
-/// Runs work(imager, image, progress) for the images of all units, in their order on the calling thread by `imager`, or
-/// each unit on one of several threads by an imager of its own. The calling thread hears of each image that is done,
-/// and is asked now and then, with the part of an image that is done where one is made at a time, whether to go on.
-/// Throws what a work throws, the first of several, when all have stopped; Aborted.
-void forImages(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers,
-               const std::function<void(DataSetImager&, std::int64_t, const Progress&)>& work,
-               const std::function<void()>& hear, const Progress& keepsOn);
+/// What is to be done for the images of an exam: calls `done` for each of them.
+using ExamWork =
+  std::function<void(DataSetImager&, const PlannedRange& exam, const std::function<void()>& done, const Progress&)>;
+
+/// Runs the work for each exam of all units, in their order on the calling thread by `imager`, or each unit on one of
+/// several threads by an imager of its own. The calling thread hears of each image that is done, and is asked now and
+/// then whether to go on. Throws what a work throws, the first of several, when all have stopped; Aborted.
+void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers, const ExamWork& work,
+              const std::function<void()>& hear, const Progress& keepsOn);
 
 } // namespace sono

@@ -288,17 +288,31 @@ DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, 
   tally.total = images.end - images.first;
   std::atomic<std::int64_t> made{ 0 };
   const auto begin = std::chrono::steady_clock::now();
-  const auto work = [&](DataSetImager& by, std::int64_t index, const Progress& untilStopped) {
-    const CaseFiles files = filesOf(plan, index);
-    if (!fs::exists(folder / files.info))
+  const auto work = [&](DataSetImager& by, const PlannedRange& exam, const std::function<void()>& done,
+                        const Progress& untilStopped) {
+    std::vector<std::int64_t> missing;
+    for (std::int64_t index = exam.first; index < exam.end; ++index)
     {
-      writeImage(by.make(index, untilStopped), files, folder, encode);
+      if (fs::exists(folder / filesOf(plan, index).info))
+      {
+        done();
+      }
+      else
+      {
+        missing.push_back(index);
+      }
+    }
+    const auto write = [&](std::int64_t index, const DataSetImage& image) {
+      writeImage(image, filesOf(plan, index), folder, encode);
       ++made;
+      done();
+    };
+    if (!missing.empty())
+    {
+      by.makeEach(missing, write, untilStopped);
     }
   };
-  const auto keepsOn = [&](double part) {
-    return !progress || progress((double(tally.done) + part) / double(tally.total));
-  };
+  const auto keepsOn = [&](double) { return !progress || progress(double(tally.done) / double(tally.total)); };
   const auto hear = [&] {
     ++tally.done;
     tally.made = made;
@@ -309,7 +323,7 @@ DataSetTally writeDataSet(DataSetImager& imager, const std::string& folderName, 
     }
   };
   const int threads = workers > 0 ? workers : imageWorkers(imager);
-  forImages(imager, workUnits(plan, images, threads), threads, work, hear, keepsOn);
+  forExams(imager, workUnits(plan, images, threads), threads, work, hear, keepsOn);
   return tally;
 }
 

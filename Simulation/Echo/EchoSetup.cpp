@@ -68,13 +68,14 @@ const EchoSettings& checked(const EchoSources& sources, const std::vector<ScanLi
 
 /// Nothing where it is known that nothing reverberates.
 ReverberationSpeckle speckleOf(const EchoSettings& settings, InterfaceModel model, const BeamModel& beams,
-                               const std::vector<ScanLine>& lines, const TracedLines* traced)
+                               const std::vector<ScanLine>& lines, int linesPerImage, const TracedLines* traced)
 {
   if (model != InterfaceModel::Acoustic || (traced && traced->reverberation.empty()))
   {
     return {};
   }
-  return reverberationSpeckle(settings, beams, lines, settings.sampleCount() + PulseKernel(settings).half());
+  return reverberationSpeckle(settings, beams, lines, linesPerImage,
+                              settings.sampleCount() + PulseKernel(settings).half());
 }
 
 } // namespace
@@ -86,15 +87,16 @@ double tissueScattererScale(const EchoSettings& s, double areaMm2)
 }
 
 EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>& scanLines,
-                     const EchoSettings& echoSettings)
+                     const EchoSettings& echoSettings, int linesPerImage)
   : sources(echoSources)
   , lines(scanLines)
   , settings(checked(echoSources, scanLines, echoSettings))
   , model(sources.traced ? sources.traced->model : sources.model)
   , level(settings.field ? std::optional<FieldLevel>(*settings.field) : std::nullopt)
   , beams(settings, model)
-  , finisher(settings, model, sources.traced, level ? &*level : nullptr,
-             speckleOf(settings, model, beams, lines, sources.traced))
+  , finisher(
+      settings, model, sources.traced, level ? &*level : nullptr,
+      speckleOf(settings, model, beams, lines, linesPerImage > 0 ? linesPerImage : int(lines.size()), sources.traced))
 {
   const bool isAcoustic = model == InterfaceModel::Acoustic;
   if (sources.scene && isAcoustic)

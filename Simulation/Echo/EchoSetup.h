@@ -24,8 +24,10 @@ double tissueScattererScale(const EchoSettings& settings, double areaMm2);
 /// The arguments must outlive it.
 struct EchoSetup
 {
-  /// Throws Error naming what is out of range or does not fit together.
-  EchoSetup(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings);
+  /// The lines are those of images one after the other, which all have `linesPerImage`; 0: of one. Throws Error naming
+  /// what is out of range or does not fit together.
+  EchoSetup(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
+            int linesPerImage = 0);
   EchoSetup(const EchoSetup&) = delete;
   EchoSetup& operator=(const EchoSetup&) = delete;
 

@@ -14,14 +14,15 @@ namespace sono {
 namespace {
 
 /// Nodes of the noise are sqrt(3) deviations of a beam apart, as far as lines are closer than that.
-float nodesPerLine(const BeamModel& beams, const std::vector<ScanLine>& lines)
+float nodesPerLine(const BeamModel& beams, const std::vector<ScanLine>& lines, int linesPerImage)
 {
-  if (lines.size() < 2)
+  if (linesPerImage < 2)
   {
     return 1.0f;
   }
   const auto focusOf = [&](const ScanLine& line) { return line.originMm + line.axis * beams.focusMm(); };
-  const double pitchMm = glm::distance(focusOf(lines[lines.size() / 2]), focusOf(lines[lines.size() / 2 - 1]));
+  const std::size_t middle = std::size_t(linesPerImage) / 2;
+  const double pitchMm = glm::distance(focusOf(lines[middle]), focusOf(lines[middle - 1]));
   return float(std::clamp(pitchMm / (std::sqrt(3.0) * beams.focusWidth().lateralSigmaMm), 1e-3, 1.0));
 }
 
@@ -42,12 +43,12 @@ SONO_SIMD_CLONES __attribute__((flatten)) void drawNodes(const ReverberationNois
 } // namespace
 
 ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const BeamModel& beams,
-                                          const std::vector<ScanLine>& lines, int samples)
+                                          const std::vector<ScanLine>& lines, int linesPerImage, int samples)
 {
   constexpr double pi = 3.14159265358979323846;
   ReverberationSpeckle speckle;
   speckle.noise.seed = settings.seed;
-  speckle.noise.nodesPerLine = nodesPerLine(beams, lines);
+  speckle.noise.nodesPerLine = nodesPerLine(beams, lines, linesPerImage);
   const double sampleMm = settings.sampleMm();
   const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
   // A beam's width is asked for once a millimetre. A white noise of so much a sample has E_r / sample of that behind

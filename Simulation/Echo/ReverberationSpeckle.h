@@ -18,9 +18,10 @@ struct ReverberationSpeckle
   std::vector<float> rms; ///< of each sample of range before the pulse, at level 1: (11.2) of 5e-4 /(cm sr)
 };
 
-/// For `samples` samples of the settings. Lines are alike where their beams overlap at the focus.
+/// For `samples` samples of the settings. Lines are alike where their beams overlap at the focus, which those of the
+/// first image tell.
 ReverberationSpeckle reverberationSpeckle(const EchoSettings& settings, const BeamModel& beams,
-                                          const std::vector<ScanLine>& lines, int samples);
+                                          const std::vector<ScanLine>& lines, int linesPerImage, int samples);
 
 /// The nodes of its noise behind the pulse at each sample, at level 1, which lines side by side share. A level changes
 /// little over a pulse, so that it may as well be applied behind it. What is convolved here knows nothing of what a

@@ -13,6 +13,7 @@ struct PathKey
   std::uint32_t line;
   std::uint32_t batch;
   std::uint32_t path;                        ///< within its batch
+  std::uint64_t seed = 1;                    ///< of the image
   const BounceScramble* scrambles = nullptr; ///< of the batch, scrambleCount() of them, or null to make them
 };
 
@@ -31,9 +32,10 @@ SONO_HD inline int scrambleCount(const TraceView& view)
 /// Stands for the bounce number of a path's start, since no bounce has it.
 constexpr std::uint32_t startBounce = 0xffffffffu;
 
-SONO_HD inline BounceScramble makeScramble(const TraceView& view, std::uint32_t line, std::uint32_t batch, int slot)
+SONO_HD inline BounceScramble makeScramble(const TraceView& view, std::uint64_t seed, std::uint32_t line,
+                                           std::uint32_t batch, int slot)
 {
-  return makeBounceScramble(view.seed, line, batch, slot < view.maxCollisions ? std::uint32_t(slot) : startBounce);
+  return makeBounceScramble(seed, line, batch, slot < view.maxCollisions ? std::uint32_t(slot) : startBounce);
 }
 
 SONO_HD inline BounceSample drawFrom(const TraceView& view, const PathKey& key, int slot, std::uint32_t bounce)
@@ -41,9 +43,9 @@ SONO_HD inline BounceSample drawFrom(const TraceView& view, const PathKey& key, 
   if (view.lowDiscrepancy)
   {
     return lowDiscrepancySample(
-      key.scrambles ? key.scrambles[slot] : makeBounceScramble(view.seed, key.line, key.batch, bounce), key.path);
+      key.scrambles ? key.scrambles[slot] : makeBounceScramble(key.seed, key.line, key.batch, bounce), key.path);
   }
-  return independentSample(view.seed, key.line, key.batch, key.path, bounce);
+  return independentSample(key.seed, key.line, key.batch, key.path, bounce);
 }
 
 /// What a boundary consumes, the path's `bounce`-th.

@@ -65,7 +65,7 @@ SONO_HD inline bool survivesRoulette(const TraceView& view, const PathKey& key, 
     return true;
   }
   const float u =
-    uniformFrom(philox(view.seed, key.line, key.path, std::uint32_t(path.collisions), key.batch | 0x80000000u).v[0]);
+    uniformFrom(philox(key.seed, key.line, key.path, std::uint32_t(path.collisions), key.batch | 0x80000000u).v[0]);
   if (path.reflections == 0 || view.model != InterfaceModel::Acoustic)
   {
     const bool survives = u * view.rouletteIntensity < path.intensity;

@@ -58,7 +58,6 @@ struct TraceView
   int maxCollisions = 7;
   float coherenceMm = 0.1f;
   float depthMm = 160.0f;
-  std::uint64_t seed = 1;
 };
 
 /// The surface between two media: the rougher side's, and of two alike in height the steeper one's, whichever is in

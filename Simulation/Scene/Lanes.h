@@ -5,14 +5,19 @@
 
 // Loops over rows of numbers, from one source: g++ computes a vector's lanes at a time, and with nvcc a warp shares a
 // row, each thread being a lane; whatever lies in no lane, all of its threads compute alike. What is compiled so lives
-// in a namespace of its own, or the linker would take the one for the other.
+// in a namespace of its own, or the linker would take the one for the other. SONO_LANES_CALLED is for what is asked for
+// in many places: copies of it would not fit into a GPU's cache of instructions.
 
 #if defined(__CUDACC__)
 #define SONO_LANES_NAMESPACE warp
 #define SONO_LANES __device__
+#define SONO_LANES_CALLED __device__ __noinline__
+#define SONO_ROLLED _Pragma("unroll 1")
 #else
 #define SONO_LANES_NAMESPACE vectors
 #define SONO_LANES
+#define SONO_LANES_CALLED
+#define SONO_ROLLED
 #endif
 
 namespace sono::stepfit {
@@ -69,6 +74,7 @@ template<class F>
 SONO_LANES inline void forEach(int count, const F& f)
 {
   __syncwarp();
+  SONO_ROLLED
   for (int n = lane(); n < count; n += lanes)
   {
     f(n);

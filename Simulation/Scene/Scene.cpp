@@ -266,13 +266,12 @@ const SurfaceField& Scene::surfaceAt(std::size_t label, const Progress& progress
     [&](std::unique_ptr<SurfaceField> made) { surface = std::move(made); });
 }
 
-const SurfacePieces& Scene::surfacePieces(bool ofDevice) const
+const SurfacePieces& Scene::surfacePieces() const
 {
-  std::unique_ptr<SurfacePieces>& pieces = ofDevice ? devicePieces_ : pieces_;
   return *findOrMake(
-    &pieces, [&] { return pieces.get(); },
+    &pieces_, [&] { return pieces_.get(); },
     [&] { return std::make_unique<SurfacePieces>(tissueVoxels_.data(), placement().size, placement().spacingMm); },
-    [&](std::unique_ptr<SurfacePieces> made) { pieces = std::move(made); });
+    [&](std::unique_ptr<SurfacePieces> made) { pieces_ = std::move(made); });
 }
 
 void Scene::buildAll(const Progress& progress) const
@@ -362,12 +361,16 @@ void Scene::shareRegion(const VoxelBox& box)
   sharedBox_ = clipped(box);
 }
 
+bool Scene::sharesRegion(const VoxelBox& box) const
+{
+  return glm::all(glm::lessThanEqual(sharedBox_.first, box.first)) &&
+         glm::all(glm::lessThanEqual(box.last, sharedBox_.last));
+}
+
 std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box, const Progress& progress) const
 {
   const VoxelBox inside = clipped(box);
-  const bool isShared = glm::all(glm::lessThanEqual(sharedBox_.first, inside.first)) &&
-                        glm::all(glm::lessThanEqual(inside.last, sharedBox_.last));
-  const VoxelBox wanted = isShared ? sharedBox_ : inside;
+  const VoxelBox wanted = sharesRegion(inside) ? sharedBox_ : inside;
   return findOrMake(
     &region_, [&] { return region_ && region_->region().box == wanted ? region_ : nullptr; },
     [&]() -> SharedRegion {

@@ -85,13 +85,14 @@ public:
   /// The fibres of the tissues that have a fibreAnisotropyDb, built on first need; null where none has. Blood is the
   /// tissue of that name.
   const FibreField* fibres() const;
-  /// The boundaries as smooth pieces, made where they are asked for and kept; those of a device apart, since it may
-  /// have rounded them otherwise.
-  const SurfacePieces& surfacePieces(bool ofDevice = false) const;
+  /// The boundaries as smooth pieces, made where they are asked for and kept.
+  const SurfacePieces& surfacePieces() const;
 
   /// From now on whoever wants a box within this one gets the tracer's cache of this one, so that poses share it.
   /// Nobody else may use the scene meanwhile. Throws Error where the box is beside the volume.
   void shareRegion(const VoxelBox& box);
+  /// Whether a box lies within that one.
+  bool sharesRegion(const VoxelBox& box) const;
 
   /// The tracer's cache for the box (clipped to the volume), kept until another box is asked for.
   std::shared_ptr<const RegionOnDemand> regionOnDemand(const VoxelBox& box, const Progress& progress = {}) const;
@@ -140,7 +141,6 @@ private:
   mutable std::vector<std::unique_ptr<SurfaceField>> surfaces_; // parallel to volume_.labels
   mutable std::unique_ptr<FibreField> fibres_;
   mutable std::unique_ptr<SurfacePieces> pieces_;
-  mutable std::unique_ptr<SurfacePieces> devicePieces_;
   mutable SharedRegion region_;
   mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest
 };

@@ -19,7 +19,7 @@ struct RowSums
 
   /// Of `count` places from `first` on, a step of 1 apart: weights, and products of weight and height. The arrays go on
   /// to a multiple of `lanes` with weights of 0.
-  SONO_LANES RowSums(float first, int count, const float* weight, const float* weighted)
+  SONO_LANES_CALLED RowSums(float first, int count, const float* weight, const float* weighted)
   {
     Floats s[8] = {};
     Floats at;
@@ -62,7 +62,7 @@ class NormalEquations
 {
 public:
   /// A row of data at this y: sums of weight x^n, n = 0 to 4, and of weight height x^n, n = 0 to 2.
-  SONO_LANES void addRow(double y, const double* x, const double* height)
+  SONO_LANES_CALLED void addRow(double y, const double* x, const double* height)
   {
     const double y2 = y * y;
     const double m[15] = { x[0],      x[1],     y * x[0],  x[2],          y * x[1],
@@ -100,7 +100,7 @@ public:
   }
 
   /// In the first `count` terms, 3 or 6; false where the data do not tell them.
-  SONO_LANES bool solve(int count, Quadratic& out) const
+  SONO_LANES_CALLED bool solve(int count, Quadratic& out) const
   {
     // Products of the terms 1, x, y, x^2, x y, y^2 by the moments above.
     static constexpr int product[terms][terms] = { { 0, 1, 2, 3, 4, 5 },    { 1, 3, 4, 6, 7, 8 },
@@ -109,12 +109,15 @@ public:
     double a[terms][terms];
     double b[terms];
     double moment[15];
+    SONO_ROLLED
     for (int i = 0; i < 15; ++i)
     {
       moment[i] = wholeSum(moment_[i]);
     }
+    SONO_ROLLED
     for (int r = 0; r < count; ++r)
     {
+      SONO_ROLLED
       for (int c = 0; c < count; ++c)
       {
         a[r][c] = moment[product[r][c]];
@@ -122,15 +125,18 @@ public:
       b[r] = wholeSum(right_[r]);
     }
     // Positive definite: no pivoting.
+    SONO_ROLLED
     for (int r = 0; r < count; ++r)
     {
       if (!(a[r][r] > 1e-9 * moment[product[r][r]]))
       {
         return false;
       }
+      SONO_ROLLED
       for (int q = r + 1; q < count; ++q)
       {
         const double m = a[q][r] / a[r][r];
+        SONO_ROLLED
         for (int c = r; c < count; ++c)
         {
           a[q][c] -= m * a[r][c];
@@ -138,8 +144,10 @@ public:
         b[q] -= m * b[r];
       }
     }
+    SONO_ROLLED
     for (int r = count - 1; r >= 0; --r)
     {
+      SONO_ROLLED
       for (int c = r + 1; c < count; ++c)
       {
         b[r] -= a[r][c] * b[c];
@@ -201,8 +209,8 @@ public:
 
   /// Data at one y: `count` places x from `first` on, a step of 1 apart: the heights of z^2, weights, and products of
   /// weight and the height to fit. The arrays go on to a multiple of `lanes` with weights of 0.
-  SONO_LANES void addRow(float first, float y, int count, const float* height, const float* weight,
-                         const float* weighted)
+  SONO_LANES_CALLED void addRow(float first, float y, int count, const float* height, const float* weight,
+                                const float* weighted)
   {
     Floats s[9] = {}; // sums of w, w x, w x^2, w q, w x q, w q^2, w h, w x h, w q h with q = x^2 + h^2
     Floats x;
@@ -237,25 +245,30 @@ public:
     addSums(t, y * v_);
   }
 
-  SONO_LANES bool solve(Shape& out)
+  SONO_LANES_CALLED bool solve(Shape& out)
   {
     double a[4][5];
+    SONO_ROLLED
     for (int r = 0; r < 4; ++r)
     {
+      SONO_ROLLED
       for (int c = r; c < 5; ++c)
       {
         a[r][c] = wholeSum(a_[r][c]);
       }
     }
+    SONO_ROLLED
     for (int r = 0; r < 4; ++r)
     {
       if (!(a[r][r] > 1e-9))
       {
         return false;
       }
+      SONO_ROLLED
       for (int q = r + 1; q < 4; ++q)
       {
         const double m = a[r][q] / a[r][r];
+        SONO_ROLLED
         for (int c = q; c < 5; ++c)
         {
           a[q][c] -= m * a[r][c];
@@ -263,9 +276,11 @@ public:
       }
     }
     double b[4];
+    SONO_ROLLED
     for (int r = 3; r >= 0; --r)
     {
       b[r] = a[r][4];
+      SONO_ROLLED
       for (int c = r + 1; c < 4; ++c)
       {
         b[r] -= a[r][c] * b[c];
@@ -308,8 +323,8 @@ private:
 /// plane is a wave as long as a window; the barrier -log(1 - e^2), e the distance over half a voxel, does not. Beyond
 /// `wall` it goes on as a parabola, so that a shape may start outside. A ball is linear in its terms by the height of
 /// the step in place of its own.
-SONO_LANES inline void pull(const Shape& shape, int radius, int j, const float* height, const float* weight,
-                            float* stiffness, float* force)
+SONO_LANES_CALLED inline void pull(const Shape& shape, int radius, int j, const float* height, const float* weight,
+                                   float* stiffness, float* force)
 {
   constexpr float wall = 0.95f;
   const float k0 = shape.q.at(0.0f, float(j));

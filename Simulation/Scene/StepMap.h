@@ -36,8 +36,8 @@ constexpr float settledStep = 1e-3f; // voxels
 /// A window needs this share of its columns, and that to count fully.
 constexpr float fewestSeen = 0.5f;
 constexpr float enoughSeen = 0.75f;
-constexpr std::int16_t unknown = -32768; // step of a column outside of the volume
-constexpr int mostStep = 2;              // voxels from a column's step to its neighbour's
+constexpr std::int8_t unknown = -128; // step of a column outside of the volume
+constexpr int mostStep = 2;           // voxels from a column's step to its neighbour's
 
 /// Steps of the columns around a face, relative to its own: how many voxels along the axis they lie further.
 class StepMap
@@ -60,7 +60,7 @@ public:
 
   /// Fills the rings [first, last] around the face above `voxel`, those before them being filled: a column is known
   /// where it has a step from the same tissue to the same other one, near that of its neighbour further in.
-  SONO_LANES void gather(const Vec3i& voxel, int axis, int first, int last)
+  SONO_LANES_CALLED void gather(const Vec3i& voxel, int axis, int first, int last)
   {
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
@@ -71,7 +71,12 @@ public:
     const std::ptrdiff_t base = voxel.x + pitch_[1] * voxel.y + pitch_[2] * voxel.z;
     for (int r = first; r <= last; ++r)
     {
-      const auto find = [&](int i, int j) {
+      // The ring's places, side by side.
+      forEach(8 * r, [&](int place) {
+        const int side = place / (2 * r);
+        const int n = place - side * 2 * r - r;
+        const int i = side == 0 ? n : (side == 1 ? r : (side == 2 ? -n : -r));
+        const int j = side == 0 ? -r : (side == 1 ? n : (side == 2 ? r : -n));
         step(i, j) = unknown;
         const int from = step(i == r ? r - 1 : (i == -r ? 1 - r : i), j == r ? r - 1 : (j == -r ? 1 - r : j));
         if (from == unknown || unsigned(voxel[u] + i) >= unsigned(size_[u]) ||
@@ -82,27 +87,17 @@ public:
         for (int n = 0; n <= 2 * mostStep; ++n)
         {
           const int h = from + ((n & 1) ? (n + 1) / 2 : -n / 2);
-          const int place = voxel[axis] + h;
-          if (place < 0 || place + 1 >= size_[axis])
+          const int at = voxel[axis] + h;
+          if (at < 0 || at + 1 >= size_[axis])
           {
             continue;
           }
           const std::uint8_t* t = tissues_ + base + i * pitch_[u] + j * pitch_[v] + h * pitch_[axis];
           if (t[0] == below && t[pitch_[axis]] == above)
           {
-            step(i, j) = std::int16_t(h);
+            step(i, j) = std::int8_t(h);
             return;
           }
-        }
-      };
-      forEach(2 * r + 1, [&](int place) {
-        const int n = place - r;
-        find(n, -r);
-        find(n, r);
-        if (n > -r && n < r)
-        {
-          find(-r, n);
-          find(r, n);
         }
       });
     }
@@ -157,40 +152,9 @@ public:
     return true;
   }
 
-  /// From the mean place of the tissue below to that of the one above, in the 5 x 5 x 4 voxels around a face; in
-  /// voxels, any length.
-  SONO_LANES Vec3f coarseNormal(const Vec3i& voxel, int axis) const
-  {
-    Vec3i low = voxel - 2;
-    Vec3i high = voxel + 2;
-    low[axis] = voxel[axis] - 1;
-    Vec3i next = voxel;
-    ++next[axis];
-    const std::uint8_t below = at(voxel);
-    const std::uint8_t above = at(next);
-    Vec3f middle(voxel);
-    middle[axis] += 0.5f;
-    low = glm::max(low, Vec3i(0));
-    high = glm::min(high, size_ - 1);
-    Vec3f sum(0.0f);
-    for (int k = low.z; k <= high.z; ++k)
-    {
-      for (int j = low.y; j <= high.y; ++j)
-      {
-        for (int i = low.x; i <= high.x; ++i)
-        {
-          const std::uint8_t t = at(Vec3i(i, j, k));
-          const float sign = t == above ? 1.0f : (t == below ? -1.0f : 0.0f);
-          sum += sign * (Vec3f(i, j, k) - middle);
-        }
-      }
-    }
-    return sum;
-  }
-
 private:
   /// Of a window's weight.
-  SONO_LANES float knownShare(int radius)
+  SONO_LANES_CALLED float knownShare(int radius)
   {
     Floats known{};
     for (int j = -radius; j <= radius; ++j)
@@ -226,29 +190,32 @@ private:
   /// False where there are too few data.
   SONO_LANES bool leastSquares(int radius, float u, float v, Start& start)
   {
-    const NormalEquations equations = equationsOf(radius);
+    sumSteps(radius, start.equations);
     Shape plane{};
-    if (!equations.solve(3, plane.q))
+    if (!start.equations.solve(3, plane.q))
     {
       return false;
     }
-    Shape ball{};
-    Shape bent{};
-    if (isNear(plane, radius))
+    start.shape = plane;
+    start.kind = Kind::Plane;
+    if (isNear(start.shape, radius))
     {
-      start = { equations, plane, Kind::Plane };
+      return true;
     }
-    else if (fitBall(radius, u, v, ball) && isNear(ball, radius))
+    start.kind = Kind::Ball;
+    if (fitBall(radius, u, v, start.shape) && isNear(start.shape, radius))
     {
-      start = { equations, ball, Kind::Ball };
+      return true;
     }
-    else if (equations.solve(terms, bent.q))
+    start.shape = {};
+    start.kind = Kind::None;
+    if (!start.equations.solve(terms, start.shape.q))
     {
-      start = { equations, bent, isNear(bent, radius) ? Kind::Bent : Kind::None };
+      start.shape = plane;
     }
-    else
+    else if (isNear(start.shape, radius))
     {
-      start = { equations, plane, Kind::None };
+      start.kind = Kind::Bent;
     }
     return true;
   }
@@ -259,7 +226,7 @@ private:
   }
 
   /// The smoothest of plane, ball and quadratic, each in front of the next as far as it agrees; how well they do.
-  SONO_LANES float settle(int radius, float u, float v, const Start& start, Quadratic& out)
+  SONO_LANES_CALLED float settle(int radius, float u, float v, const Start& start, Quadratic& out)
   {
     Shape shape = start.shape;
     out = shape.q;
@@ -315,10 +282,10 @@ private:
     float excess[allColumns + lanes];
   };
 
-  SONO_LANES void loadRow(int radius, int j)
+  SONO_LANES_CALLED void loadRow(int radius, int j)
   {
     const int pitch = 2 * radius + 1;
-    const std::int16_t* steps = stepsOf(radius, j);
+    const std::int8_t* steps = stepsOf(radius, j);
     const float* weight = window_[radius].weight + pitch * (j + radius);
     float* heights = row_.height;
     float* weights = row_.weight;
@@ -334,7 +301,7 @@ private:
   }
 
   /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
-  SONO_LANES float settleQuadratic(int radius, int count, Shape& shape)
+  SONO_LANES_CALLED float settleQuadratic(int radius, int count, Shape& shape)
   {
     NormalEquations equations;
     for (int j = -radius; j <= radius; ++j)
@@ -360,7 +327,7 @@ private:
            r * r * (std::fabs(d.c3) + std::fabs(d.c4) + std::fabs(d.c5));
   }
 
-  SONO_LANES bool fitBall(int radius, float u, float v, Shape& ball)
+  SONO_LANES_CALLED bool fitBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
     for (int j = -radius; j <= radius; ++j)
@@ -372,7 +339,7 @@ private:
     return equations.solve(ball);
   }
 
-  SONO_LANES float settleBall(int radius, float u, float v, Shape& ball)
+  SONO_LANES_CALLED float settleBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
     for (int j = -radius; j <= radius; ++j)
@@ -392,9 +359,8 @@ private:
   }
 
   /// Least squares of the steps alone.
-  SONO_LANES NormalEquations equationsOf(int radius)
+  SONO_LANES_CALLED void sumSteps(int radius, NormalEquations& equations)
   {
-    NormalEquations equations;
     for (int j = -radius; j <= radius; ++j)
     {
       loadRow(radius, j);
@@ -402,7 +368,6 @@ private:
       const RowSums sums(-radius, 2 * radius + 1, row_.weight, row_.force);
       equations.addRow(j, sums.x, sums.height);
     }
-    return equations;
   }
 
   SONO_LANES void weigh(int count)
@@ -417,7 +382,7 @@ private:
   }
 
   /// The largest distance from the fit beyond a step's rounding, voxels; not much more is looked at than `enough`.
-  SONO_LANES float excess(const Shape& shape, int radius, float enough)
+  SONO_LANES_CALLED float excess(const Shape& shape, int radius, float enough)
   {
     const int pitch = 2 * radius + 1;
     Floats largest{};
@@ -425,7 +390,7 @@ private:
     {
       const int j = (n & 1) ? -(n + 1) / 2 : n / 2; // the middle first, where most misfits show
       const float* strictness = window_[radius].strictness + pitch * (j + radius);
-      const std::int16_t* steps = stepsOf(radius, j);
+      const std::int8_t* steps = stepsOf(radius, j);
       const float k0 = shape.q.at(0.0f, float(j));
       const float k1 = shape.q.c1 + shape.q.c5 * float(j);
       const float k2 = shape.q.c3;
@@ -454,16 +419,16 @@ private:
   }
 
   SONO_LANES static std::size_t indexOf(int i, int j) { return std::size_t(i + widest + allColumns * (j + widest)); }
-  SONO_LANES std::int16_t& step(int i, int j) { return steps_[indexOf(i, j)]; }
+  SONO_LANES std::int8_t& step(int i, int j) { return steps_[indexOf(i, j)]; }
   /// Of a window's row, from its first column on.
-  SONO_LANES const std::int16_t* stepsOf(int radius, int j) const { return &steps_[indexOf(-radius, j)]; }
+  SONO_LANES const std::int8_t* stepsOf(int radius, int j) const { return &steps_[indexOf(-radius, j)]; }
 
   const std::uint8_t* tissues_;
   Vec3i size_;
   const Window* window_; ///< by radius
   std::ptrdiff_t pitch_[3];
-  Row row_;                                                              ///< that is looked at
-  std::array<std::int16_t, std::size_t(allColumns) * allColumns> steps_; // what is not gathered is not read
+  Row row_;                                                             ///< that is looked at
+  std::array<std::int8_t, std::size_t(allColumns) * allColumns> steps_; // what is not gathered is not read
 };
 
 } // namespace SONO_LANES_NAMESPACE

@@ -1,12 +1,10 @@
 #include "Scene/SurfacePieces.h"
 
-#include "Core/ParallelFor.h"
 #include "Core/Simd.h"
+#include "Scene/FindFace.h"
 #include "Scene/FitPiece.h"
 
 #include <algorithm>
-#include <iterator>
-#include <numeric>
 
 namespace sono {
 
@@ -14,8 +12,7 @@ namespace {
 
 using namespace stepfit;
 
-constexpr float certainlyNot = 0.25f; // facing of a coarse normal along the column: of the piece's less than 0.5
-const SurfacePiece noPiece{};         // stands where columns of another axis do
+const SurfacePiece noPiece{}; // stands where columns of another axis do
 
 SONO_SIMD_CLONES __attribute__((flatten)) SurfacePiece fitByVectors(const std::uint8_t* tissues, const Vec3i& size,
                                                                     const Vec3f& spacing, const SurfaceFace& face)
@@ -42,7 +39,6 @@ SurfacePieces::SurfacePieces(const std::uint8_t* tissues, const Vec3i& size, con
   , bricks_(Vec3i(glm::floor(sizeMm_ / edgeMm_)) + 1)
   , blocks_((bricks_ - 1) / blockBricks + 1)
   , made_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z))
-  , whole_(std::size_t(blockCount()))
 {
 }
 
@@ -103,21 +99,15 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
   const SurfacePiece* piece = place.load(std::memory_order_acquire);
   if (!piece)
   {
-    piece = keep(fitByVectors(tissues_, size_, spacingMm_, there.faces[face]), place);
+    // Of two threads that make the same piece one is too late.
+    const SurfacePiece made = fitByVectors(tissues_, size_, spacingMm_, there.faces[face]);
+    auto mine = made.share > 0.0f ? std::make_unique<SurfacePiece>(made) : nullptr;
+    if (place.compare_exchange_strong(piece, mine ? mine.get() : &noPiece, std::memory_order_acq_rel))
+    {
+      piece = mine ? mine.release() : &noPiece;
+    }
   }
   return piece == &noPiece ? nullptr : piece;
-}
-
-/// What is there afterwards: of two threads that make the same piece one is too late.
-const SurfacePiece* SurfacePieces::keep(const SurfacePiece& made, std::atomic<const SurfacePiece*>& place) const
-{
-  auto mine = made.share > 0.0f ? std::make_unique<SurfacePiece>(made) : nullptr;
-  const SurfacePiece* piece = nullptr;
-  if (place.compare_exchange_strong(piece, mine ? mine.get() : &noPiece, std::memory_order_acq_rel))
-  {
-    piece = mine ? mine.release() : &noPiece;
-  }
-  return piece;
 }
 
 Vec3f SurfacePieces::middleMm(const Face& face) const
@@ -137,132 +127,28 @@ int SurfacePieces::blockOf(const Vec3i& brick) const
   return block.x + blocks_.x * (block.y + blocks_.y * block.z);
 }
 
-void SurfacePieces::forBricksOf(
-  int block, const std::function<void(const Vec3i& brick, const std::vector<SurfacePiece>&)>& visit) const
+Vec3i SurfacePieces::firstBrick(int block) const
 {
-  std::vector<SurfacePiece> pieces;
-  for (const Vec3i& brick : bricksOf(block))
-  {
-    pieces.clear();
-    for (std::size_t face = 0; face < faces(brick).size(); ++face)
-    {
-      if (const SurfacePiece* piece = this->piece(brick, face))
-      {
-        pieces.push_back(*piece);
-      }
-    }
-    if (!pieces.empty())
-    {
-      visit(brick, pieces);
-    }
-  }
-}
-
-std::vector<Vec3i> SurfacePieces::bricksOf(int block) const
-{
-  const Vec3i first =
-    blockBricks * Vec3i(block % blocks_.x, block / blocks_.x % blocks_.y, block / blocks_.x / blocks_.y);
-  const Vec3i end = glm::min(first + blockBricks, bricks_);
-  std::vector<Vec3i> bricks;
-  for (int k = first.z; k < end.z; ++k)
-  {
-    for (int j = first.y; j < end.y; ++j)
-    {
-      for (int i = first.x; i < end.x; ++i)
-      {
-        bricks.emplace_back(i, j, k);
-      }
-    }
-  }
-  return bricks;
-}
-
-void SurfacePieces::makeBlocks(const std::vector<int>& blocks, const Fit& fit) const
-{
-  std::vector<int> missing;
-  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(missing),
-               [&](int block) { return !whole_[std::size_t(block)].load(std::memory_order_acquire); });
-  if (missing.empty())
-  {
-    return;
-  }
-  if (fit)
-  {
-    fitBlocks(missing, fit);
-  }
-  else
-  {
-    parallelFor(int(missing.size()), {}, [&](int n) {
-      forBricksOf(missing[std::size_t(n)], [](const Vec3i&, const std::vector<SurfacePiece>&) {});
-    });
-  }
-  for (const int block : missing)
-  {
-    whole_[std::size_t(block)].store(true, std::memory_order_release);
-  }
-}
-
-void SurfacePieces::fitBlocks(const std::vector<int>& blocks, const Fit& fit) const
-{
-  std::vector<std::size_t> first(blocks.size() + 1, 0); // face of each block
-  parallelFor(int(blocks.size()), {}, [&](int n) {
-    for (const Vec3i& brick : bricksOf(blocks[std::size_t(n)]))
-    {
-      first[std::size_t(n) + 1] += faces(brick).size();
-    }
-  });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Face> all(first.back());
-  parallelFor(int(blocks.size()), {}, [&](int n) {
-    auto to = all.begin() + std::ptrdiff_t(first[std::size_t(n)]);
-    for (const Vec3i& brick : bricksOf(blocks[std::size_t(n)]))
-    {
-      to = std::copy(faces(brick).begin(), faces(brick).end(), to);
-    }
-  });
-  const std::vector<SurfacePiece> made = fit(all);
-  parallelFor(int(blocks.size()), {}, [&](int n) {
-    std::size_t next = first[std::size_t(n)];
-    for (const Vec3i& brick : bricksOf(blocks[std::size_t(n)]))
-    {
-      for (std::size_t face = 0; face < faces(brick).size(); ++face)
-      {
-        keep(made[next++], at(brick)->pieces[face]);
-      }
-    }
-  });
+  return blockBricks * Vec3i(block % blocks_.x, block / blocks_.x % blocks_.y, block / blocks_.x / blocks_.y);
 }
 
 std::vector<SurfacePieces::Face> SurfacePieces::findFaces(const Vec3i& brick) const
 {
   std::vector<Face> faces;
-  const StepMap map(tissues_, size_, hostWindows());
-  const Vec3f low = Vec3f(brick) * edgeMm_ / spacingMm_ - 0.5f;
-  const Vec3f high = Vec3f(brick + 1) * edgeMm_ / spacingMm_ - 0.5f;
-  const Vec3i first = glm::max(Vec3i(glm::ceil(low)), Vec3i(0));
-  const Vec3i last = glm::min(Vec3i(glm::ceil(high)), size_);
-  for (int k = first.z; k < last.z; ++k)
+  const TissueVolume volume{ tissues_, size_ };
+  const BrickVoxels voxels(brick, brick + 1, edgeMm_, spacingMm_, size_);
+  for (int k = voxels.first.z; k < voxels.last.z; ++k)
   {
-    for (int j = first.y; j < last.y; ++j)
+    for (int j = voxels.first.y; j < voxels.last.y; ++j)
     {
-      for (int i = first.x; i < last.x; ++i)
+      for (int i = voxels.first.x; i < voxels.last.x; ++i)
       {
-        const Vec3i voxel(i, j, k);
         for (int axis = 0; axis < 3; ++axis)
         {
-          Vec3i next = voxel;
-          ++next[axis];
-          if (next[axis] >= size_[axis] || map.at(voxel) == map.at(next))
+          Face face;
+          if (findFace(volume, spacingMm_, Vec3i(i, j, k), axis, face))
           {
-            continue;
-          }
-          const Vec3f coarse = map.coarseNormal(voxel, axis);
-          const float length = glm::length(coarse);
-          const bool isThin = !(length > 1e-3f) || coarse[axis] <= 0.0f;
-          if (isThin || coarse[axis] >= certainlyNot * length)
-          {
-            faces.push_back({ voxel, isThin ? Vec3f(0.0f) : glm::normalize(coarse / spacingMm_), std::uint8_t(axis),
-                              map.at(voxel), map.at(next) });
+            faces.push_back(face);
           }
         }
       }

@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -48,14 +47,8 @@ public:
   int blockCount() const { return blocks_.x * blocks_.y * blocks_.z; }
   /// The block of a brick; -1: outside of the volume.
   int blockOf(const Vec3i& brick) const;
-  /// Fits pieces to faces, as many; share 0 where columns of another axis stand for one.
-  using Fit = std::function<std::vector<SurfacePiece>(const std::vector<Face>&)>;
-  /// Makes all pieces of these blocks. Without a `fit` all cores do; one that comes from elsewhere must agree but for
-  /// rounding.
-  void makeBlocks(const std::vector<int>& blocks, const Fit& fit = {}) const;
-  /// Visits the pieces of a block, brick by brick, those bricks that have any.
-  void forBricksOf(int block,
-                   const std::function<void(const Vec3i& brick, const std::vector<SurfacePiece>&)>& visit) const;
+  /// The first brick of a block.
+  Vec3i firstBrick(int block) const;
   /// None outside of the volume. Stays where it is while this lives.
   const std::vector<Face>& faces(const Vec3i& brick) const;
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
@@ -72,9 +65,6 @@ private:
   };
 
   const Brick* at(const Vec3i& brick) const;
-  std::vector<Vec3i> bricksOf(int block) const;
-  void fitBlocks(const std::vector<int>& blocks, const Fit& fit) const;
-  const SurfacePiece* keep(const SurfacePiece& made, std::atomic<const SurfacePiece*>& place) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
 
   std::uint64_t id_;
@@ -86,7 +76,6 @@ private:
   Vec3i bricks_;
   Vec3i blocks_;
   mutable std::vector<std::atomic<const Brick*>> made_;
-  mutable std::vector<std::atomic<bool>> whole_; ///< blocks of which all pieces are there
 };
 
 } // namespace sono

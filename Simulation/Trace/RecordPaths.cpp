@@ -82,7 +82,7 @@ PathKey keyOf(const TraceSetup& setup, int line, int number)
     --batch;
   }
   const int within = number - batchRange(setup.paths, batches, batch).first;
-  return { std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within) };
+  return { std::uint32_t(line), std::uint32_t(batch), std::uint32_t(within), setup.seed };
 }
 
 /// The `number`-th path of a line. Less than two corners where there is nothing to follow.

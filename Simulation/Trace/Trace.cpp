@@ -269,14 +269,15 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     const int last = batchRange(round.paths, batches, batch).count();
     for (std::size_t b = 0; b < scrambles.size(); ++b)
     {
-      scrambles[b] = makeScramble(view, std::uint32_t(index), std::uint32_t(batch), int(b));
+      scrambles[b] = makeScramble(view, setup.seed, std::uint32_t(index), std::uint32_t(batch), int(b));
     }
     for (int path = first; path < last;)
     {
       const int pause = std::min(last, path + pathsPerFold); // a few milliseconds' worth
       for (; path < pause; ++path)
       {
-        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path), scrambles.data() };
+        const PathKey key{ std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path), setup.seed,
+                           scrambles.data() };
         if (view.startsApart)
         {
           const TraceLine own = pathLine(view, line, key);

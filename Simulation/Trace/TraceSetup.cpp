@@ -113,7 +113,6 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.depthMm = float(settings.pathDepthMm());
   // The deterministic path has nothing to play with.
   view.rouletteIntensity = settings.deterministic ? 0.0f : float(std::pow(10.0, settings.rouletteDb / 20.0));
-  view.seed = settings.seed;
   return view;
 }
 
@@ -222,6 +221,7 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     throw Error("no scan line meets the label map: move the probe onto the skin or increase the depth");
   }
   paths = settings.pathsAtMost();
+  seed = settings.seed;
   frequencyMHz = settings.frequencyMHz;
 }
 

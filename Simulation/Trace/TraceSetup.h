@@ -47,6 +47,7 @@ struct TraceSetup
   Mat3d toWorld;
   Vec3d cornerWorldMm;
   int paths;
+  std::uint64_t seed;
   double frequencyMHz;
 };
 

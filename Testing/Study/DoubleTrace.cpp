@@ -40,7 +40,6 @@ kernel::TraceView makeView(const DoubleInput& input, const std::vector<kernel::T
   view.maxCollisions = int(setting("maxCollisions"));
   view.coherenceMm = setting("coherenceMm");
   view.depthMm = input.depthMm;
-  view.seed = std::uint64_t(std::int64_t(setting("pathSeed")));
   return view;
 }
 
@@ -114,20 +113,21 @@ void traceLine(const DoubleInput& input, const kernel::TraceView& view, const Sp
   }
   tally.setEchoWeight(1.0 / input.paths);
   const int batches = std::min(kernel::batchCount, input.paths);
+  const auto seed = std::uint64_t(std::int64_t(input.settings.at("pathSeed")));
   std::vector<kernel::BounceScramble> scrambles(std::size_t(view.maxCollisions));
   for (int batch = 0; batch < batches; ++batch)
   {
     const kernel::PathRange range = kernel::batchRange(input.paths, batches, batch);
     for (std::size_t b = 0; b < scrambles.size(); ++b)
     {
-      scrambles[b] =
-        kernel::makeBounceScramble(view.seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
+      scrambles[b] = kernel::makeBounceScramble(seed, std::uint32_t(index), std::uint32_t(batch), std::uint32_t(b));
     }
     for (int path = range.first; path < range.last; ++path)
     {
       kernel::tracePath(
         view, space, line, start,
-        { std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - range.first), scrambles.data() }, tally);
+        { std::uint32_t(index), std::uint32_t(batch), std::uint32_t(path - range.first), seed, scrambles.data() },
+        tally);
     }
     means.push_back(tally.takeBins(range.last - range.first));
   }

@@ -64,7 +64,7 @@ void traceLines(const TraceSetup& setup, const TraceSettings& tracing, const Sho
       {
         start = startLine(setup.view, space, setup.lines[i], tally);
       }
-      const PathKey key{ std::uint32_t(i), 0u, std::uint32_t(path) };
+      const PathKey key{ std::uint32_t(i), 0u, std::uint32_t(path), setup.seed };
       if (cuts.limits)
       {
         tracePath(setup.view, space, setup.lines[i], start, key, tally);
