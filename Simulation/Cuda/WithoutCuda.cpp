@@ -61,6 +61,11 @@ std::shared_ptr<const DeviceLabelSlice> DeviceImager::slice(const LabelJob&, con
   return nullptr;
 }
 
+FetchedArrivals DeviceImager::fetchArrivals(const DeviceTraced&)
+{
+  return {};
+}
+
 FetchedTrace DeviceImager::fetch(const DeviceTraced&)
 {
   return {};
