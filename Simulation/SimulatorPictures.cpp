@@ -10,6 +10,7 @@
 #include "Trace/TraceSetup.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace sono {
@@ -20,11 +21,10 @@ using Inputs = std::vector<const ImageInput*>;
 bool canGoTogether(const Scene& scene, const ImageInput& input)
 {
   const ImageSettings& settings = input.settings;
-  const auto lines = [&] { return makeScanLines(settings.geometry, input.pose); };
   // One that prepares a region of its own would have others share it, and be rounded otherwise than alone.
   return runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda && !settings.tracing.refines() &&
          settings.tracing.imagingMode == ImagingMode::Fundamental && input.targets.empty() && !input.points &&
-         scene.sharesRegion(fanBox(scene, lines(), settings.tracing));
+         scene.sharesRegion(fanBox(scene, makeScanLines(settings.geometry, input.pose), settings.tracing));
 }
 
 /// But for what each image of a group may have to itself.
@@ -34,16 +34,18 @@ bool sameStages(ImageSettings a, const ImageSettings& b)
   return same(a.tracing, b.tracing) && same(a.echo, b.echo) && same(a.geometry, b.geometry) && a.pixelMm == b.pixelMm;
 }
 
+/// The values of one of so many images.
 template<class T>
-SharedSpan<T> partOf(const SharedSpan<T>& all, std::size_t part, std::size_t count)
+SharedSpan<T> imageOf(const SharedSpan<T>& all, std::size_t image, std::size_t images)
 {
-  return { std::shared_ptr<const T>(all.data, all.data.get() + part * count), count };
+  const std::size_t count = all.size / images;
+  return { std::shared_ptr<const T>(all.data, all.data.get() + image * count), count };
 }
 
-std::vector<float> partOf(const std::vector<float>& all, std::size_t part, std::size_t parts)
+std::vector<float> imageOf(const std::vector<float>& all, std::size_t image, std::size_t images)
 {
-  const std::size_t count = all.size() / parts;
-  const auto from = all.begin() + std::ptrdiff_t(part * count);
+  const std::size_t count = all.size() / images;
+  const auto from = all.begin() + std::ptrdiff_t(image * count);
   return { from, from + std::ptrdiff_t(count) };
 }
 
@@ -66,13 +68,13 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
   DeviceImager& imager = DeviceImager::instance();
   std::shared_ptr<const TraceJob> traceJob;
   {
-    const TraceSetup setup(scene, lines, settings.tracing, {}, sono::partOf(progress, 0.0, 0.3));
+    const TraceSetup setup(scene, lines, settings.tracing, {}, partOf(progress, 0.0, 0.3));
     requireEachMeets(setup, group.size());
     TraceJob job = makeTraceJob(setup, settings.tracing, perImage);
     job.seeds = seeds;
     traceJob = std::make_shared<const TraceJob>(std::move(job));
   }
-  const auto traced = imager.trace(traceJob, { 0, int(lines.size()) }, sono::partOf(progress, 0.3, 0.5));
+  const auto traced = imager.trace(traceJob, { 0, int(lines.size()) }, partOf(progress, 0.3, 0.5));
   const EchoSources sources{ &scene, nullptr, points, settings.tracing.model, nullptr };
   const EchoSetup setup(sources, lines, echo, perImage);
   const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));
@@ -96,11 +98,11 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
   std::vector<SeenPicture> made;
   for (std::size_t i = 0; i < group.size(); ++i)
   {
-    const std::size_t pixels = copy.bytes.size / group.size();
     const auto arrived = std::make_shared<TracedLines>(layout);
-    arrived->intensity = partOf(arrivals.intensity, i, group.size());
-    arrived->depthOffsetMm = partOf(arrivals.depthOffsetMm, i, group.size());
-    made.push_back({ { partOf(copy.bytes, i, pixels), copy.mask, partOf(copy.labels, i, pixels) }, arrived });
+    arrived->intensity = imageOf(arrivals.intensity, i, group.size());
+    arrived->depthOffsetMm = imageOf(arrivals.depthOffsetMm, i, group.size());
+    made.push_back(
+      { { imageOf(copy.bytes, i, group.size()), copy.mask, imageOf(copy.labels, i, group.size()) }, arrived });
   }
   return made;
 }
@@ -110,25 +112,25 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
 std::vector<SeenPicture> Simulator::pictures(const std::vector<ImageInput>& inputs, const Progress& progress)
 {
   std::vector<SeenPicture> made(inputs.size());
+  std::vector<bool> canJoin;
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < inputs.size(); ++i)
   {
     inputs[i].settings.requireMatch();
     planeImageLayout(inputs[i].settings.geometry, inputs[i].settings.pixelMm); // throws for a matrix
+    canJoin.push_back(inputs.size() > 1 && canGoTogether(needScene(), inputs[i]));
     left.push_back(i);
   }
   while (!left.empty())
   {
-    const Progress ofGroup = sono::partOf(progress, 1.0 - double(left.size()) / double(inputs.size()), 1.0);
+    const Progress ofGroup = partOf(progress, 1.0 - double(left.size()) / double(inputs.size()), 1.0);
     const ImageInput& first = inputs[left.front()];
     std::vector<std::size_t> group{ left.front() };
     std::vector<std::size_t> others;
-    const bool together = inputs.size() > 1 && canGoTogether(needScene(), first);
-    const int most = together ? std::min(imagesTogether, imagesThatFit(first.settings)) : 1;
+    const int most = canJoin[left.front()] ? std::min(imagesTogether, imagesThatFit(first.settings)) : 1;
     for (auto i = left.begin() + 1; i != left.end(); ++i)
     {
-      const bool joins = int(group.size()) < most && sameStages(inputs[*i].settings, first.settings) &&
-                         canGoTogether(needScene(), inputs[*i]);
+      const bool joins = int(group.size()) < most && canJoin[*i] && sameStages(inputs[*i].settings, first.settings);
       (joins ? group : others).push_back(*i);
     }
     if (group.size() > 1)

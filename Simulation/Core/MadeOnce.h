@@ -46,10 +46,8 @@ public:
     }
     lock.lock();
     making_.erase(key);
-    lock.unlock();
     const Shared value = made.get();
-    lock.lock();
-    held_[key] = value;
+    held_[key] = value; // before anybody else looks
     return value;
   }
 

@@ -208,6 +208,7 @@ public:
     }
     size_ = count;
   }
+
   void clear(cudaStream_t stream)
   {
     if (size_ > 0)

@@ -114,9 +114,7 @@ __global__ void __launch_bounds__(threads) markHeardFaces(PieceHearers hearers, 
   {
     return;
   }
-  Vec3f middle = (Vec3f(face.voxel) + 0.5f) * spacingMm;
-  (face.axis == 0 ? middle.x : (face.axis == 1 ? middle.y : middle.z)) +=
-    0.5f * (face.axis == 0 ? spacingMm.x : (face.axis == 1 ? spacingMm.y : spacingMm.z));
+  const Vec3f middle = faceMiddleMm(face, spacingMm);
   for (int line = 0; line < hearers.lines; ++line)
   {
     Beam beam = hearers.splat.beams[line];
@@ -271,6 +269,25 @@ void DevicePieces::takeFaces(const SurfaceJob& job, const std::uint8_t* voxels, 
   check(cudaMemsetAsync(state_.data() + before, unheard, std::size_t(count), stream), "clearing memory");
 }
 
+/// Of the numbers from 0 to count - 1 those that are wanted, in their order; how many.
+template<class IsWanted>
+int DevicePieces::select(int count, const IsWanted& isWanted, DeviceArray<int>& to, cudaStream_t stream,
+                         Traffic& traffic)
+{
+  to.resize(std::size_t(count));
+  count_.resize(1);
+  const thrust::counting_iterator<int> numbers(0);
+  const auto run = [&](void* scratch, std::size_t& bytes) {
+    check(cub::DeviceSelect::If(scratch, bytes, numbers, to.data(), count_.data(), count, isWanted, stream),
+          "looking for surfaces");
+  };
+  std::size_t bytes = 0;
+  run(nullptr, bytes);
+  scratch_.resize(bytes);
+  run(scratch_.data(), bytes);
+  return bring(count_.data(), stream, traffic);
+}
+
 /// How many faces there are to fit.
 int DevicePieces::markHeard(const SurfaceJob& job, const PieceHearers& hearers, cudaStream_t stream, Traffic& traffic)
 {
@@ -280,18 +297,7 @@ int DevicePieces::markHeard(const SurfaceJob& job, const PieceHearers& hearers, 
       hearers, faces_.data(), count, job.pieces->spacingMm(), 2.0f * job.longestStepMm, state_.data());
   });
   check(cudaGetLastError(), "looking for surfaces");
-  list_.resize(std::size_t(count));
-  count_.resize(1);
-  const thrust::counting_iterator<int> numbers(0);
-  std::size_t bytes = 0;
-  check(cub::DeviceSelect::If(nullptr, bytes, numbers, list_.data(), count_.data(), count, IsHeard{ state_.data() },
-                              stream),
-        "looking for surfaces");
-  scratch_.resize(bytes);
-  check(cub::DeviceSelect::If(scratch_.data(), bytes, numbers, list_.data(), count_.data(), count,
-                              IsHeard{ state_.data() }, stream),
-        "looking for surfaces");
-  return bring(count_.data(), stream, traffic);
+  return select(count, IsHeard{ state_.data() }, list_, stream, traffic);
 }
 
 /// The list's faces, behind the pieces before.
@@ -301,20 +307,10 @@ void DevicePieces::fit(const SurfaceJob& job, const std::uint8_t* voxels, int co
   DeviceArray<SurfacePiece> made;
   DeviceArray<int> kept;
   made.resize(std::size_t(count));
-  kept.resize(std::size_t(count));
   fitFaces<<<unsigned(count), lanes, 0, stream>>>(voxels, job.voxels.size, job.voxels.spacing, windows_.data(),
                                                   faces_.data(), list_.data(), state_.data(), made.data());
   check(cudaGetLastError(), "fitting surfaces");
-  const thrust::counting_iterator<int> numbers(0);
-  std::size_t bytes = 0;
-  check(
-    cub::DeviceSelect::If(nullptr, bytes, numbers, kept.data(), count_.data(), count, HasShare{ made.data() }, stream),
-    "fitting surfaces");
-  scratch_.resize(bytes);
-  check(cub::DeviceSelect::If(scratch_.data(), bytes, numbers, kept.data(), count_.data(), count,
-                              HasShare{ made.data() }, stream),
-        "fitting surfaces");
-  const int keptCount = bring(count_.data(), stream, traffic);
+  const int keptCount = select(count, HasShare{ made.data() }, kept, stream, traffic);
   if (keptCount > 0)
   {
     const std::size_t before = pieces_.size();
@@ -336,23 +332,24 @@ void DevicePieces::group(const SurfaceJob& job, cudaStream_t stream, Traffic& tr
     return;
   }
   DeviceArray<int> numbers;
+  DeviceArray<int> order;
   DeviceArray<int> sortedBricks;
   DeviceArray<SurfacePiece> sorted;
   numbers.resize(std::size_t(count));
-  order_.resize(std::size_t(count));
+  order.resize(std::size_t(count));
   sortedBricks.resize(std::size_t(count));
   sorted.resize(std::size_t(count));
   countUp<<<blocksFor(count), threads, 0, stream>>>(numbers.data(), count);
   const auto sort = [&](void* scratch, std::size_t& bytes) {
     check(cub::DeviceRadixSort::SortPairs(scratch, bytes, brickOfPiece_.data(), sortedBricks.data(), numbers.data(),
-                                          order_.data(), count, 0, 32, stream),
+                                          order.data(), count, 0, 32, stream),
           "ordering surfaces");
   };
   std::size_t bytes = 0;
   sort(nullptr, bytes);
   scratch_.resize(bytes);
   sort(scratch_.data(), bytes);
-  takeInOrder<<<blocksFor(count), threads, 0, stream>>>(pieces_.data(), order_.data(), count, sorted.data());
+  takeInOrder<<<blocksFor(count), threads, 0, stream>>>(pieces_.data(), order.data(), count, sorted.data());
   check(cudaGetLastError(), "ordering surfaces");
   pieces_ = std::move(sorted);
   brickOfPiece_ = std::move(sortedBricks);

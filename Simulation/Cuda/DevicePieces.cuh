@@ -51,6 +51,8 @@ private:
   int markHeard(const SurfaceJob& job, const PieceHearers& hearers, cudaStream_t stream, Traffic& traffic);
   void fit(const SurfaceJob& job, const std::uint8_t* voxels, int count, cudaStream_t stream, Traffic& traffic);
   void group(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
+  template<class IsWanted>
+  int select(int count, const IsWanted& isWanted, DeviceArray<int>& to, cudaStream_t stream, Traffic& traffic);
   int bring(const int* count, cudaStream_t stream, Traffic& traffic);
 
   DeviceArray<float> weight_, strictness_;
@@ -64,7 +66,7 @@ private:
   DeviceArray<int> brickOfPiece_;    ///< ascending
   DeviceArray<SurfaceGroup> groups_;
   // For a while.
-  DeviceArray<int> list_, count_, order_;
+  DeviceArray<int> list_, count_;
   DeviceArray<std::uint8_t> scratch_;
 };
 

@@ -218,24 +218,21 @@ void DeviceEcho::uploadNested(const EchoJob& echo, cudaStream_t stream, Traffic&
 
 namespace {
 
-/// Adds items [first, end), all of a brick, as groups.
-template<class Item, class Bounds>
-void addGroups(const std::vector<Item>& items, std::size_t first, std::size_t end, const Vec3f& brickMm,
-               const Bounds& ballOf, std::vector<SurfaceGroup>& groups)
+/// Adds the points of a brick as groups.
+void addGroups(const std::vector<SurfacePoint>& points, const TargetPointJob::Brick& brick,
+               std::vector<SurfaceGroup>& groups)
 {
-  while (first < end)
+  for (int first = brick.first; first < brick.end; first += warpLanes)
   {
-    const std::size_t last = std::min(end, first + std::size_t(warpLanes));
+    const int end = std::min(brick.end, first + warpLanes);
     Vec3f low(1e30f);
     Vec3f high(-1e30f);
-    for (std::size_t n = first; n < last; ++n)
+    for (int n = first; n < end; ++n)
     {
-      const auto [centre, radius] = ballOf(items[n]);
-      low = glm::min(low, centre - radius);
-      high = glm::max(high, centre + radius);
+      low = glm::min(low, points[std::size_t(n)].position);
+      high = glm::max(high, points[std::size_t(n)].position);
     }
-    groups.push_back({ brickMm, 0.5f * (low + high), 0.5f * glm::length(high - low), int(first), int(last - first) });
-    first = last;
+    groups.push_back({ brick.centreMm, 0.5f * (low + high), 0.5f * glm::length(high - low), first, end - first });
   }
 }
 
@@ -273,10 +270,9 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   {
     const TargetPointJob& targets = *job.targets;
     std::vector<SurfaceGroup> groups;
-    const auto ballOf = [](const SurfacePoint& point) { return std::pair<Vec3f, float>(point.position, 0.0f); };
     for (const TargetPointJob::Brick& brick : targets.bricks)
     {
-      addGroups(targets.points, std::size_t(brick.first), std::size_t(brick.end), brick.centreMm, ballOf, groups);
+      addGroups(targets.points, brick, groups);
     }
     targetPoints_.upload(targets.points, stream, traffic);
     targetGroups_.upload(groups, stream, traffic);

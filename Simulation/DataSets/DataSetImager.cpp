@@ -393,9 +393,7 @@ void DataSetImager::makeEach(const std::vector<std::int64_t>& indices, const Dat
         inputs, partOf(progress, done, done + 0.8 * double(together) / double(images.size())));
       for (std::size_t n = 0; n < together; ++n)
       {
-        DataSetImage f = finish(images[i + n], pictures[n]);
-
-        sink(images[i + n].facts.image.index, std::move(f));
+        sink(images[i + n].facts.image.index, finish(images[i + n], pictures[n]));
       }
     });
   }

@@ -141,7 +141,7 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
   for (const SurfacePieces::Face& face : faces)
   {
     const int row = rows_->row(face.below, face.above);
-    room.faces.push(pieces_.middleMm(face), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
+    room.faces.push(faceMiddleMm(face, pieces_.spacingMm()), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
   }
   room.mayBeHeard.assign(faces.size(), 0);
   for (const std::size_t i : seeing)

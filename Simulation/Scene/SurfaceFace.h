@@ -17,4 +17,11 @@ struct SurfaceFace
 };
 constexpr float roughNormalRad = 0.4f;
 
+SONO_HD inline Vec3f faceMiddleMm(const SurfaceFace& face, const Vec3f& spacingMm)
+{
+  const Vec3f half = Vec3f(0.5f) * spacingMm;
+  const Vec3f across(face.axis == 0 ? half.x : 0.0f, face.axis == 1 ? half.y : 0.0f, face.axis == 2 ? half.z : 0.0f);
+  return (Vec3f(face.voxel) + Vec3f(0.5f)) * spacingMm + across;
+}
+
 } // namespace sono

@@ -110,13 +110,6 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
   return piece == &noPiece ? nullptr : piece;
 }
 
-Vec3f SurfacePieces::middleMm(const Face& face) const
-{
-  Vec3f middle = (Vec3f(face.voxel) + 0.5f) * spacingMm_;
-  middle[face.axis] += 0.5f * spacingMm_[face.axis];
-  return middle;
-}
-
 int SurfacePieces::blockOf(const Vec3i& brick) const
 {
   if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))

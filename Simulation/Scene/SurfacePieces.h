@@ -53,7 +53,6 @@ public:
   const std::vector<Face>& faces(const Vec3i& brick) const;
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
-  Vec3f middleMm(const Face& face) const;
 
 private:
   struct Brick
