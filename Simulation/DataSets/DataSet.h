@@ -130,6 +130,8 @@ struct MaskGroup
 {
   std::string name;
   std::vector<std::string> labels; ///< patterns of words, see LabelTissueMap; the first group that fits a label has it
+  /// Of what an image holds of it: the probe is held anew where less lies in no shadow, see maskSufficiency().
+  double leastVisiblePercent = 0.0;
 };
 
 /// A data set as one file declares it. Data/datasets/schema.json and Data/docs/datasets.md say what each key means.

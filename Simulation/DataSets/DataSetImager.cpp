@@ -3,6 +3,7 @@
 #include "Core/MadeOnce.h"
 #include "Cuda/RunOnDevice.h"
 #include "DataSets/DataSetInfo.h"
+#include "DataSets/HoldProbe.h"
 #include "DataSets/ImageChannels.h"
 #include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
@@ -27,29 +28,6 @@ namespace {
 
 constexpr int mostAttempts = 32;
 constexpr const char* fallbackTissue = "soft_tissue";
-
-/// Rodrigues' formula; `axis` has length 1.
-Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
-{
-  const double angle = deg * M_PI / 180.0;
-  return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
-         axis * (glm::dot(axis, v) * (1.0 - std::cos(angle)));
-}
-
-ProbePose jittered(const ProbePose& view, const PoseJitter& jitter)
-{
-  const Vec3d elevation = glm::cross(view.axial, view.lateral);
-  ProbePose pose = view;
-  pose.positionMm += jitter.slideLateralMm * view.lateral + jitter.slideElevationMm * elevation;
-  const auto turn = [&](const Vec3d& axis, double deg) {
-    pose.axial = rotated(pose.axial, axis, deg);
-    pose.lateral = rotated(pose.lateral, axis, deg);
-  };
-  turn(view.lateral, jitter.tiltDeg);
-  turn(elevation, jitter.rockDeg);
-  turn(pose.axial, jitter.rotationDeg);
-  return pose.orthonormalized();
-}
 
 /// The mask's value of each label id.
 std::vector<std::uint8_t> groupsOf(const std::vector<LabelInfo>& labels, const std::vector<MaskGroup>& masks)
@@ -323,38 +301,63 @@ DataSetImager::PlacedImage DataSetImager::place(const PlannedImage& image)
   {
     throw Error("a matrix makes volumes; choose a probe with lines in a plane.");
   }
-  int& number = placed.facts.image.view;
-  while (!body_->views[std::size_t(number)].pose)
+  // Views of the body follow, where this one is not obtainable or shows too little.
+  const int count = int(body_->views.size());
+  double best = -1.0;
+  for (int i = 0; i < count && best < 1.0; ++i)
   {
-    number = (number + 1) % int(body_->views.size());
+    const int view = (image.view + i) % count;
+    if (body_->views[std::size_t(view)].pose)
+    {
+      hold(placed, view, best);
+    }
   }
-  const ProbePose view = *body_->views[std::size_t(number)].pose;
+  return placed;
+}
+
+/// Holds the probe for a view, in a better way than the best one until now if there is any, 1 being good enough.
+void DataSetImager::hold(PlacedImage& placed, int view, double& best)
+{
+  const Scene& scene = *body_->scene;
+  const ScanGeometry& geometry = placed.input.settings.geometry;
   const bool isCatheter = geometry.lineOrigin() == LineOrigin::Catheter;
   std::string why = "No surface of the body lies there.";
-  for (int attempt = 0; attempt < mostAttempts; ++attempt)
+  bool isHeld = false;
+  for (int attempt = 0; attempt < mostAttempts && best < 1.0; ++attempt)
   {
-    placed.facts.jitter = plan_->jitter(image.index, attempt);
-    ProbePose pose = jittered(view, placed.facts.jitter);
+    const PoseJitter jitter = plan_->jitter(placed.facts.image.index, attempt);
+    ProbePose pose = jittered(*body_->views[std::size_t(view)].pose, jitter);
     if (!isCatheter)
     {
-      const std::optional<ProbePose> onSkin = poseOnSkin(*body_->scene, pose);
+      const std::optional<ProbePose> onSkin = poseOnSkin(scene, pose);
       if (!onSkin)
       {
         continue;
       }
       pose = *onSkin;
     }
-    why = probeContactWarning(*body_->scene, makeScanLines(geometry, pose));
-    why = why.empty() ? probePlaceWarning(*body_->scene, geometry, pose) : why;
-    if (why.empty())
+    why = probeContactWarning(scene, makeScanLines(geometry, pose));
+    why = why.empty() ? probePlaceWarning(scene, geometry, pose) : why;
+    if (!why.empty())
     {
+      continue;
+    }
+    isHeld = true;
+    const double sufficiency = maskSufficiency(scene, body_->groups, plan_->set().masks, placed.input.settings, pose);
+    if (sufficiency > best)
+    {
+      best = sufficiency;
+      placed.facts.image.view = view;
+      placed.facts.jitter = jitter;
       placed.input.pose = placed.facts.pose = pose;
-      return placed;
     }
   }
-  throw Error("none of " + std::to_string(mostAttempts) + " poses drawn for view '" +
-              plan_->patientOf(image.body).views[std::size_t(number)].name +
-              "' stands on the skin; narrow 'jitter' or correct the view. " + why);
+  if (!isHeld)
+  {
+    throw Error("none of " + std::to_string(mostAttempts) + " poses drawn for view '" +
+                plan_->patientOf(body_->number).views[std::size_t(view)].name +
+                "' stands on the skin; narrow 'jitter' or correct the view. " + why);
+  }
 }
 
 DataSetImage DataSetImager::make(std::int64_t index, const Progress& progress)

@@ -76,6 +76,7 @@ private:
   template<class Do>
   void named(const PlannedImage& image, const Do& work) const;
   PlacedImage place(const PlannedImage& image);
+  void hold(PlacedImage& placed, int view, double& best);
   DataSetImage finish(const PlacedImage& placed, const SeenPicture& seen);
 
   std::shared_ptr<const DataSetPlan> plan_;

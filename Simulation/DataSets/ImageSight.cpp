@@ -21,6 +21,12 @@ const float* offsetsOf(const TracedLines& traced)
 
 } // namespace
 
+double ImageSight::leastIntensity(double frequencyMHz, double depthMm)
+{
+  const double db = -2.0 * softTissueDbPerCmMHz * frequencyMHz * depthMm / 10.0 - shadowDb; // there and back
+  return std::pow(10.0, db / 20.0);
+}
+
 ImageSight::ImageSight(const ImageSettings& settings, const ProbePose& pose, const PlaneImage& layout,
                        const TracedLines& traced)
   : traced_(traced)
@@ -31,10 +37,7 @@ ImageSight::ImageSight(const ImageSettings& settings, const ProbePose& pose, con
   const std::size_t bins = std::size_t(traced.binCount);
   for (std::size_t bin = 0; bin < bins; ++bin)
   {
-    // Echoes go there and back.
-    const double r = (double(bin) + 0.5) * traced.binMm;
-    const double db = -2.0 * softTissueDbPerCmMHz * settings.tracing.frequencyMHz * r / 10.0 - shadowDb;
-    leastIntensity_.push_back(std::pow(10.0, db / 20.0));
+    leastIntensity_.push_back(leastIntensity(settings.tracing.frequencyMHz, (double(bin) + 0.5) * traced.binMm));
   }
   clearByRange_.resize(std::size_t(traced.lineCount) * bins);
   for (std::size_t first = 0; first < clearByRange_.size(); first += bins)

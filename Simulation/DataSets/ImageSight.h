@@ -28,6 +28,9 @@ struct ImagePoint
 class ImageSight
 {
 public:
+  /// That is no shadow at a depth, one way.
+  static double leastIntensity(double frequencyMHz, double depthMm);
+
   /// `traced` are the geometry's lines and must live as long; `layout` is the picture's.
   ImageSight(const ImageSettings& settings, const ProbePose& pose, const PlaneImage& layout, const TracedLines& traced);
 

@@ -331,7 +331,8 @@ void readMasks(StrictObject& root, DataSet& set)
 {
   for (StrictObject& object : root.objects("masks"))
   {
-    set.masks.push_back({ object.text("name"), object.texts("labels") });
+    set.masks.push_back({ object.text("name"), object.texts("labels"),
+                          object.numberOr("leastVisiblePercent", between(0.0, 100.0), 0.0) });
     object.refuseOthers();
     for (std::size_t i = 0; i + 1 < set.masks.size(); ++i)
     {

@@ -380,6 +380,57 @@ TEST_F(DataSetFolder, SaysWhichImageCannotBeMade)
   expectContains(errorOf([&] { write("out2"); }), "patient 'ball' has no label of any group of 'masks'");
 }
 
+/// Bone lies before one half of the ball: a hand that slides over it sees the cavity from the other half alone, and
+/// without the demand from anywhere.
+TEST_F(DataSetFolder, HoldsTheProbeWhereItSeesWhatIsAskedFor)
+{
+  LabelVolume volume = ball();
+  for (std::size_t i = 0; i < volume.voxels.size(); ++i)
+  {
+    const Vec3i v(int(i % 40), int(i / 40 % 40), int(i / 1600));
+    const Vec3d world = volume.placement.originMm + volume.placement.direction * (2.5 * Vec3d(v));
+    const double r = glm::length(world);
+    if (r > 24.0 && r < 32.0 && world.x > 2.0 && world.y < 0.0)
+    {
+      volume.voxels[i] = 11;
+    }
+  }
+  volume.collectLabels();
+  for (LabelInfo& label : volume.labels)
+  {
+    label.name = label.id == 7    ? "left_ventricle_blood"
+                 : label.id == 9  ? "skin"
+                 : label.id == 11 ? "rib"
+                                  : "background";
+  }
+  writeLabelMap((root_ / "ball.nii.gz").string(), volume);
+  json_["jitter"] = Json::parse(R"({"slideLateralMm": {"from": -16, "to": 16}})");
+  json_["probe"]["lineCount"] = 48; // what a picture says of itself is to be exact
+  json_["tracing"]["pathsPerLine"] = 64;
+  json_["exams"] = 2;
+  json_["imagesPerExam"] = 12;
+  json_["patients"].erase(1);
+  const auto seen = [&] {
+    std::vector<double> percent;
+    DataSetImager imager(plan(), Device::Cpu);
+    for (int i = 0; i < 24; ++i)
+    {
+      const Json cavity = Json::parse(imager.make(i).info)["masks"]["cavity"];
+      percent.push_back(double(cavity["visiblePercent"]));
+    }
+    return percent;
+  };
+  const auto hidden = [](double percent) { return percent < 70.0; };
+  const std::vector<double> anywhere = seen();
+  EXPECT_GT(std::count_if(anywhere.begin(), anywhere.end(), hidden), 6);
+  json_["masks"][0]["leastVisiblePercent"] = 100; // of a group that the ball has not
+  json_["masks"][1]["leastVisiblePercent"] = 80;
+  const std::vector<double> demanded = seen();
+  EXPECT_EQ(std::count_if(demanded.begin(), demanded.end(), hidden), 0);
+  json_["masks"][1]["leastVisiblePercent"] = 101;
+  expectContains(errorOf([&] { plan(); }), "'masks[1].leastVisiblePercent'");
+}
+
 TEST_F(DataSetFolder, LooksForViewsByNameAndForWindows)
 {
   json_["patients"].erase(1);

@@ -158,6 +158,7 @@ def main():
     arguments = parser.parse_args()
 
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    torch.backends.cudnn.benchmark = True  # all batches are of one size
     segment = arguments.task == "segment"
     results = {"task": arguments.task, "steps": arguments.steps, "batch": arguments.batch, "rows": []}
     tests = []
