@@ -2,6 +2,7 @@
 
 #include "SonoMovingViews.h"
 #include "SonoWindows.h"
+#include "pqSonoLiveSettings.h"
 #include "pqSonoWindowFinder.h"
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
@@ -133,8 +134,12 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Live = new QCheckBox(tr("Live"), this);
   this->Live->setObjectName("Live");
   this->Live->setChecked(true);
-  this->Live->setToolTip(
-    tr("Scans while the probe moves: coarse at first, in full quality when it rests. Off: as it stands on Apply."));
+  this->Live->setToolTip(tr(
+    "Scans while the probe moves: coarse at first, in full quality when it rests; shows gain, TGC, dynamic range and "
+    "all else of the display with each step of a slider; and scans with a preset once it is chosen. Off: as it stands "
+    "on Apply."));
+  new pqSonoLiveSettings(
+    smproxy, [this] { return this->isLive(); }, [this] { this->Refining.begin(); }, this);
   grid->addWidget(show, row + 5, 0, 1, 2);
   grid->addWidget(this->Live, row + 5, 2, 1, 2);
   if (smproxy->GetXMLName() == std::string("SonoUltrasound")) // which has an anatomy to look at

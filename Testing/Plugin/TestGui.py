@@ -260,6 +260,18 @@ class TestGui(GuiCase):
         self.assertEqual(files, [["linear_l14"], [""]])
         self.assertEqual(depth, [160])
 
+    def test_live_shows_the_display_s_settings_and_presets_without_apply(self):
+        """A slider's steps are one step of undo, what lies beyond it can be typed, and the rest goes on waiting."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("live.xml", folder, f"--script={PLAYBACKS / 'window.py'}"), [])
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("slid", "undone", "typed", "preset")]
+            gains, paths, kinds = ([self.values_of(state, "SonoUltrasound", name)[0] for state in states]
+                                   for name in ("GainDb", "PathsPerLine", "ScanKind"))
+        self.assertTrue(10 < gains[0] < 20, gains)  # 70 parts of 100 from -40 to 40 dB are 16
+        self.assertEqual(gains[1:], [0, 120, 120])
+        self.assertEqual(paths, [20, 20, 20, 33])
+        self.assertEqual(kinds, [1, 1, 1, 2])
+
     def test_find_window(self):
         """For an organ that is not there the probe stays where it is. For the liver the button places it on the skin,
         with the probe for it, and offers four other places, to one of which it goes when that is picked."""
