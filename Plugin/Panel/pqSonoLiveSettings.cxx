@@ -1,12 +1,12 @@
 #include "pqSonoLiveSettings.h"
 
 #include "SonoMovingViews.h"
+#include "SonoWaiting.h"
 #include "pqSonoPresetWidget.h"
 #include "pqSonoStop.h"
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
-#include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
@@ -23,7 +23,6 @@
 
 #include <QGuiApplication>
 
-#include <algorithm>
 #include <utility>
 
 namespace {
@@ -126,10 +125,7 @@ void pqSonoLiveSettings::begin()
 {
   if (!this->Frame.isActive() && !this->Rest.isActive() && !this->Shown)
   {
-    const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
-    this->NothingWaits = std::all_of(sources.begin(), sources.end(), [](pqPipelineSource* source) {
-      return source->modifiedState() == pqProxy::UNMODIFIED;
-    });
+    this->NothingWaits = !sonoAnyWaits();
     this->Before.clear();
   }
 }

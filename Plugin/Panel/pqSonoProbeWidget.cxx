@@ -1,6 +1,7 @@
 #include "pqSonoProbeWidget.h"
 
 #include "SonoMovingViews.h"
+#include "SonoWaiting.h"
 #include "SonoWindows.h"
 #include "pqSonoLiveSettings.h"
 #include "pqSonoWindowFinder.h"
@@ -23,6 +24,7 @@
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
@@ -34,7 +36,6 @@
 #include <QPushButton>
 #include <QToolButton>
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -67,15 +68,11 @@ vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyG
   return all;
 }
 
-/// Whether a source waits for Apply, apart from the one that moves.
-bool hasChangesBeside(vtkSMProxy* moving)
+/// Which has an anatomy to look at.
+bool isUltrasound(vtkSMProxy* proxy)
 {
-  const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
-  return std::any_of(sources.begin(), sources.end(), [moving](pqPipelineSource* source) {
-    return source->getProxy() != moving && source->modifiedState() != pqProxy::UNMODIFIED;
-  });
+  return proxy->GetXMLName() == std::string("SonoUltrasound");
 }
-
 } // namespace
 
 pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
@@ -119,7 +116,9 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->connect(snapButton, SIGNAL(clicked()), SLOT(snap()));
   auto* resetButton = new QPushButton(tr("Reset"), this);
   resetButton->setObjectName("ResetPose");
-  resetButton->setToolTip(tr("The default pose: the apical four-chamber view of the Thorax Phantom."));
+  resetButton->setToolTip(isUltrasound(smproxy)
+                            ? tr("The pose that was found first for this body, as that of a new Simulate Ultrasound.")
+                            : tr("The default pose: the apical four-chamber view of the Thorax Phantom."));
   this->connect(resetButton, SIGNAL(clicked()), SLOT(resetPose()));
   grid->addWidget(snapButton, row + 4, 0, 1, 2);
   grid->addWidget(resetButton, row + 4, 2, 1, 2);
@@ -142,7 +141,7 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
     smproxy, [this] { return this->isLive(); }, [this] { this->Refining.begin(); }, this);
   grid->addWidget(show, row + 5, 0, 1, 2);
   grid->addWidget(this->Live, row + 5, 2, 1, 2);
-  if (smproxy->GetXMLName() == std::string("SonoUltrasound")) // which has an anatomy to look at
+  if (isUltrasound(smproxy))
   {
     auto* finder = new pqSonoWindowFinder(smproxy, this);
     grid->addWidget(finder, row + 6, 0, 1, 4);
@@ -292,6 +291,16 @@ void pqSonoProbeWidget::snap()
 
 void pqSonoProbeWidget::resetPose()
 {
+  if (isUltrasound(this->proxy()))
+  {
+    const SonoWindows found = sonoFindWindows(vtkSMSourceProxy::SafeDownCast(this->proxy()), SonoWindowsOf::Input, "");
+    if (!found.windows.empty())
+    {
+      this->stand({ "", "", 0.0, found.windows.front().pose }); // with the probe and the depth that there are
+    }
+    this->showMessage(QString::fromStdString(found.refusal));
+    return;
+  }
   this->start();
   for (const char* function : poseFunctions)
   {
@@ -412,7 +421,7 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
-  if (shown && hasChangesBeside(this->proxy()))
+  if (shown && sonoAnyWaits(this->proxy()))
   {
     shown.reset(); // what is applied with the pose may change the anatomy
   }

@@ -27,6 +27,15 @@ Show(OutputPort(ALine(Input=OutputPort(ultrasound, 2)), 2), view)
 Render()
 SaveState(sys.argv[1])
 """
+ELSEWHERE = """
+image = servermanager.Fetch(ThoraxPhantom(Spacingmm=4))
+image.SetOrigin(image.GetOrigin()[0] + 300, *image.GetOrigin()[1:])
+for name in ("A4CPositionMm", "A4CAxial", "A4CLateral"):
+    image.GetFieldData().RemoveArray(name)
+moved = TrivialProducer()
+moved.GetClientSideObject().SetOutput(image)
+SaveData(sys.argv[1], proxy=moved)
+"""
 # What the third place for the liver is, by the filter behind the panel.
 THIRD_WINDOW = """
 import json
@@ -292,6 +301,22 @@ class TestGui(GuiCase):
         self.assertGreater(math.dist(places[0], places[1]), 40)
         self.assertGreaterEqual(math.dist(places[1], places[2]), 40)  # so far apart are those that are offered
         self.assertLess(math.dist(places[2], expected["place"]), 1e-3)
+
+    def test_reset_goes_to_the_first_pose_of_the_body_that_is_shown(self):
+        """Of a body 300 mm from the bundled one, which brings no pose along."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.run_script(ELSEWHERE, folder, pathlib.Path(folder, "elsewhere.vti"))
+            script = pathlib.Path(folder, "window.py")
+            script.write_text((PLAYBACKS / script.name).read_text().replace(
+                'ThoraxPhantom(registrationName="thorax", Spacingmm=4)',
+                'LabelMapReader(registrationName="thorax", FileName=["elsewhere.vti"])'))
+            self.assertEqual(self.play("reset.xml", folder, f"--script={script}"), [])
+            first, turned, reset = (self.probe_of(pathlib.Path(folder, name + ".pvsm"), "SonoUltrasound")
+                                    for name in ("first", "turned", "reset"))
+        self.assertGreater(first["PositionMm"][0], 200)
+        self.assertNotEqual(turned["Axial"], first["Axial"])
+        self.assertLess(math.dist(reset["PositionMm"], first["PositionMm"]), 1e-3)
+        self.assertLess(math.dist(reset["Axial"], first["Axial"]), 1e-4)
 
     def test_standard_views_are_offered_by_name(self):
         """A search moves nothing; the view that is chosen then does."""
