@@ -1,5 +1,6 @@
 #include "pqSonoProbeWidget.h"
 
+#include "SonoFlatView.h"
 #include "SonoMovingViews.h"
 #include "SonoWaiting.h"
 #include "SonoWindows.h"
@@ -133,10 +134,9 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Live = new QCheckBox(tr("Live"), this);
   this->Live->setObjectName("Live");
   this->Live->setChecked(true);
-  this->Live->setToolTip(tr(
-    "Scans while the probe moves: coarse at first, in full quality when it rests; shows gain, TGC, dynamic range and "
-    "all else of the display with each step of a slider; and scans with a preset once it is chosen. Off: as it stands "
-    "on Apply."));
+  this->Live->setToolTip(tr("Scans while the probe moves, in full when it rests; shows the display's settings, as the "
+                            "gain, with each step; and "
+                            "scans with a preset once it is chosen. Off: as it stands on Apply."));
   new pqSonoLiveSettings(
     smproxy, [this] { return this->isLive(); }, [this] { this->Refining.begin(); }, this);
   grid->addWidget(show, row + 5, 0, 1, 2);
@@ -268,6 +268,14 @@ void pqSonoProbeWidget::finish()
   this->Rest.start();
 }
 
+void pqSonoProbeWidget::showMoved()
+{
+  Q_EMIT this->changeAvailable();
+  this->render();
+  this->move();
+  this->finish();
+}
+
 void pqSonoProbeWidget::takePose()
 {
   vtkSonoProbeRepresentation* moved = this->probe();
@@ -276,10 +284,7 @@ void pqSonoProbeWidget::takePose()
   vtkSMPropertyHelper(widget, "Axial").Set(moved->GetAxial(), 3);
   vtkSMPropertyHelper(widget, "Lateral").Set(moved->GetLateral(), 3);
   widget->UpdateVTKObjects();
-  Q_EMIT this->changeAvailable();
-  this->render();
-  this->move();
-  this->finish();
+  this->showMoved();
 }
 
 void pqSonoProbeWidget::snap()
@@ -312,10 +317,7 @@ void pqSonoProbeWidget::resetPose()
     }
   }
   this->widgetProxy()->UpdateVTKObjects();
-  Q_EMIT this->changeAvailable();
-  this->render();
-  this->move();
-  this->finish();
+  this->showMoved();
 }
 
 void pqSonoProbeWidget::stand(const SonoWindow& window)
@@ -342,10 +344,7 @@ void pqSonoProbeWidget::stand(const SonoWindow& window)
       }
     }
   }
-  Q_EMIT this->changeAvailable();
-  this->render();
-  this->move();
-  this->finish();
+  this->showMoved();
 }
 
 void pqSonoProbeWidget::showMessage()
@@ -461,6 +460,10 @@ void pqSonoProbeWidget::rest()
 
 void pqSonoProbeWidget::setView(pqView* next)
 {
+  if (next && sonoIsFlatView(next->getProxy())) // where a fan in space has no place; it stays where it is
+  {
+    return;
+  }
   if (this->view())
   {
     this->view()->disconnect(&this->Prepare);

@@ -144,6 +144,32 @@ class TestGui(GuiCase):
         self.assertAlmostEqual(picked_in_body[0], expected_in_body, delta=1)
         self.assertNotEqual(picked_in_body, picked)
 
+    def test_the_flat_view_fits_itself_until_somebody_zooms(self):
+        """To the fan and its ruler at each depth and of each probe; the probe in space stays out of it, and its layout
+        is not made twice."""
+        with tempfile.TemporaryDirectory() as folder:
+            clicked = pathlib.Path(folder, "clicked.pvsm")
+            screen = pathlib.Path(folder, "clicked.ppm")
+            with self.look_after(clicked, screen, "400x280+735+210", "100%"):
+                self.assertEqual(self.play("fit.xml", folder, f"--data={self.label_map(folder)}"), [])
+            names = ("first", "deep", "linear", "zoomed", "kept", "reset")
+            scales = {name: self.flat_camera(pathlib.Path(folder, name + ".pvsm"))[2] for name in names}
+            (width, height), _, _ = self.flat_camera(clicked)
+            again = ElementTree.parse(pathlib.Path(folder, "again.pvsm"))
+            pixels = screen.read_bytes()[-3 * 400 * 280:]
+        chord = 2 * math.sin(math.pi / 4)
+        for name, depth, fan in (("first", 160, 160 * chord), ("deep", 300, 300 * chord), ("linear", 40, 38.7),
+                                 ("reset", 60, 38.7)):
+            seen = max(depth / 2, fan / 2 * height / width)
+            self.assertTrue(seen < scales[name] < 1.35 * seen, (name, seen, scales))
+        self.assertGreater(abs(scales["zoomed"] / scales["linear"] - 1), 0.05)
+        self.assertEqual(scales["kept"], scales["zoomed"])
+        # Grey, and the scan line in yellow; nothing as blue or as green as the probe's handles.
+        self.assertFalse(any(max(pixels[i + 1], pixels[i + 2]) > pixels[i] + 60 for i in range(0, len(pixels), 3)))
+        layouts = [item.get("name") for group in again.iter("ProxyCollection") if group.get("name") == "layouts"
+                   for item in group]
+        self.assertEqual(layouts, ["Layout #1", "Ultrasound"])
+
     def test_what_is_behind_the_camera_or_plots_other_lines_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("behind.xml", folder, f"--script={PLAYBACKS / 'behind.py'}"), [])
@@ -191,15 +217,16 @@ class TestGui(GuiCase):
 
     def place_in_flat_view(self, state, across, down):
         """Where a part of the flat view's width and height is in its image: lateral and depth in mm."""
-        for view in ElementTree.parse(state).iter("Proxy"):
-            if view.get("type") == "RenderView" and self.values(view, "InteractionMode") == [1] and \
-                    self.values(view, "OrientationAxesVisibility") == [0]:
-                width, height = self.values(view, "ViewSize")
-                centre = self.values(view, "CameraFocalPoint")
-                (scale,) = self.values(view, "CameraParallelScale")
-                return (centre[0] + (across - 0.5) * 2 * scale * width / height,
-                        centre[1] + (down - 0.5) * 2 * scale)
-        return self.fail("There is no flat view.")
+        (width, height), centre, scale = self.flat_camera(state)
+        return centre[0] + (across - 0.5) * 2 * scale * width / height, centre[1] + (down - 0.5) * 2 * scale
+
+    def flat_camera(self, state):
+        """The flat view's size, and at what it looks with half of which height, in mm."""
+        (view,) = (view for view in ElementTree.parse(state).iter("Proxy")
+                   if view.get("type") == "RenderView" and self.values(view, "InteractionMode") == [1] and
+                   self.values(view, "OrientationAxesVisibility") == [0])
+        return (self.values(view, "ViewSize"), self.values(view, "CameraFocalPoint"),
+                self.values(view, "CameraParallelScale")[0])
 
     @staticmethod
     def texts(proxy, name):
@@ -386,13 +413,13 @@ class TestGui(GuiCase):
         self.assertTrue(pictures[-1] == 8192 or 0 < float(rounds[-1][1]) <= 0.2, rounds[-1])
 
     @contextlib.contextmanager
-    def look_after(self, path, seen):
+    def look_after(self, path, seen, *cut):
         """Photographs the screen three seconds after a file has appeared."""
         def look():
             for _ in range(3000):
                 if path.exists():
                     time.sleep(3)
-                    save_screen(seen, self.frame_buffer)
+                    save_screen(seen, self.frame_buffer, *cut)
                     return
                 time.sleep(0.1)
 
