@@ -90,7 +90,6 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   {
     this->addRow(grid, function);
   }
-
   const int row = grid->rowCount();
   this->Step = new QDoubleSpinBox(this);
   this->Step->setObjectName("Step");
@@ -194,6 +193,7 @@ void pqSonoProbeWidget::addRow(QGridLayout* grid, const char* function)
     edit->setToolTip(pqPropertyWidget::getTooltip(smproperty));
     label->setToolTip(edit->toolTip());
     this->addPropertyLink(edit, "text2", SIGNAL(textChangedAndEditingFinished()), smproperty, i);
+    this->connect(edit, &pqDoubleLineEdit::textChangedAndEditingFinished, this, [this] { this->showMessage(""); });
     grid->addWidget(edit, row, i + 1, 1, count > 1 ? 1 : 3);
   }
 }
