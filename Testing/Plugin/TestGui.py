@@ -170,6 +170,29 @@ class TestGui(GuiCase):
                    for item in group]
         self.assertEqual(layouts, ["Layout #1", "Ultrasound"])
 
+    def test_the_eye_of_the_error_map_shows_it(self):
+        """In the body instead of the image, in the flat view as the flat image's colours, and each back again."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("error_eye.xml", folder, f"--data={self.label_map(folder)}"), [])
+            states = {name: pathlib.Path(folder, name + ".pvsm") for name in ("map", "image", "flat_map", "flat_image")}
+            shown = {name: self.shown_of_ultrasound(state) for name, state in states.items()}
+            made = [self.values_of(state, "SonoUltrasound", "ErrorMap") for state in states.values()]
+        self.assertEqual(made, [[1]] * 4)
+        self.assertEqual([("0" in each, "8" in each) for each in shown.values()], [(False, True)] + [(True, False)] * 3)
+        self.assertEqual([each["7"] for each in shown.values()], ["BMode", "BMode", "ErrorPercent", "BMode"])
+
+    def shown_of_ultrasound(self, state):
+        """By which array each visible output of Simulate Ultrasound is coloured, by the output's number."""
+        tree = ElementTree.parse(state)
+        (ultrasound,) = (p for p in tree.iter("Proxy") if p.get("type") == "SonoUltrasound")
+        shown = {}
+        for proxy in tree.iter("Proxy"):
+            for source in proxy.findall("Property[@name='Input']/Proxy"):
+                if proxy.get("group") == "representations" and source.get("value") == ultrasound.get("id") and \
+                        self.texts(proxy, "Visibility") == ["1"]:
+                    shown[source.get("output_port")] = self.texts(proxy, "ColorArrayName")[-1]
+        return shown
+
     def test_what_is_behind_the_camera_or_plots_other_lines_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("behind.xml", folder, f"--script={PLAYBACKS / 'behind.py'}"), [])
