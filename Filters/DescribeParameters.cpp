@@ -13,6 +13,7 @@
 #include "Labels/BodyFill.h"
 #include "Probe/ScanGeometry.h"
 #include "Scene/ScanDetail.h"
+#include "SliderRanges.h"
 #include "Trace/TraceSettings.h"
 
 #include <filesystem>
@@ -153,8 +154,10 @@ std::string domain(const Described& d)
     }
   };
   xml << (d.isDouble ? "<DoubleRangeDomain" : "<IntRangeDomain") << " name=\"range\"";
-  bound("min", range.low);
-  bound("max", range.high);
+  const auto slider = sono::sliderRanges().find(d.name);
+  const bool isWhole = slider == sono::sliderRanges().end(); // a slider over all that is valid
+  bound("min", isWhole ? range.low : slider->second.low);
+  bound("max", isWhole ? range.high : slider->second.high);
   xml << "/>\n";
   return xml.str();
 }

@@ -54,8 +54,8 @@ public:
     polygonParts_->InsertNextValue(MARKER);
   }
 
-  /// Its middle at `y`, and its left or right end at `x`.
-  void text(const std::string& content, double x, double y, double height, bool endsAtX, Part part)
+  /// Its middle at `y`, and its right end at `x`.
+  void text(const std::string& content, double x, double y, double height)
   {
     vtkNew<vtkVectorText> letters;
     letters->SetText(content.c_str());
@@ -63,7 +63,7 @@ public:
     vtkPolyData* shape = letters->GetOutput();
     const double* box = shape->GetBounds();
     const double scale = height / (box[3] - box[2]);
-    const double left = endsAtX ? x - scale * (box[1] - box[0]) : x;
+    const double left = x - scale * (box[1] - box[0]);
     vtkNew<vtkIdList> corners;
     for (vtkIdType cell = 0; cell < shape->GetNumberOfCells(); ++cell)
     {
@@ -75,7 +75,7 @@ public:
         polygons_->InsertCellPoint(
           point(left + scale * (at[0] - box[0]), y - scale * (at[1] - (box[2] + box[3]) / 2.0)));
       }
-      polygonParts_->InsertNextValue(part);
+      polygonParts_->InsertNextValue(RULER);
     }
   }
 
@@ -114,6 +114,36 @@ double halfWidthMm(const std::vector<sono::Vec3d>& polyline)
   return widest;
 }
 
+/// How far the border reaches to the right where its depth is at most so far from the face's.
+double widthNearFaceMm(const std::vector<sono::Vec3d>& border, double nearMm)
+{
+  double widest = 0.0;
+  for (std::size_t i = 1; i < border.size(); ++i)
+  {
+    const sono::Vec3d& a = border[i - 1];
+    const sono::Vec3d& b = border[i];
+    // The part of the stroke between the two depths, from share `from` to share `to` of it.
+    const double step = b.z - a.z;
+    double from = 0.0;
+    double to = 1.0;
+    if (step != 0.0)
+    {
+      const auto [first, last] = std::minmax({ (-nearMm - a.z) / step, (nearMm - a.z) / step });
+      from = std::max(from, first);
+      to = std::min(to, last);
+    }
+    else if (std::abs(a.z) > nearMm)
+    {
+      continue;
+    }
+    if (from <= to)
+    {
+      widest = std::max({ widest, a.x + from * (b.x - a.x), a.x + to * (b.x - a.x) });
+    }
+  }
+  return widest;
+}
+
 void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
 {
   const auto outline = sono::scanOutline(geometry);
@@ -130,13 +160,12 @@ void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
     drawing.stroke(rulerMm, yMm, tickMm, yMm);
     if (isNumbered)
     {
-      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickMm - 0.015 * depthMm, yMm, 0.05 * depthMm, true,
-                   RULER);
+      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickMm - 0.015 * depthMm, yMm, 0.05 * depthMm);
     }
   }
-  const double markerMm = halfWidthMm(outline[1]) + 0.07 * depthMm;
-  drawing.disc(markerMm, 0.0, 0.02 * depthMm);
-  drawing.text("S", markerMm + 0.045 * depthMm, 0.0, 0.07 * depthMm, false, MARKER);
+  const double dotMm = 0.02 * depthMm;
+  const double clearMm = std::max(halfWidthMm(outline[1]), widthNearFaceMm(outline[0], 2.0 * dotMm));
+  drawing.disc(clearMm + 2.0 * dotMm, 0.0, dotMm);
 }
 
 } // namespace

@@ -11,8 +11,8 @@
  * Takes whatever carries a probe in its field data: the output of vtkSonoProbeSource, lines or images. The output lies
  * in the frame of the flat image of vtkSonoScanConverter, mm, a hair in front of it as seen with the transducer on
  * top: left of the scanned area a ruler of the depth from the transducer's face, a tick each centimetre, a longer one
- * with its number each five (each centimetre where there are fewer than eight); right of the face a dot with the letter
- * S, on the side of the probe's marker, to which the lateral direction points. The cell array "Part" is 0 on the ruler
+ * with its number each five (each centimetre where there are fewer than eight); right of the face, clear of the fan, a
+ * dot on the side of the probe's marker, to which the lateral direction points. The cell array "Part" is 0 on the ruler
  * and 1 on the marker. For a matrix, whose image is a volume, the output is empty.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoFlatScale : public vtkPolyDataAlgorithm

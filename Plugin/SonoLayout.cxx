@@ -12,12 +12,14 @@
 #include "vtkSmartPointer.h"
 #include "vtkSonoUltrasound.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -128,6 +130,45 @@ vtkSmartPointer<vtkSMSourceProxy> filterOf(vtkSMSourceProxy* ultrasound, unsigne
   return made;
 }
 
+/// Whether a view has shown an output.
+bool hasShown(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, unsigned int port)
+{
+  return view && view->FindRepresentation(ultrasound, static_cast<int>(port));
+}
+
+/// The view with the anatomy of a layout that this filter has already; null: none.
+vtkSMViewProxy* laidOut(vtkSMSourceProxy* ultrasound, vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMProxyIterator> layouts;
+  layouts->SetSessionProxyManager(manager);
+  layouts->SetModeToOneGroup();
+  for (layouts->Begin("layouts"); !layouts->IsAtEnd(); layouts->Next())
+  {
+    const std::vector<vtkSMViewProxy*> views = vtkSMViewLayoutProxy::SafeDownCast(layouts->GetProxy())->GetViews();
+    const auto shows = [&](unsigned int port) {
+      return std::find_if(views.begin(), views.end(),
+                          [&](vtkSMViewProxy* view) { return hasShown(view, ultrasound, port); });
+    };
+    const auto solid = shows(vtkSonoUltrasound::ANATOMY);
+    if (solid != views.end() && shows(vtkSonoUltrasound::FLAT_IMAGE) != views.end())
+    {
+      return *solid;
+    }
+  }
+  return nullptr;
+}
+
+/// Of a tab: Ultrasound, and numbers for those of other filters.
+std::string freeName(vtkSMSessionProxyManager* manager)
+{
+  std::string name = "Ultrasound";
+  for (int number = 2; manager->GetProxy("layouts", name.c_str()); ++number)
+  {
+    name = "Ultrasound " + std::to_string(number);
+  }
+  return name;
+}
+
 /// Over the depth, RF to the left axis and the envelope in dB to the right one.
 void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* controller)
 {
@@ -172,11 +213,15 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = ultrasound->GetSessionProxyManager();
   ultrasound->UpdatePipeline();
+  if (vtkSMViewProxy* there = laidOut(ultrasound, manager))
+  {
+    return there;
+  }
 
   auto layout = vtkSmartPointer<vtkSMViewLayoutProxy>::Take(
     vtkSMViewLayoutProxy::SafeDownCast(manager->NewProxy("misc", "ViewLayout")));
   controller->InitializeProxy(layout);
-  controller->RegisterLayoutProxy(layout, "Ultrasound");
+  controller->RegisterLayoutProxy(layout, freeName(manager).c_str());
   const int right = layout->SplitHorizontal(0, 0.5) + 1;
   const int upper = layout->SplitVertical(right, 0.62);
   const auto solid = makeView("RenderView", controller, manager);

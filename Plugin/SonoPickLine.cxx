@@ -1,5 +1,7 @@
 #include "SonoPickLine.h"
 
+#include "SonoFlatView.h"
+
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -16,7 +18,6 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSmartPointer.h"
 #include "vtkSonoALine.h"
-#include "vtkSonoUltrasound.h"
 
 #include <array>
 #include <cstring>
@@ -40,29 +41,6 @@ Vector worldFromDisplay(vtkRenderer* renderer, double x, double y, double depth)
   renderer->DisplayToWorld();
   const double* p = renderer->GetWorldPoint();
   return { p[0] / p[3], p[1] / p[3], p[2] / p[3] };
-}
-
-enum class ImageKind
-{
-  None,
-  InWorld,
-  Flat
-};
-
-ImageKind imageKind(vtkSMProxy* source, unsigned int port)
-{
-  const std::string name = source->GetXMLName();
-  if (name == "SonoScanConverter" || name == "SonoErrorMap")
-  {
-    return port == 0 ? ImageKind::InWorld : ImageKind::Flat;
-  }
-  if (name == "SonoUltrasound")
-  {
-    return port == vtkSonoUltrasound::FLAT_IMAGE                                      ? ImageKind::Flat
-           : port == vtkSonoUltrasound::IMAGE || port == vtkSonoUltrasound::ERROR_MAP ? ImageKind::InWorld
-                                                                                      : ImageKind::None;
-  }
-  return ImageKind::None;
 }
 
 /// The numbers that an output carries in its field data, wherever the data are.
@@ -99,12 +77,12 @@ struct Meeting
   double along;
 };
 
-bool meetPlane(const Sight& sight, ImageKind kind, vtkFieldData* field, Meeting& meeting)
+bool meetPlane(const Sight& sight, SonoImageKind kind, vtkFieldData* field, Meeting& meeting)
 {
   Vector position{};
   Vector axial{ 0.0, 1.0, 0.0 };
   Vector lateral{ 1.0, 0.0, 0.0 };
-  if (kind == ImageKind::InWorld)
+  if (kind == SonoImageKind::InWorld)
   {
     for (const auto& [name, vector] : { std::pair("ProbePositionMm", &position), std::pair("ProbeAxial", &axial),
                                         std::pair("ProbeLateral", &lateral) })
@@ -185,8 +163,8 @@ SonoPickedLine sonoPickLine(vtkSMRenderViewProxy* view, int x, int y)
     {
       continue;
     }
-    const ImageKind kind = imageKind(image, input.GetOutputPort());
-    if (kind == ImageKind::None)
+    const SonoImageKind kind = sonoImageKind(image, input.GetOutputPort());
+    if (kind == SonoImageKind::None)
     {
       continue;
     }

@@ -1,7 +1,10 @@
 #include "pqSonoProbeWidget.h"
 
+#include "SonoFlatView.h"
 #include "SonoMovingViews.h"
+#include "SonoWaiting.h"
 #include "SonoWindows.h"
+#include "pqSonoLiveSettings.h"
 #include "pqSonoWindowFinder.h"
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
@@ -22,6 +25,7 @@
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
@@ -33,7 +37,6 @@
 #include <QPushButton>
 #include <QToolButton>
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -66,15 +69,11 @@ vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyG
   return all;
 }
 
-/// Whether a source waits for Apply, apart from the one that moves.
-bool hasChangesBeside(vtkSMProxy* moving)
+/// Which has an anatomy to look at.
+bool isUltrasound(vtkSMProxy* proxy)
 {
-  const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
-  return std::any_of(sources.begin(), sources.end(), [moving](pqPipelineSource* source) {
-    return source->getProxy() != moving && source->modifiedState() != pqProxy::UNMODIFIED;
-  });
+  return proxy->GetXMLName() == std::string("SonoUltrasound");
 }
-
 } // namespace
 
 pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
@@ -91,7 +90,6 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   {
     this->addRow(grid, function);
   }
-
   const int row = grid->rowCount();
   this->Step = new QDoubleSpinBox(this);
   this->Step->setObjectName("Step");
@@ -118,7 +116,9 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->connect(snapButton, SIGNAL(clicked()), SLOT(snap()));
   auto* resetButton = new QPushButton(tr("Reset"), this);
   resetButton->setObjectName("ResetPose");
-  resetButton->setToolTip(tr("The default pose: the apical four-chamber view of the Thorax Phantom."));
+  resetButton->setToolTip(isUltrasound(smproxy)
+                            ? tr("The pose that was found first for this body, as that of a new Simulate Ultrasound.")
+                            : tr("The default pose: the apical four-chamber view of the Thorax Phantom."));
   this->connect(resetButton, SIGNAL(clicked()), SLOT(resetPose()));
   grid->addWidget(snapButton, row + 4, 0, 1, 2);
   grid->addWidget(resetButton, row + 4, 2, 1, 2);
@@ -133,11 +133,14 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Live = new QCheckBox(tr("Live"), this);
   this->Live->setObjectName("Live");
   this->Live->setChecked(true);
-  this->Live->setToolTip(
-    tr("Scans while the probe moves: coarse at first, in full quality when it rests. Off: as it stands on Apply."));
+  this->Live->setToolTip(tr("Scans while the probe moves, in full when it rests; shows the display's settings, as the "
+                            "gain, with each step; and "
+                            "scans with a preset once it is chosen. Off: as it stands on Apply."));
+  new pqSonoLiveSettings(
+    smproxy, [this] { return this->isLive(); }, [this] { this->Refining.begin(); }, this);
   grid->addWidget(show, row + 5, 0, 1, 2);
   grid->addWidget(this->Live, row + 5, 2, 1, 2);
-  if (smproxy->GetXMLName() == std::string("SonoUltrasound")) // which has an anatomy to look at
+  if (isUltrasound(smproxy))
   {
     auto* finder = new pqSonoWindowFinder(smproxy, this);
     grid->addWidget(finder, row + 6, 0, 1, 4);
@@ -190,6 +193,7 @@ void pqSonoProbeWidget::addRow(QGridLayout* grid, const char* function)
     edit->setToolTip(pqPropertyWidget::getTooltip(smproperty));
     label->setToolTip(edit->toolTip());
     this->addPropertyLink(edit, "text2", SIGNAL(textChangedAndEditingFinished()), smproperty, i);
+    this->connect(edit, &pqDoubleLineEdit::textChangedAndEditingFinished, this, [this] { this->showMessage(""); });
     grid->addWidget(edit, row, i + 1, 1, count > 1 ? 1 : 3);
   }
 }
@@ -264,6 +268,14 @@ void pqSonoProbeWidget::finish()
   this->Rest.start();
 }
 
+void pqSonoProbeWidget::showMoved()
+{
+  Q_EMIT this->changeAvailable();
+  this->render();
+  this->move();
+  this->finish();
+}
+
 void pqSonoProbeWidget::takePose()
 {
   vtkSonoProbeRepresentation* moved = this->probe();
@@ -272,10 +284,7 @@ void pqSonoProbeWidget::takePose()
   vtkSMPropertyHelper(widget, "Axial").Set(moved->GetAxial(), 3);
   vtkSMPropertyHelper(widget, "Lateral").Set(moved->GetLateral(), 3);
   widget->UpdateVTKObjects();
-  Q_EMIT this->changeAvailable();
-  this->render();
-  this->move();
-  this->finish();
+  this->showMoved();
 }
 
 void pqSonoProbeWidget::snap()
@@ -287,6 +296,16 @@ void pqSonoProbeWidget::snap()
 
 void pqSonoProbeWidget::resetPose()
 {
+  if (isUltrasound(this->proxy()))
+  {
+    const SonoWindows found = sonoFindWindows(vtkSMSourceProxy::SafeDownCast(this->proxy()), SonoWindowsOf::Input, "");
+    if (!found.windows.empty())
+    {
+      this->stand({ "", "", 0.0, found.windows.front().pose }); // with the probe and the depth that there are
+    }
+    this->showMessage(QString::fromStdString(found.refusal));
+    return;
+  }
   this->start();
   for (const char* function : poseFunctions)
   {
@@ -298,10 +317,7 @@ void pqSonoProbeWidget::resetPose()
     }
   }
   this->widgetProxy()->UpdateVTKObjects();
-  Q_EMIT this->changeAvailable();
-  this->render();
-  this->move();
-  this->finish();
+  this->showMoved();
 }
 
 void pqSonoProbeWidget::stand(const SonoWindow& window)
@@ -328,10 +344,7 @@ void pqSonoProbeWidget::stand(const SonoWindow& window)
       }
     }
   }
-  Q_EMIT this->changeAvailable();
-  this->render();
-  this->move();
-  this->finish();
+  this->showMoved();
 }
 
 void pqSonoProbeWidget::showMessage()
@@ -407,7 +420,7 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
-  if (shown && hasChangesBeside(this->proxy()))
+  if (shown && sonoAnyWaits(this->proxy()))
   {
     shown.reset(); // what is applied with the pose may change the anatomy
   }
@@ -447,6 +460,10 @@ void pqSonoProbeWidget::rest()
 
 void pqSonoProbeWidget::setView(pqView* next)
 {
+  if (next && sonoIsFlatView(next->getProxy())) // where a fan in space has no place; it stays where it is
+  {
+    return;
+  }
   if (this->view())
   {
     this->view()->disconnect(&this->Prepare);

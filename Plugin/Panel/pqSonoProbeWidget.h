@@ -67,6 +67,7 @@ private:
   void addTurn(QGridLayout* grid, int row, const QString& name, const QString& toolTip,
                void (vtkSonoProbeRepresentation::*turn)(double));
   void finish();
+  void showMoved();
   void takePose();
   void findSkin();
   vtkSonoProbeRepresentation* probe() const;

@@ -31,6 +31,7 @@ constexpr int lookMs = 50;
 constexpr int restPerLook = 10; // so that looking, which may draw, takes a tenth of the time
 constexpr int longestRestMs = 1000;
 constexpr int sentenceMs = 15000;
+constexpr const char* waitsForApply = "SonoWaitsForApply"; // of a source, for others to know
 
 pqProgressManager* progressManager()
 {
@@ -204,6 +205,11 @@ bool pqSonoStop::eventFilter(QObject* watched, QEvent* event)
   return true;
 }
 
+bool pqSonoStop::waits(const pqProxy* source)
+{
+  return source && source->property(waitsForApply).toBool();
+}
+
 void pqSonoStop::hasStopped(vtkAlgorithm* filter)
 {
   stopped_.push_back(filter);
@@ -215,7 +221,12 @@ void pqSonoStop::hasFinished(vtkAlgorithm* filter)
     return source && source->getProxy()->GetClientSideObject() == filter;
   };
   // Apply stays as it is: something may have been typed meanwhile.
-  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isIt), waiting_.end());
+  const auto finished = std::find_if(waiting_.begin(), waiting_.end(), isIt);
+  if (finished != waiting_.end())
+  {
+    (*finished)->setProperty(waitsForApply, false);
+    waiting_.erase(finished);
+  }
 }
 
 void pqSonoStop::offerApply()
@@ -242,6 +253,7 @@ void pqSonoStop::settle()
       if (std::find(waiting_.begin(), waiting_.end(), source) == waiting_.end())
       {
         waiting_.emplace_back(source);
+        source->setProperty(waitsForApply, true);
       }
     }
   }
@@ -282,6 +294,7 @@ void pqSonoStop::runAgain(pqProxy* applied)
   if (found != waiting_.end() && *found)
   {
     waiting_.erase(found);
+    applied->setProperty(waitsForApply, false);
     vtkSMProxy* proxy = applied->getProxy();
     vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->Modified();
     proxy->MarkModified(proxy);

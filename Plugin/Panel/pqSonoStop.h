@@ -33,6 +33,9 @@ public:
   explicit pqSonoStop(QObject* parent = nullptr);
   ~pqSonoStop() override;
 
+  /// Whether a source was stopped and waits for Apply since.
+  static bool waits(const pqProxy* source);
+
   /// Called by ParaView when the plugin is loaded and when ParaView ends.
   void startup();
   void shutdown();

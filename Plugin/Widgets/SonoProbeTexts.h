@@ -6,7 +6,8 @@
 
 /// What the probe says of its movements.
 constexpr const char* sonoOffSkin = "That is off the skin: the probe stays where it last stood.";
-constexpr const char* sonoNoSkin = "No surface is shown here that the probe could stand on: show the Ultrasound Scene.";
+constexpr const char* sonoNoSkin =
+  "No surface is shown here that the probe could stand on: click the eye of Anatomy, or of the Ultrasound Scene.";
 
 /// Such as "Tilt +5.0 degrees".
 inline std::string sonoSignedNumber(const char* what, double value, const char* unit)

@@ -8,6 +8,7 @@
 #include "vtkBoundingBox.h"
 #include "vtkObjectFactory.h"
 #include "vtkPropCollection.h"
+#include "vtkTextRenderer.h"
 #include "vtkVectorOperators.h"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ constexpr double handlePixels = 7.0;
 constexpr double touchMm = 10.0; // a face this near to the skin stands on it
 constexpr double leastDepthMm = 1.0;
 constexpr double mostDepthMm = 1000.0;
+constexpr double textPart = 0.97; // of a view's width that a message may take
 
 using States = vtkSonoProbeRepresentation;
 
@@ -79,6 +81,7 @@ void vtkSonoProbeRepresentation::SetNumber(const char* name, double value)
   this->Parts->Probe->SetNumber(name, value);
   if (this->Parts->Probe->GetMTime() != before)
   {
+    this->Message.clear(); // it tells of other numbers
     this->Modified();
   }
 }
@@ -99,6 +102,7 @@ void vtkSonoProbeRepresentation::SetPresetFile(const char* path)
   if (next != this->Parts->PresetFile)
   {
     this->Parts->PresetFile = next;
+    this->Message.clear();
     this->Parts->Probe->Modified();
     this->Modified();
   }
@@ -265,6 +269,31 @@ void vtkSonoProbeRepresentation::Highlight(int on)
   this->Modified();
 }
 
+std::string vtkSonoProbeRepresentation::GetMessageLines(int widthPixels)
+{
+  constexpr int dotsPerInch = 72; // so that a font's points are pixels, as vtkTextActor draws them
+  const auto fits = [&](const std::string& line) {
+    int box[4];
+    vtkTextRenderer::GetInstance()->GetBoundingBox(this->Parts->Text->GetTextProperty(), line, box, dotsPerInch);
+    return box[1] - box[0] < textPart * widthPixels;
+  };
+  std::istringstream words(this->Message);
+  std::string lines;
+  std::string line;
+  for (std::string word; words >> word;)
+  {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (!line.empty() && !fits(longer))
+    {
+      lines += line + "\n";
+      line = word;
+      continue;
+    }
+    line = longer;
+  }
+  return lines + line;
+}
+
 void vtkSonoProbeRepresentation::BuildRepresentation()
 {
   Internals& parts = *this->Parts;
@@ -287,7 +316,8 @@ void vtkSonoProbeRepresentation::BuildRepresentation()
     actor->SetScale(this->Renderer ? handlePixels * SonoDisplay(this->Renderer).mmPerPixel(place) : 3.0);
   }
   parts.Handle(DEEPENING).Actor->SetVisibility(parts.PresetFile.empty());
-  parts.Text->SetInput(this->Message.c_str());
+  parts.Text->SetInput(this->Renderer ? this->GetMessageLines(this->Renderer->GetSize()[0]).c_str()
+                                      : this->Message.c_str());
   this->BuildTime.Modified();
 }
 

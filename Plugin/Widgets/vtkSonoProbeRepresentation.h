@@ -90,9 +90,14 @@ public:
   bool SnapToSkin();
 
   /**
-   * One sentence about the last movement; empty when there is nothing to say.
+   * One sentence about the last movement; empty when there is nothing to say, and once a number of the scan lines is
+   * set otherwise.
    */
   vtkGetCharFromStdStringMacro(Message);
+  /**
+   * The same as it is drawn in a view of this width in pixels: in lines that are not cut off.
+   */
+  std::string GetMessageLines(int widthPixels);
 
   enum InteractionStates
   {

@@ -99,6 +99,23 @@ class TestFlatScale(unittest.TestCase):
                 self.assertGreater(marker[0], face)
                 self.assertAlmostEqual(marker[1], 0, places=5)
 
+    def test_the_marker_is_a_dot_clear_of_a_curved_array_s_fan(self):
+        """Of 60 mm radius and 70 degrees: the distance to the outermost line, and to the face, in closed form."""
+        self.chain.probe.SetScanKind(CURVILINEAR)
+        self.chain.probe.SetRadiusMm(60)
+        self.chain.probe.SetSectorDeg(70)
+        self.chain.probe.SetDepthMm(150)
+        _, marker = self.drawn()
+        data = self.scale.GetOutput()
+        parts = vtk_to_numpy(data.GetCellData().GetArray("Part"))
+        self.assertEqual(np.count_nonzero(parts == 1), 1)  # no letter
+        dot = data.GetCell(int(np.flatnonzero(parts == 1)[0])).GetBounds()
+        radius = (dot[1] - dot[0]) / 2
+        half = np.radians(35)
+        to_line = marker[0] * np.cos(half) - (marker[1] + 60) * np.sin(half)
+        self.assertGreater(to_line, 1.5 * radius)
+        self.assertLess(to_line, 10 * radius)
+
     def test_a_matrix_has_none(self):
         self.chain.probe.SetScanKind(MATRIX)
         self.scale.Update()

@@ -27,6 +27,15 @@ Show(OutputPort(ALine(Input=OutputPort(ultrasound, 2)), 2), view)
 Render()
 SaveState(sys.argv[1])
 """
+ELSEWHERE = """
+image = servermanager.Fetch(ThoraxPhantom(Spacingmm=4))
+image.SetOrigin(image.GetOrigin()[0] + 300, *image.GetOrigin()[1:])
+for name in ("A4CPositionMm", "A4CAxial", "A4CLateral"):
+    image.GetFieldData().RemoveArray(name)
+moved = TrivialProducer()
+moved.GetClientSideObject().SetOutput(image)
+SaveData(sys.argv[1], proxy=moved)
+"""
 # What the third place for the liver is, by the filter behind the panel.
 THIRD_WINDOW = """
 import json
@@ -135,6 +144,55 @@ class TestGui(GuiCase):
         self.assertAlmostEqual(picked_in_body[0], expected_in_body, delta=1)
         self.assertNotEqual(picked_in_body, picked)
 
+    def test_the_flat_view_fits_itself_until_somebody_zooms(self):
+        """To the fan and its ruler at each depth and of each probe; the probe in space stays out of it, and its layout
+        is not made twice."""
+        with tempfile.TemporaryDirectory() as folder:
+            clicked = pathlib.Path(folder, "clicked.pvsm")
+            screen = pathlib.Path(folder, "clicked.ppm")
+            with self.look_after(clicked, screen, "400x280+735+210", "100%"):
+                self.assertEqual(self.play("fit.xml", folder, f"--data={self.label_map(folder)}"), [])
+            names = ("first", "deep", "linear", "zoomed", "kept", "reset")
+            scales = {name: self.flat_camera(pathlib.Path(folder, name + ".pvsm"))[2] for name in names}
+            (width, height), _, _ = self.flat_camera(clicked)
+            again = ElementTree.parse(pathlib.Path(folder, "again.pvsm"))
+            pixels = screen.read_bytes()[-3 * 400 * 280:]
+        chord = 2 * math.sin(math.pi / 4)
+        for name, depth, fan in (("first", 160, 160 * chord), ("deep", 300, 300 * chord), ("linear", 40, 38.7),
+                                 ("reset", 60, 38.7)):
+            seen = max(depth / 2, fan / 2 * height / width)
+            self.assertTrue(seen < scales[name] < 1.35 * seen, (name, seen, scales))
+        self.assertGreater(abs(scales["zoomed"] / scales["linear"] - 1), 0.05)
+        self.assertEqual(scales["kept"], scales["zoomed"])
+        # Grey, and the scan line in yellow; nothing as blue or as green as the probe's handles.
+        self.assertFalse(any(max(pixels[i + 1], pixels[i + 2]) > pixels[i] + 60 for i in range(0, len(pixels), 3)))
+        layouts = [item.get("name") for group in again.iter("ProxyCollection") if group.get("name") == "layouts"
+                   for item in group]
+        self.assertEqual(layouts, ["Layout #1", "Ultrasound"])
+
+    def test_the_eye_of_the_error_map_shows_it(self):
+        """In the body instead of the image, in the flat view as the flat image's colours, and each back again."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("error_eye.xml", folder, f"--data={self.label_map(folder)}"), [])
+            states = {name: pathlib.Path(folder, name + ".pvsm") for name in ("map", "image", "flat_map", "flat_image")}
+            shown = {name: self.shown_of_ultrasound(state) for name, state in states.items()}
+            made = [self.values_of(state, "SonoUltrasound", "ErrorMap") for state in states.values()]
+        self.assertEqual(made, [[1]] * 4)
+        self.assertEqual([("0" in each, "8" in each) for each in shown.values()], [(False, True)] + [(True, False)] * 3)
+        self.assertEqual([each["7"] for each in shown.values()], ["BMode", "BMode", "ErrorPercent", "BMode"])
+
+    def shown_of_ultrasound(self, state):
+        """By which array each visible output of Simulate Ultrasound is coloured, by the output's number."""
+        tree = ElementTree.parse(state)
+        (ultrasound,) = (p for p in tree.iter("Proxy") if p.get("type") == "SonoUltrasound")
+        shown = {}
+        for proxy in tree.iter("Proxy"):
+            for source in proxy.findall("Property[@name='Input']/Proxy"):
+                if proxy.get("group") == "representations" and source.get("value") == ultrasound.get("id") and \
+                        self.texts(proxy, "Visibility") == ["1"]:
+                    shown[source.get("output_port")] = self.texts(proxy, "ColorArrayName")[-1]
+        return shown
+
     def test_what_is_behind_the_camera_or_plots_other_lines_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("behind.xml", folder, f"--script={PLAYBACKS / 'behind.py'}"), [])
@@ -182,15 +240,16 @@ class TestGui(GuiCase):
 
     def place_in_flat_view(self, state, across, down):
         """Where a part of the flat view's width and height is in its image: lateral and depth in mm."""
-        for view in ElementTree.parse(state).iter("Proxy"):
-            if view.get("type") == "RenderView" and self.values(view, "InteractionMode") == [1] and \
-                    self.values(view, "OrientationAxesVisibility") == [0]:
-                width, height = self.values(view, "ViewSize")
-                centre = self.values(view, "CameraFocalPoint")
-                (scale,) = self.values(view, "CameraParallelScale")
-                return (centre[0] + (across - 0.5) * 2 * scale * width / height,
-                        centre[1] + (down - 0.5) * 2 * scale)
-        return self.fail("There is no flat view.")
+        (width, height), centre, scale = self.flat_camera(state)
+        return centre[0] + (across - 0.5) * 2 * scale * width / height, centre[1] + (down - 0.5) * 2 * scale
+
+    def flat_camera(self, state):
+        """The flat view's size, and at what it looks with half of which height, in mm."""
+        (view,) = (view for view in ElementTree.parse(state).iter("Proxy")
+                   if view.get("type") == "RenderView" and self.values(view, "InteractionMode") == [1] and
+                   self.values(view, "OrientationAxesVisibility") == [0])
+        return (self.values(view, "ViewSize"), self.values(view, "CameraFocalPoint"),
+                self.values(view, "CameraParallelScale")[0])
 
     @staticmethod
     def texts(proxy, name):
@@ -260,6 +319,18 @@ class TestGui(GuiCase):
         self.assertEqual(files, [["linear_l14"], [""]])
         self.assertEqual(depth, [160])
 
+    def test_live_shows_the_display_s_settings_and_presets_without_apply(self):
+        """A slider's steps are one step of undo, what lies beyond it can be typed, and the rest goes on waiting."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("live.xml", folder, f"--script={PLAYBACKS / 'window.py'}"), [])
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("slid", "undone", "typed", "preset")]
+            gains, paths, kinds = ([self.values_of(state, "SonoUltrasound", name)[0] for state in states]
+                                   for name in ("GainDb", "PathsPerLine", "ScanKind"))
+        self.assertTrue(10 < gains[0] < 20, gains)  # 70 parts of 100 from -40 to 40 dB are 16
+        self.assertEqual(gains[1:], [0, 120, 120])
+        self.assertEqual(paths, [20, 20, 20, 33])
+        self.assertEqual(kinds, [1, 1, 1, 2])
+
     def test_find_window(self):
         """For an organ that is not there the probe stays where it is. For the liver the button places it on the skin,
         with the probe for it, and offers four other places, to one of which it goes when that is picked."""
@@ -280,6 +351,22 @@ class TestGui(GuiCase):
         self.assertGreater(math.dist(places[0], places[1]), 40)
         self.assertGreaterEqual(math.dist(places[1], places[2]), 40)  # so far apart are those that are offered
         self.assertLess(math.dist(places[2], expected["place"]), 1e-3)
+
+    def test_reset_goes_to_the_first_pose_of_the_body_that_is_shown(self):
+        """Of a body 300 mm from the bundled one, which brings no pose along."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.run_script(ELSEWHERE, folder, pathlib.Path(folder, "elsewhere.vti"))
+            script = pathlib.Path(folder, "window.py")
+            script.write_text((PLAYBACKS / script.name).read_text().replace(
+                'ThoraxPhantom(registrationName="thorax", Spacingmm=4)',
+                'LabelMapReader(registrationName="thorax", FileName=["elsewhere.vti"])'))
+            self.assertEqual(self.play("reset.xml", folder, f"--script={script}"), [])
+            first, turned, reset = (self.probe_of(pathlib.Path(folder, name + ".pvsm"), "SonoUltrasound")
+                                    for name in ("first", "turned", "reset"))
+        self.assertGreater(first["PositionMm"][0], 200)
+        self.assertNotEqual(turned["Axial"], first["Axial"])
+        self.assertLess(math.dist(reset["PositionMm"], first["PositionMm"]), 1e-3)
+        self.assertLess(math.dist(reset["Axial"], first["Axial"]), 1e-4)
 
     def test_standard_views_are_offered_by_name(self):
         """A search moves nothing; the view that is chosen then does."""
@@ -349,13 +436,13 @@ class TestGui(GuiCase):
         self.assertTrue(pictures[-1] == 8192 or 0 < float(rounds[-1][1]) <= 0.2, rounds[-1])
 
     @contextlib.contextmanager
-    def look_after(self, path, seen):
+    def look_after(self, path, seen, *cut):
         """Photographs the screen three seconds after a file has appeared."""
         def look():
             for _ in range(3000):
                 if path.exists():
                     time.sleep(3)
-                    save_screen(seen, self.frame_buffer)
+                    save_screen(seen, self.frame_buffer, *cut)
                     return
                 time.sleep(0.1)
 

@@ -171,7 +171,7 @@ class TestStanding(unittest.TestCase):
         self.probe.GetSkin().SetSurfaces(None)
         before = pose(self.probe)
         self.assertFalse(self.probe.SnapToSkin())
-        self.assertIn("show the Ultrasound Scene", self.probe.GetMessage())
+        self.assertIn("click the eye of Anatomy, or of the Ultrasound Scene", self.probe.GetMessage())
         self.assertFalse(self.probe.Walk(1, 0))
         np.testing.assert_array_equal(pose(self.probe), before)
 

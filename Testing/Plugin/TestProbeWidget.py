@@ -8,7 +8,10 @@ import numpy as np
 from probecase import angle, pose, sphere, turned
 from sonovdb.vtkSonoFilters import vtkSonoProbeSource
 from sonovdb.vtkSonoWidgets import vtkSonoProbeRepresentation as Probe, vtkSonoProbeWidget
-from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkRenderingCore import (vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor, vtkTextProperty,
+                                         vtkTextRenderer)
+import vtkmodules.vtkRenderingFreeType
 
 
 class TestPose(unittest.TestCase):
@@ -82,9 +85,43 @@ class TestPose(unittest.TestCase):
         self.probe.ChangeDepth(-1e6)
         self.assertEqual(self.probe.GetDepthMm(), 1)
         self.probe.SetPresetFile("some.json")
+        self.assertEqual(self.probe.GetMessage(), "")
         self.probe.ChangeDepth(15)
         self.assertEqual(self.probe.GetDepthMm(), 1)
         self.assertIn("preset", self.probe.GetMessage())
+
+
+    def test_a_message_ends_when_its_number_is_set_otherwise(self):
+        self.probe.ChangeDepth(15)
+        self.probe.SetDepthMm(175)  # as the panel does that follows
+        self.assertIn("175 mm", self.probe.GetMessage())
+        self.probe.SetDepthMm(300)
+        self.assertEqual(self.probe.GetMessage(), "")
+        self.probe.ChangeDepth(15)
+        self.probe.SetNumber("SectorDeg", 60)
+        self.assertEqual(self.probe.GetMessage(), "")
+
+    def test_long_messages_are_drawn_in_lines(self):
+        """The sentence of a view that shows no surface, in a wide view, in one of a layout, and in a narrow one."""
+        self.probe.Walk(1, 0)
+        sentence = self.probe.GetMessage()
+        self.assertGreater(len(sentence), 80)
+        self.assertEqual(self.probe.GetMessageLines(4000), sentence)
+        for width in (420, 200):
+            lines = self.probe.GetMessageLines(width).split("\n")
+            self.assertEqual(" ".join(lines), sentence)
+            widths = [text_width(line) for line in lines]
+            self.assertLess(max(widths), width)
+            self.assertGreater(min(widths[:-1]), 0.5 * width)  # no line more than it takes
+
+
+def text_width(text):
+    """Of 16 pixels' Arial, as VTK draws it into an image."""
+    properties, image, size = vtkTextProperty(), vtkImageData(), [0, 0]
+    properties.SetFontSize(16)
+    properties.SetShadow(True)
+    vtkTextRenderer.GetInstance().RenderString(properties, text, image, size, 72)
+    return size[0]
 
 
 class TestMouse(unittest.TestCase):

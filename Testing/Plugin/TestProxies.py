@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 
 from paraview import servermanager, simple
 from sonovdb import vtkSonoFilters
+from vtkmodules.vtkCommonCore import reference
 
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
@@ -44,7 +45,21 @@ def values(value):
     return list(value) if isinstance(value, (tuple, list)) else [value]
 
 
+def slider(shown):
+    """From where to where a panel's slider reaches; None without one."""
+    domain = shown.GetDomain("range") if shown.IsA("vtkSMVectorProperty") and shown.GetNumberOfElements() == 1 else None
+    if not domain or not domain.GetMinimumExists(0) or not domain.GetMaximumExists(0):
+        return None
+    return domain.GetMinimum(0, reference(0)), domain.GetMaximum(0, reference(0))
+
+
 class TestProxies(unittest.TestCase):
+    def proxies(self):
+        manager = servermanager.ProxyManager()
+        for name in CLASSES:
+            group, description = described(name)
+            yield manager.NewProxy(group, description.get("name"))
+
     def each(self):
         for name, kind in CLASSES.items():
             with self.subTest(filter=name):
@@ -128,6 +143,34 @@ class TestProxies(unittest.TestCase):
                 self.assertRegex(tooltip, r"\b(mm|cm|dB|kPa|MHz|m/s|degrees|seconds|no unit)\b")
                 self.assertRegex(tooltip, r"\d|any place")
         self.assertGreater(numbers, 60)
+
+    def test_sliders_reach_as_far_as_a_scanner_s(self):
+        """On each filter that has the setting; what is valid beyond them is taken all the same."""
+        sliders = {"GainDb": (-40, 40), "DynamicRangeDb": (20, 100), "TgcDbPerCm": (0, 10), "SectorDeg": (10, 120),
+                   "LineCount": (16, 512), "PathsPerLine": (1, 4096)}
+        found = 0
+        for proxy in self.proxies():
+            for name, ends in sliders.items():
+                if proxy.GetProperty(name):
+                    found += 1
+                    self.assertEqual(slider(proxy.GetProperty(name)), ends)
+        self.assertGreaterEqual(found, 12)
+        louder = CLASSES["vtkSonoBMode"]()
+        louder.SetGainDb(120)
+        self.assertEqual(louder.GetGainDb(), 120)
+
+    def test_every_slider_has_the_default_on_it(self):
+        sliders = 0
+        for proxy in self.proxies():
+            properties = proxy.NewPropertyIterator()
+            while not properties.IsAtEnd():
+                shown, name = properties.GetProperty(), properties.GetKey()
+                properties.Next()
+                ends = slider(shown)
+                if ends:
+                    sliders += 1
+                    self.assertTrue(ends[0] <= shown.GetElement(0) <= ends[1], (proxy.GetXMLName(), name))
+        self.assertGreater(sliders, 100)
 
     def test_simple_panels_are_short(self):
         """What few people touch is advanced: of Simulate Ultrasound's settings the most."""
