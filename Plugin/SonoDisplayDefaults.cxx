@@ -235,10 +235,13 @@ void sonoInstallDisplayDefaults()
   {
     return;
   }
-  // The colour map that an array gets when it is first shown; a person's own settings have a higher priority.
+  // The colour map that an array gets when it is first shown, and the reader that a file gets without a question: of a
+  // segmentation ParaView's own would lose names and place. A person's own settings have a higher priority.
   vtkSMSettings::GetInstance()->AddCollectionFromString(
     R"json({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale",
-      "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"}})json",
+      "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"},
+      "settings": {"RepresentedArrayListSettings":
+        {"ReaderDetails": ["*.seg.nrrd", "sources", "SonoLabelMapReader"]}}})json",
     0.0);
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);

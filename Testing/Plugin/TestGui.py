@@ -208,6 +208,16 @@ class TestGui(GuiCase):
     def values_of(self, state, kind, name):
         return [float(text) for text in self.texts_of(state, kind, name)]
 
+    def test_a_segmentation_is_opened_by_its_own_reader(self):
+        """Not by ParaView's for NRRD, which knows neither its segments nor where it lies."""
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "thing.seg.nrrd").write_bytes(THREE_LABELS)
+            self.assertEqual(self.play("open_segmentation.xml", folder), [])
+            readers = {p.get("type") for p in ElementTree.parse(pathlib.Path(folder, "opened.pvsm")).iter("Proxy")
+                       if p.get("group") == "sources"}
+        self.assertIn("SonoLabelMapReader", readers)
+        self.assertFalse(readers & {"NrrdReader", "PNrrdReader"})
+
     def test_tissue_editor(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("tissues.xml", folder, f"--data={self.label_map(folder)}"), [])
