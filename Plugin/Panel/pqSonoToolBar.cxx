@@ -9,9 +9,11 @@
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
@@ -82,6 +84,11 @@ void pqSonoToolBar::updateActions()
 void pqSonoToolBar::simulate()
 {
   pqOutputPort* port = pqActiveObjects::instance().activePort();
+  if (port->getSource()->modifiedState() != pqProxy::UNMODIFIED)
+  {
+    // As if Apply had been clicked before, so that it does not wait to show a slice of the labels in the new views.
+    pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>()->apply();
+  }
   BEGIN_UNDO_SET(tr("Simulate Ultrasound"));
   QMap<QString, QList<pqOutputPort*>> inputs;
   inputs["Input"] << port;

@@ -119,6 +119,13 @@ class TestGui(GuiCase):
             # Fonts and triangles are drawn a little differently from driver to driver.
             self.compare(picture, "-fail", "0.1", "-failpercent", "1")
 
+    def test_the_fan_applies_what_waits(self):
+        """So that no later Apply shows a slice of the labels in the body's view."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("fan_first.xml", folder), [])
+            state = pathlib.Path(folder, "fan_first.pvsm")
+            self.assertEqual(self.values_of(state, "SonoThoraxSource", "SpacingMm"), [4])
+
     def test_a_click_in_the_flat_image_picks_its_scan_line(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("pick_line.xml", folder, f"--data={self.label_map(folder)}"), [])
