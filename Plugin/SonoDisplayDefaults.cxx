@@ -9,6 +9,7 @@
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
@@ -118,6 +119,29 @@ void keepInPlace(vtkSMProxy* representation)
   }
 }
 
+/// Whether there is one of our sources, whose worlds are in mm.
+bool hasUltrasound(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMProxyIterator> sources;
+  sources->SetSessionProxyManager(manager);
+  sources->SetModeToOneGroup();
+  for (sources->Begin("sources"); !sources->IsAtEnd(); sources->Next())
+  {
+    if (std::strncmp(sources->GetProxy()->GetXMLName(), "Sono", 4) == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// ParaView's ruler knows no unit.
+void measureInMm(vtkSMProxy* representation)
+{
+  vtkSMPropertyHelper(representation, "LabelFormat", true).Set("%.1f mm");
+  representation->UpdateVTKObjects();
+}
+
 /// Whether a bar shows the labels' own colours or grey, which need none.
 bool isNeedless(vtkSMProxy* bar)
 {
@@ -214,6 +238,10 @@ public:
     else if (isOutput(input, port, "SonoErrorMap", vtkSonoUltrasound::ERROR_MAP))
     {
       keepInPlace(registered->Proxy);
+    }
+    else if (equal(input->GetXMLName(), "Ruler") && hasUltrasound(input->GetSessionProxyManager()))
+    {
+      measureInMm(registered->Proxy);
     }
     else if (isRays(input, port))
     {

@@ -240,6 +240,18 @@ class TestGui(GuiCase):
         for file in ("mine_labels.csv", "mine_tissues.csv"):
             self.assertIn(file, state)
 
+    def test_tissues_are_tried_without_files_and_follow_undo(self):
+        with tempfile.TemporaryDirectory() as folder:
+            errors = self.play("try_tissues.xml", folder, f"--data={self.label_map(folder)}")
+            self.assertEqual(errors, [])
+            self.assertEqual(list(pathlib.Path(folder).glob("**/*.csv")), [])
+            tried, undone, again = (self.texts_of(pathlib.Path(folder, name + ".pvsm"), "SonoSceneBuilder",
+                                                  "TissueTableText")[0] for name in ("tried", "undone", "again"))
+        skins = [next(csv.DictReader(row for row in text.splitlines() if row.startswith(("tissue,", "skin,"))))
+                 for text in (tried, again)]
+        self.assertEqual([skin["impedance_MRayl"] == "1.95" for skin in skins], [True, False])
+        self.assertEqual(undone, "")
+
     def test_the_tissue_editor_lists_guesses_first(self):
         with tempfile.TemporaryDirectory() as folder:
             labels, image = (str(pathlib.Path(folder, name)) for name in ("two.nrrd", "two.vti"))
