@@ -100,6 +100,18 @@ std::string vtkSonoLabelTable::Refusal(const std::string& tissue, const std::str
   }
 }
 
+std::string vtkSonoLabelTable::Meaning(const std::string& column)
+{
+  for (const sono::TissueColumn& known : sono::tissueColumns())
+  {
+    if (column == known.name)
+    {
+      return known.meaning;
+    }
+  }
+  return {};
+}
+
 int vtkSonoLabelTable::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");

@@ -38,6 +38,11 @@ public:
    */
   static std::string Refusal(const std::string& tissue, const std::string& column, double value);
 
+  /**
+   * What a column of the tissue table says, a sentence with unit and range; empty for one that is no number.
+   */
+  static std::string Meaning(const std::string& column);
+
 protected:
   vtkSonoLabelTable();
   ~vtkSonoLabelTable() override;

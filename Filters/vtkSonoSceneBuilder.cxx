@@ -3,6 +3,7 @@
 #include "Core/KeptResults.h"
 #include "Core/KeyText.h"
 #include "Labels/BodyFill.h"
+#include "Labels/LabelTable.h"
 #include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
 #include "Labels/TissueTable.h"
@@ -48,6 +49,8 @@ void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TissueTableFile: " << this->TissueTableFile << endl;
   os << indent << "LabelTissueFile: " << this->LabelTissueFile << endl;
   os << indent << "LabelTableFile: " << this->LabelTableFile << endl;
+  os << indent << "TissueTableText: " << this->TissueTableText << endl;
+  os << indent << "LabelTableText: " << this->LabelTableText << endl;
   os << indent << "FallbackTissue: " << this->FallbackTissue << endl;
   os << indent << "OutsideTissue: " << this->OutsideTissue << endl;
   os << indent << "FillBody: " << this->FillBody << endl;
@@ -77,9 +80,11 @@ std::string vtkSonoSceneBuilder::SettingsKey()
   {
     sono::KeyText key;
     key.add("anatomy");
-    key.add(sono::fileKey(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
+    key.add(this->TissueTableText.empty() ? sono::fileKey(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv"))
+                                          : this->TissueTableText);
     key.add(sono::fileKey(sono::chosenOrBundled(this->LabelTissueFile, "label_tissues.csv")));
-    key.add(this->LabelTableFile.empty() ? std::string() : sono::fileKey(this->LabelTableFile));
+    key.add(this->LabelTableText.empty() && !this->LabelTableFile.empty() ? sono::fileKey(this->LabelTableFile)
+                                                                          : this->LabelTableText);
     key.add(this->FallbackTissue).add(this->OutsideTissue).add(double(this->FillBody));
     sono::addParameters(sono::settingsIn<sono::BodyFillSettings>(*this->Parameters), key);
     return key.text();
@@ -101,6 +106,13 @@ int vtkSonoSceneBuilder::RequestUpdateExtent(vtkInformation*, vtkInformationVect
   return sono::requestWholeImage(input);
 }
 
+sono::TissueTable vtkSonoSceneBuilder::ReadTissues() const
+{
+  return this->TissueTableText.empty()
+           ? sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv"))
+           : sono::TissueTable::parse(this->TissueTableText, "the tissue editor's tissues");
+}
+
 sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
 {
   const sono::Progress progress = sono::progressOf(this);
@@ -112,7 +124,11 @@ sono::LabelVolume vtkSonoSceneBuilder::ReadLabels(vtkInformationVector** input)
     const auto& settings = sono::settingsIn<sono::BodyFillSettings>(*this->Parameters);
     sono::fillBody(volume, settings, sono::partOf(progress, 0.05, 0.1));
   }
-  if (!this->LabelTableFile.empty())
+  if (!this->LabelTableText.empty())
+  {
+    sono::describeLabels(sono::parseLabels(this->LabelTableText, "the tissue editor's labels"), volume);
+  }
+  else if (!this->LabelTableFile.empty())
   {
     sono::readLabelTable(this->LabelTableFile, volume);
   }
@@ -135,8 +151,7 @@ sono::SharedAnatomy vtkSonoSceneBuilder::Build(vtkInformationVector** input, boo
   const sono::Progress progress = sono::progressOf(this);
   this->Warnings.clear();
   sono::LabelVolume volume = this->ReadLabels(input);
-  const auto table = std::make_shared<const sono::TissueTable>(
-    sono::TissueTable::read(sono::chosenOrBundled(this->TissueTableFile, "tissues.csv")));
+  const auto table = std::make_shared<const sono::TissueTable>(this->ReadTissues());
   const sono::GridPlacement placement = volume.placement;
   this->AssignTissues(*table, volume);
   std::vector<std::uint8_t> detail = sono::scanDetailOf(vtkImageData::GetData(input[0]));

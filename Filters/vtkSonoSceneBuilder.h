@@ -61,6 +61,17 @@ public:
 
   ///@{
   /**
+   * The text of a tissue table and of a label table (CSV), in place of the files: what the tissue editor tries without
+   * saving it. Default empty, where the files count.
+   */
+  vtkSetStdStringFromCharMacro(TissueTableText);
+  vtkGetCharFromStdStringMacro(TissueTableText);
+  vtkSetStdStringFromCharMacro(LabelTableText);
+  vtkGetCharFromStdStringMacro(LabelTableText);
+  ///@}
+
+  ///@{
+  /**
    * Tissue of the labels that no pattern matches. A warning names them, and those of which the table only guesses what
    * they are. Default soft_tissue.
    */
@@ -147,6 +158,7 @@ private:
   vtkSonoSceneBuilder(const vtkSonoSceneBuilder&) = delete;
   void operator=(const vtkSonoSceneBuilder&) = delete;
 
+  sono::TissueTable ReadTissues() const;
   sono::LabelVolume ReadLabels(vtkInformationVector** input);
   void AssignTissues(const sono::TissueTable& table, sono::LabelVolume& volume);
   sono::SharedAnatomy Build(vtkInformationVector** input, bool cached);
@@ -155,6 +167,8 @@ private:
   std::string TissueTableFile;
   std::string LabelTissueFile;
   std::string LabelTableFile;
+  std::string TissueTableText;
+  std::string LabelTableText;
   std::string FallbackTissue = "soft_tissue";
   std::string OutsideTissue = "air";
   std::unique_ptr<sono::ParameterSet> Parameters;

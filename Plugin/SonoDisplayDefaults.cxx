@@ -9,6 +9,7 @@
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
@@ -118,6 +119,29 @@ void keepInPlace(vtkSMProxy* representation)
   }
 }
 
+/// Whether there is one of our sources, whose worlds are in mm.
+bool hasUltrasound(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMProxyIterator> sources;
+  sources->SetSessionProxyManager(manager);
+  sources->SetModeToOneGroup();
+  for (sources->Begin("sources"); !sources->IsAtEnd(); sources->Next())
+  {
+    if (std::strncmp(sources->GetProxy()->GetXMLName(), "Sono", 4) == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// ParaView's ruler knows no unit.
+void measureInMm(vtkSMProxy* representation)
+{
+  vtkSMPropertyHelper(representation, "LabelFormat", true).Set("%.1f mm");
+  representation->UpdateVTKObjects();
+}
+
 /// Whether a bar shows the labels' own colours or grey, which need none.
 bool isNeedless(vtkSMProxy* bar)
 {
@@ -215,6 +239,10 @@ public:
     {
       keepInPlace(registered->Proxy);
     }
+    else if (equal(input->GetXMLName(), "Ruler") && hasUltrasound(input->GetSessionProxyManager()))
+    {
+      measureInMm(registered->Proxy);
+    }
     else if (isRays(input, port))
     {
       showRays(registered->Proxy);
@@ -235,10 +263,13 @@ void sonoInstallDisplayDefaults()
   {
     return;
   }
-  // The colour map that an array gets when it is first shown; a person's own settings have a higher priority.
+  // The colour map that an array gets when it is first shown, and the reader that a file gets without a question: of a
+  // segmentation ParaView's own would lose names and place. A person's own settings have a higher priority.
   vtkSMSettings::GetInstance()->AddCollectionFromString(
     R"json({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale",
-      "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"}})json",
+      "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"},
+      "settings": {"RepresentedArrayListSettings":
+        {"ReaderDetails": ["*.seg.nrrd", "sources", "SonoLabelMapReader"]}}})json",
     0.0);
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);

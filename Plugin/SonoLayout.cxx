@@ -8,6 +8,7 @@
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkSMViewLayoutProxy.h"
 #include "vtkSmartPointer.h"
 #include "vtkSonoUltrasound.h"
@@ -69,6 +70,7 @@ void showPlainly(vtkSMSourceProxy* source, unsigned int port, std::initializer_l
                  vtkSMViewProxy* view, Controller* controller)
 {
   vtkSMProxy* representation = controller->Show(source, static_cast<int>(port), view);
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", representation);
   vtkSMPVRepresentationProxy::SetScalarColoring(representation, nullptr, 0);
   for (const char* name : { "AmbientColor", "DiffuseColor" })
   {
@@ -83,12 +85,15 @@ void showPlainly(vtkSMSourceProxy* source, unsigned int port, std::initializer_l
 /// Grey on black, the transducer on top, with the depth scale and the probe's marker.
 void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, vtkSMSourceProxy* scale, Controller* controller)
 {
-  const double black[3] = { 0.0, 0.0, 0.0 };
-  vtkSMPropertyHelper(view, "UseColorPaletteForBackground", true).Set(0);
-  vtkSMPropertyHelper(view, "Background", true).Set(black, 3);
-  vtkSMPropertyHelper(view, "OrientationAxesVisibility", true).Set(0);
-  vtkSMPropertyHelper(view, "InteractionMode", true).Set(1); // 2D
-  view->UpdateVTKObjects();
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
+    const double black[3] = { 0.0, 0.0, 0.0 };
+    vtkSMPropertyHelper(view, "UseColorPaletteForBackground", true).Set(0);
+    vtkSMPropertyHelper(view, "Background", true).Set(black, 3);
+    vtkSMPropertyHelper(view, "OrientationAxesVisibility", true).Set(0);
+    vtkSMPropertyHelper(view, "InteractionMode", true).Set(1); // 2D
+    view->UpdateVTKObjects();
+  }
   showQuietly(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, view, controller);
   showPlainly(scale, 0, { 0.85, 0.85, 0.85 }, 1.0, view, controller);
   // From the side where x, lateral, runs to the right and y, depth, down.
@@ -169,11 +174,12 @@ std::string freeName(vtkSMSessionProxyManager* manager)
   return name;
 }
 
-/// Over the depth, RF to the left axis and the envelope in dB to the right one.
-void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* controller)
+constexpr std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
+constexpr std::array<double, 3> envelopeColor{ 0.15, 0.4, 0.7 };
+
+void nameAxes(vtkSMViewProxy* view)
 {
-  std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
-  std::array<double, 3> envelopeColor{ 0.15, 0.4, 0.7 };
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
   vtkSMPropertyHelper(view, "ChartTitle", true).Set("");
   vtkSMPropertyHelper(view, "BottomAxisTitle", true).Set("Depth (mm)");
   vtkSMPropertyHelper(view, "LeftAxisTitle", true).Set("RF");
@@ -190,7 +196,14 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
   vtkSMPropertyHelper(view, "RightAxisRangeMinimum", true).Set(-100.0);
   vtkSMPropertyHelper(view, "RightAxisRangeMaximum", true).Set(0.0);
   view->UpdateVTKObjects();
+}
+
+/// Over the depth, RF to the left axis and the envelope in dB to the right one.
+void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* controller)
+{
+  nameAxes(view);
   vtkSMProxy* plot = controller->Show(line, 0, view);
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", plot);
   vtkSMPropertyHelper(plot, "UseIndexForXAxis", true).Set(0);
   vtkSMPropertyHelper(plot, "XArrayName", true).Set("Depth (mm)");
   vtkSMPropertyHelper shown(plot, "SeriesVisibility", true);
@@ -201,8 +214,10 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
   }
   vtkSMPropertyHelper(plot, "SeriesPlotCorner", true).SetStatus("Envelope (dB)", 1);
   vtkSMPropertyHelper colors(plot, "SeriesColor", true);
-  colors.SetStatus("RF", rfColor.begin(), 3);
-  colors.SetStatus("Envelope (dB)", envelopeColor.begin(), 3);
+  for (auto [name, color] : { std::pair("RF", rfColor), std::pair("Envelope (dB)", envelopeColor) })
+  {
+    colors.SetStatus(name, color.data(), 3);
+  }
   plot->UpdateVTKObjects();
 }
 

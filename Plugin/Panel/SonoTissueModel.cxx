@@ -196,7 +196,14 @@ QString SonoTissueModel::setValue(int row, int column, const QString& text)
   return {};
 }
 
-QString SonoTissueModel::save(const QString& labelFile, const QString& tissueFile) const
+QString SonoTissueModel::meaning(int column) const
+{
+  const int number = 1 + column - FIRST_NUMBER;
+  return number < 1 ? QString()
+                    : QString::fromStdString(vtkSonoLabelTable::Meaning(tissueColumns_[number].toStdString()));
+}
+
+QString SonoTissueModel::labelText() const
 {
   QString labels = "id,name,r,g,b,tissue\n";
   for (const Label& label : labels_)
@@ -205,15 +212,25 @@ QString SonoTissueModel::save(const QString& labelFile, const QString& tissueFil
     labels += csvRow({ label.id, label.name, QString::number(color.red()), QString::number(color.green()),
                        QString::number(color.blue()), label.tissue });
   }
+  return labels;
+}
+
+QString SonoTissueModel::tissueText() const
+{
   QString tissues = csvRow(tissueColumns_);
   for (const QStringList& tissue : tissues_)
   {
     tissues += csvRow(tissue);
   }
+  return tissues;
+}
+
+QString SonoTissueModel::save(const QString& labelFile, const QString& tissueFile) const
+{
   if (!manager_)
   {
     return QObject::tr("The server that these tissues come from is gone; load them again.");
   }
-  const QString refusal = writeFile(manager_, labelFile, labels);
-  return refusal.isEmpty() ? writeFile(manager_, tissueFile, tissues) : refusal;
+  const QString refusal = writeFile(manager_, labelFile, labelText());
+  return refusal.isEmpty() ? writeFile(manager_, tissueFile, tissueText()) : refusal;
 }

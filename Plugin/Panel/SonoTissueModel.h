@@ -43,6 +43,13 @@ public:
   /// what is wrong, one sentence.
   QString save(const QString& labelFile, const QString& tissueFile) const;
 
+  /// What it writes.
+  QString labelText() const;
+  QString tissueText() const;
+
+  /// What a column says, a sentence with its unit; empty for a label's own.
+  QString meaning(int column) const;
+
 private:
   const QStringList* tissueNamed(const QString& name) const;
   QString setTissueNumber(const QString& tissue, int column, const QString& text);

@@ -85,10 +85,14 @@ void pqSonoLinePicker::release(vtkObject* caller, pqView* view)
     return;
   }
   {
-    SCOPED_UNDO_SET(tr("Pick Scan Line"));
+    // One step of undo; but looking at a line does not take away what may still be done again.
+    pqUndoStack* steps = pqApplicationCore::instance()->getUndoStack();
+    const bool isStep = steps && !steps->canRedo();
+    isStep ? BEGIN_UNDO_SET(tr("Pick Scan Line")) : BEGIN_UNDO_EXCLUDE();
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", picked.plot);
     vtkSMPropertyHelper(picked.plot, "Line").Set(picked.line);
     picked.plot->UpdateVTKObjects();
+    isStep ? END_UNDO_SET() : END_UNDO_EXCLUDE();
   }
   pqApplicationCore::instance()->render();
 }

@@ -4,13 +4,16 @@
 
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkSonoUltrasound.h"
 
 #include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
 #include "pqColorChooserButton.h"
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 #include "pqPipelineSource.h"
+#include "pqUndoStack.h"
 
 #include <QAction>
 #include <QBrush>
@@ -27,6 +30,19 @@
 
 namespace {
 
+/// What the filter's labels and tissues come from.
+const char* const tableProperties[] = { "LabelTableFile", "TissueTableFile", "LabelTableText", "TissueTableText" };
+
+QStringList tablesOf(pqPipelineSource* source)
+{
+  QStringList tables;
+  for (const char* name : tableProperties)
+  {
+    tables << QString::fromUtf8(vtkSMPropertyHelper(source->getProxy(), name).GetAsString());
+  }
+  return tables;
+}
+
 bool isA(pqPipelineSource* source, const char* name)
 {
   return source && std::strcmp(source->getProxy()->GetXMLName(), name) == 0;
@@ -38,6 +54,7 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   : QDockWidget(tr("Ultrasound Tissues"), parent)
   , table_(new QTableWidget)
   , message_(new QLabel)
+  , tryButton_(new QPushButton(tr("Try")))
   , saveButton_(new QPushButton(tr("Save and Use...")))
 {
   table_->setObjectName("SonoTissueTable");
@@ -46,6 +63,8 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   message_->setWordWrap(true);
   saveButton_->setObjectName("SonoTissueSave");
   saveButton_->setToolTip(tr("Write the label table and the tissue table as CSV files and have the filter use them"));
+  tryButton_->setObjectName("SonoTissueTry");
+  tryButton_->setToolTip(tr("Have the filter use what stands here without writing files; Undo takes it back"));
   auto* loadButton = new QPushButton(tr("Load Selected"));
   loadButton->setObjectName("SonoTissueLoad");
   loadButton->setToolTip(tr("Show the labels of the selected Ultrasound Scene or Simulate Ultrasound"));
@@ -55,6 +74,7 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   auto* rows = new QVBoxLayout(contents);
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(loadButton);
+  buttons->addWidget(tryButton_);
   buttons->addWidget(saveButton_);
   buttons->addStretch();
   rows->addLayout(buttons);
@@ -62,9 +82,11 @@ pqSonoTissueDock::pqSonoTissueDock(QWidget* parent)
   rows->addWidget(message_);
   this->setWidget(contents);
 
+  tryButton_->setEnabled(false);
   saveButton_->setEnabled(false);
   say(tr("Select an Ultrasound Scene or a Simulate Ultrasound in the pipeline browser and load it."));
   QObject::connect(loadButton, &QPushButton::clicked, this, [this] { load(); });
+  QObject::connect(tryButton_, &QPushButton::clicked, this, [this] { tryOut(); });
   QObject::connect(saveButton_, &QPushButton::clicked, this, [this] { save(); });
   QObject::connect(table_, &QTableWidget::cellChanged, this,
                    [this](int row, int column) { change(row, column, table_->item(row, column)->text()); });
@@ -86,8 +108,28 @@ void pqSonoTissueDock::load()
     return say(tr("What is selected is no Ultrasound Scene and no Simulate Ultrasound; select one and load it."));
   }
   source_ = selected;
-  const unsigned int port = isAll ? static_cast<unsigned int>(vtkSonoUltrasound::ANATOMY) : 0;
+  if (pqUndoStack* steps = pqApplicationCore::instance()->getUndoStack())
+  {
+    QObject::connect(steps, &pqUndoStack::undone, this, &pqSonoTissueDock::follow, Qt::UniqueConnection);
+    QObject::connect(steps, &pqUndoStack::redone, this, &pqSonoTissueDock::follow, Qt::UniqueConnection);
+  }
+  showTables();
+}
+
+void pqSonoTissueDock::follow()
+{
+  if (source_ && tablesOf(source_) != tables_)
+  {
+    showTables();
+  }
+}
+
+void pqSonoTissueDock::showTables()
+{
+  tables_ = tablesOf(source_);
+  const unsigned int port = isA(source_, "SonoUltrasound") ? static_cast<unsigned int>(vtkSonoUltrasound::ANATOMY) : 0;
   const bool loaded = model_.load(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), port);
+  tryButton_->setEnabled(loaded);
   saveButton_->setEnabled(loaded);
   const QString guesses = model_.guesses();
   say(loaded ? (guesses.isEmpty() ? QString() : tr("Guesses, to be looked at: %1. ").arg(guesses)) +
@@ -106,6 +148,10 @@ void pqSonoTissueDock::fill()
   table_->setRowCount(model_.rowCount());
   table_->setColumnCount(columns.size());
   table_->setHorizontalHeaderLabels(columns);
+  for (int column = 0; column < columns.size(); ++column)
+  {
+    table_->horizontalHeaderItem(column)->setToolTip(model_.meaning(column));
+  }
   table_->verticalHeader()->hide();
   for (int row = 0; row < model_.rowCount(); ++row)
   {
@@ -172,7 +218,7 @@ void pqSonoTissueDock::change(int row, int column, const QString& text)
   }
   const QString refusal = model_.setValue(row, column, text);
   message_->setStyleSheet(refusal.isEmpty() ? "" : "color: #c0392b");
-  say(refusal.isEmpty() ? tr("Changed; save to use it.") : refusal);
+  say(refusal.isEmpty() ? tr("Changed; try it, or save to use it.") : refusal);
   if (!refusal.isEmpty())
   {
     table_->scrollToItem(table_->item(row, column));
@@ -180,6 +226,34 @@ void pqSonoTissueDock::change(int row, int column, const QString& text)
     QToolTip::showText(table_->viewport()->mapToGlobal(cell.bottomLeft()), refusal, table_);
   }
   showValues(); // the old text where it was refused, other labels of the tissue where it was not
+}
+
+void pqSonoTissueDock::use(const QStringList& tables)
+{
+  vtkSMProxy* proxy = source_->getProxy();
+  {
+    SCOPED_UNDO_SET(tr("Change Tissues"));
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", proxy);
+    for (int i = 0; i < tables.size(); ++i)
+    {
+      vtkSMPropertyHelper(proxy, tableProperties[i]).Set(tables[i].toUtf8().data());
+    }
+    proxy->UpdateVTKObjects();
+  }
+  tables_ = tables;
+  source_->updatePipeline();
+  source_->renderAllViews();
+}
+
+void pqSonoTissueDock::tryOut()
+{
+  if (!source_)
+  {
+    return say(tr("What these tissues belong to was deleted; select another one and load it."));
+  }
+  message_->setStyleSheet("");
+  use({ tables_[0], tables_[1], model_.labelText(), model_.tissueText() });
+  say(tr("%1 uses this now; no file was written. Save to keep it.").arg(source_->getSMName()));
 }
 
 void pqSonoTissueDock::save()
@@ -207,11 +281,6 @@ void pqSonoTissueDock::save()
   {
     return say(refusal);
   }
-  vtkSMProxy* proxy = source_->getProxy();
-  vtkSMPropertyHelper(proxy, "LabelTableFile").Set(labels.toUtf8().data());
-  vtkSMPropertyHelper(proxy, "TissueTableFile").Set(tissues.toUtf8().data());
-  proxy->UpdateVTKObjects();
-  source_->updatePipeline();
-  source_->renderAllViews();
+  use({ labels, tissues, QString(), QString() });
   say(tr("Saved as %1 and %2, which %3 uses now.").arg(labels, tissues, source_->getSMName()));
 }

@@ -6,12 +6,15 @@
 #include "vtkPVDataInformation.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMViewProxy.h"
+#include "vtkSonoUltrasound.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
@@ -38,6 +41,14 @@ bool isLabelMapOrScene(pqOutputPort* port)
   }
   vtkPVDataInformation* data = port->getDataInformation();
   return data->GetDataSetType() == VTK_IMAGE_DATA || data->GetCompositeDataSetType() == VTK_MULTIBLOCK_DATA_SET;
+}
+
+/// A run that was stopped, or refused, has none.
+bool hasPicture(pqPipelineSource* source)
+{
+  auto* ultrasound = vtkSMSourceProxy::SafeDownCast(source->getProxy());
+  ultrasound->UpdatePipeline();
+  return ultrasound->GetDataInformation(vtkSonoUltrasound::FLAT_IMAGE)->GetNumberOfPoints() > 0;
 }
 
 /// Onto the screen, without waiting for the end of what a click does: the view's place in its window, its picture, and
@@ -82,6 +93,11 @@ void pqSonoToolBar::updateActions()
 void pqSonoToolBar::simulate()
 {
   pqOutputPort* port = pqActiveObjects::instance().activePort();
+  if (port->getSource()->modifiedState() != pqProxy::UNMODIFIED)
+  {
+    // As if Apply had been clicked before, so that it does not wait to show a slice of the labels in the new views.
+    pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>()->apply();
+  }
   BEGIN_UNDO_SET(tr("Simulate Ultrasound"));
   QMap<QString, QList<pqOutputPort*>> inputs;
   inputs["Input"] << port;
@@ -96,10 +112,31 @@ void pqSonoToolBar::simulate()
 void pqSonoToolBar::showLayout()
 {
   pqPipelineSource* source = pqActiveObjects::instance().activeSource();
+  if (!hasPicture(source))
+  {
+    // What is shown without data keeps the colours and the camera that it gets for want of them.
+    unshown_ = source;
+    QObject::connect(pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>(),
+                     QOverload<>::of(&pqPropertiesPanel::applied), this, &pqSonoToolBar::showUnshown,
+                     Qt::ConnectionType(Qt::QueuedConnection | Qt::UniqueConnection));
+    return;
+  }
+  unshown_ = nullptr;
   vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()), drawNow);
   pqActiveObjects::instance().setActiveSource(source);
   // Where the probe can be seen and dragged.
   pqActiveObjects::instance().setActiveView(
     pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(solid));
   pqApplicationCore::instance()->render();
+}
+
+void pqSonoToolBar::showUnshown()
+{
+  if (unshown_ && unshown_->modifiedState() == pqProxy::UNMODIFIED)
+  {
+    BEGIN_UNDO_SET(tr("Ultrasound Layout"));
+    pqActiveObjects::instance().setActiveSource(unshown_);
+    showLayout();
+    END_UNDO_SET();
+  }
 }

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <QPointer>
 #include <QToolBar>
 
 class pqPipelineSource;
 
 /// The toolbar "Ultrasound": simulate the selected label map and show the layout, all in one click; show the layout of
-/// the selected Simulate Ultrasound.
+/// the selected Simulate Ultrasound. One whose first run was stopped is laid out once Apply has made its picture.
 class pqSonoToolBar : public QToolBar
 {
   Q_OBJECT
@@ -17,7 +18,9 @@ private:
   void updateActions();
   void simulate();
   void showLayout();
+  void showUnshown();
 
   QAction* simulateAction_;
   QAction* layoutAction_;
+  QPointer<pqPipelineSource> unshown_; // waits for its first picture
 };

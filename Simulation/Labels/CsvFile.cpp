@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <sstream>
 
 namespace sono {
 
@@ -81,15 +82,8 @@ std::vector<std::string> splitLine(const std::string& line, const std::string& w
   return fields;
 }
 
-} // namespace
-
-CsvFile CsvFile::read(const std::string& path)
+CsvFile readTable(std::istream& stream, const std::string& path)
 {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-  {
-    throw Error("cannot read '" + path + "': no such file, or no permission to read it.");
-  }
   CsvFile csv;
   csv.path = path;
   std::string line;
@@ -104,7 +98,7 @@ CsvFile CsvFile::read(const std::string& path)
     {
       continue;
     }
-    Row row;
+    CsvFile::Row row;
     row.line = number;
     row.fields = isTabbed(path) ? splitAtTabs(line) : splitLine(content, csv.where(row));
     if (csv.header.empty())
@@ -125,6 +119,24 @@ CsvFile CsvFile::read(const std::string& path)
     throw Error("'" + path + "' has no header line; begin it with the names of its columns.");
   }
   return csv;
+}
+
+} // namespace
+
+CsvFile CsvFile::read(const std::string& path)
+{
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+  {
+    throw Error("cannot read '" + path + "': no such file, or no permission to read it.");
+  }
+  return readTable(stream, path);
+}
+
+CsvFile CsvFile::parse(const std::string& text, const std::string& name)
+{
+  std::istringstream stream(text);
+  return readTable(stream, name);
 }
 
 int CsvFile::column(const std::string& name) const

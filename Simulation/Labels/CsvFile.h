@@ -17,13 +17,15 @@ struct CsvFile
     std::vector<std::string> fields; ///< as many as the header has
   };
 
-  std::string path;
+  std::string path; ///< or the text's name
   std::vector<std::string> header;
   std::vector<Row> rows;
 
   /// Throws Error naming the file (and line) when it is missing, empty, or a line has a broken quote or more fields
   /// than the header.
   static CsvFile read(const std::string& path);
+  /// The same of a text, whose name stands for the file's in messages.
+  static CsvFile parse(const std::string& text, const std::string& name);
 
   /// Index of a column; -1 when the header lacks it.
   int column(const std::string& name) const;

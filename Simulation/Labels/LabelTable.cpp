@@ -107,9 +107,8 @@ void describeByColumns(const CsvFile& csv, const CsvFile::Row& row, LabelInfo& l
   describeByCode(codeOf("SegmentedPropertyType"), codeOf("SegmentedPropertyTypeModifier"), label);
 }
 
-std::vector<LabelInfo> labelsFromColumns(const std::string& path)
+std::vector<LabelInfo> labelsFromColumns(const CsvFile& csv)
 {
-  const CsvFile csv = CsvFile::read(path);
   const LabelColumns column(csv);
   if (!column.found())
   {
@@ -408,7 +407,12 @@ std::string onlyTable(const std::vector<fs::path>& files)
 
 std::vector<LabelInfo> readLabels(const std::string& path)
 {
-  return hasColumns(path) ? labelsFromColumns(path) : labelsFromText(path);
+  return hasColumns(path) ? labelsFromColumns(CsvFile::read(path)) : labelsFromText(path);
+}
+
+std::vector<LabelInfo> parseLabels(const std::string& text, const std::string& name)
+{
+  return labelsFromColumns(CsvFile::parse(text, name));
 }
 
 std::string labelTableBeside(const std::string& stem)

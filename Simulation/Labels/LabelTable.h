@@ -19,6 +19,8 @@ namespace sono {
 /// In the last three '#' starts a comment and lines before the first that begins with a number are skipped.
 /// Throws Error naming file and line for one that is missing or not of these forms.
 std::vector<LabelInfo> readLabels(const std::string& path);
+/// The same of the text of a CSV table, whose name stands for the file's in messages.
+std::vector<LabelInfo> parseLabels(const std::string& text, const std::string& name);
 
 /// The table that belongs to the label map STEM.nii (or with another ending), the first of:
 /// - STEM.csv, .label, .ctbl, .tsv or .txt;

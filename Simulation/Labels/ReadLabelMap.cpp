@@ -139,12 +139,17 @@ LabelVolume readLabelMap(const std::string& path, int phase, const Progress& pro
 
 void readLabelTable(const std::string& tablePath, LabelVolume& volume)
 {
+  describeLabels(readLabels(tablePath), volume);
+}
+
+void describeLabels(const std::vector<LabelInfo>& rows, LabelVolume& volume)
+{
   std::multimap<int, LabelInfo*> ofId; // a table may have as many rows as there are ids
   for (LabelInfo& label : volume.labels)
   {
     ofId.emplace(label.id, &label);
   }
-  for (const LabelInfo& row : readLabels(tablePath))
+  for (const LabelInfo& row : rows)
   {
     const auto [first, last] = ofId.equal_range(row.id);
     std::for_each(first, last, [&row](const auto& label) { copyDescription(row, *label.second); });

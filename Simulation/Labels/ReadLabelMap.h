@@ -28,6 +28,8 @@ LabelPhases readLabelPhases(const std::string& path);
 /// Sets names, and colours and tissues where the table has them, of the labels that occur. Throws Error as readLabels
 /// does.
 void readLabelTable(const std::string& tablePath, LabelVolume& volume);
+/// The same from rows that were read.
+void describeLabels(const std::vector<LabelInfo>& rows, LabelVolume& volume);
 
 /// Writes NIfTI-1 (.nii or .nii.gz, uint16, sform and qform) with label names and colours beside it in `<stem>.csv`.
 /// Throws Error when a file cannot be written or an axis has more than 32767 voxels.

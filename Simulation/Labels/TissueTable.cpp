@@ -18,26 +18,44 @@ struct Property
   double Tissue::*member;
   double minimum;
   double maximum;
+  const char* meaning;
   bool optional = false; ///< a table without its column gives every tissue the default
 };
 
 constexpr double unlimited = std::numeric_limits<double>::max();
 
 const Property properties[] = {
-  { "impedance_MRayl", &Tissue::impedanceMRayl, 1e-4, 1e4 },
-  { "sound_speed_m_per_s", &Tissue::soundSpeedMPerS, 10.0, 1e5 },
-  { "attenuation_dB_per_cm_MHz", &Tissue::attenuationDbPerCmMHz, 0.0, unlimited },
-  { "mu0", &Tissue::scattererMean, 0.0, 1.0 },
-  { "sigma0", &Tissue::scattererSigma, 0.0, 1.0 },
-  { "mu1", &Tissue::scattererProbability, 0.0, 1.0 },
-  { "tau", &Tissue::tau, 0.0, 3.0 },
-  { "gamma", &Tissue::gamma, -2.0, 2.0 },
-  { "roughness_mm", &Tissue::roughnessMm, 0.0, 10.0, true },
-  { "correlation_mm", &Tissue::correlationMm, 0.01, 100.0, true },
-  { "backscatter_1MHz_per_cm_sr", &Tissue::backscatterPerCmSr, 0.0, 1.0, true },
-  { "backscatter_exponent", &Tissue::backscatterExponent, 0.0, 6.0, true },
-  { "fibre_anisotropy_dB", &Tissue::fibreAnisotropyDb, 0.0, 60.0, true },
-  { "nonlinearity", &Tissue::nonlinearity, 0.0, 20.0, true },
+  { "impedance_MRayl", &Tissue::impedanceMRayl, 1e-4, 1e4,
+    "Acoustic impedance in MRayl, 0.0001 to 10000: its step at a boundary is what echoes." },
+  { "sound_speed_m_per_s", &Tissue::soundSpeedMPerS, 10.0, 1e5,
+    "Speed of sound in m/s, 10 to 100000: bends paths, and shifts what lies behind." },
+  { "attenuation_dB_per_cm_MHz", &Tissue::attenuationDbPerCmMHz, 0.0, unlimited,
+    "Attenuation of the amplitude in dB/cm/MHz, one way, at least 0." },
+  { "mu0", &Tissue::scattererMean, 0.0, 1.0,
+    "Mean amplitude of the scatterers, no unit, 0 to 1: how bright the speckle is in the model Amadou 2024; not used "
+    "by Acoustic." },
+  { "sigma0", &Tissue::scattererSigma, 0.0, 1.0,
+    "Standard deviation of the scatterers' amplitudes, no unit, 0 to 1: how uneven the speckle is in the model Amadou "
+    "2024; not used by Acoustic." },
+  { "mu1", &Tissue::scattererProbability, 0.0, 1.0,
+    "Share of the candidate places that hold a scatterer, no unit, 0 to 1." },
+  { "tau", &Tissue::tau, 0.0, 3.0,
+    "Exponent of the intensity in a boundary's echo, no unit, 0 to 3, in the model Amadou 2024; 1 is neutral." },
+  { "gamma", &Tissue::gamma, -2.0, 2.0,
+    "Exponent of the cosine of the angle in a boundary's echo, no unit, -2 to 2, in the model Amadou 2024; 0 is "
+    "neutral." },
+  { "roughness_mm", &Tissue::roughnessMm, 0.0, 10.0,
+    "Root mean square height of its surface in mm, 0 to 10; 0 is a mirror.", true },
+  { "correlation_mm", &Tissue::correlationMm, 0.01, 100.0,
+    "Correlation length of that height in mm, 0.01 to 100: the longer, the less it scatters aside.", true },
+  { "backscatter_1MHz_per_cm_sr", &Tissue::backscatterPerCmSr, 0.0, 1.0,
+    "Backscatter coefficient at 1 MHz in 1/(cm sr), 0 to 1: how bright the tissue is in the model Acoustic.", true },
+  { "backscatter_exponent", &Tissue::backscatterExponent, 0.0, 6.0,
+    "How backscatter grows with the frequency, no unit, 0 to 6; 4 is Rayleigh scattering.", true },
+  { "fibre_anisotropy_dB", &Tissue::fibreAnisotropyDb, 0.0, 60.0,
+    "How much brighter it is across its fibres than along them, in dB, 0 to 60.", true },
+  { "nonlinearity", &Tissue::nonlinearity, 0.0, 20.0,
+    "beta = 1 + B/(2A), no unit, 0 to 20: what the second harmonic grows by.", true },
 };
 
 std::string rangeOf(const Property& property)
@@ -79,7 +97,7 @@ const std::vector<TissueColumn>& tissueColumns()
     std::vector<TissueColumn> all;
     for (const Property& property : properties)
     {
-      all.push_back({ property.column, property.member });
+      all.push_back({ property.column, property.member, property.meaning });
     }
     return all;
   }();
@@ -103,7 +121,16 @@ void checkRanges(const Tissue& tissue)
 
 TissueTable TissueTable::read(const std::string& path)
 {
-  const CsvFile csv = CsvFile::read(path);
+  return of(CsvFile::read(path));
+}
+
+TissueTable TissueTable::parse(const std::string& text, const std::string& name)
+{
+  return of(CsvFile::parse(text, name));
+}
+
+TissueTable TissueTable::of(const CsvFile& csv)
+{
   const auto name = std::size_t(csv.requiredColumn("tissue"));
   const auto source = std::size_t(csv.requiredColumn("source"));
   TissueTable table;
@@ -131,7 +158,7 @@ TissueTable TissueTable::read(const std::string& path)
   }
   if (table.tissues_.empty())
   {
-    throw Error("'" + path + "' holds no tissue; add a line for each.");
+    throw Error("'" + csv.path + "' holds no tissue; add a line for each.");
   }
   return table;
 }

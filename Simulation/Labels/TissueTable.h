@@ -5,6 +5,8 @@
 
 namespace sono {
 
+struct CsvFile;
+
 /// Acoustic and scattering properties of one tissue.
 struct Tissue
 {
@@ -31,6 +33,7 @@ struct TissueColumn
 {
   const char* name;
   double Tissue::*member;
+  const char* meaning; ///< a sentence with unit and range
 };
 
 /// In the order of the table.
@@ -49,6 +52,8 @@ public:
   /// starting with '#' are comments; fields may be quoted. Throws Error naming the file, the tissue and the column for
   /// a missing, non-finite or out-of-range number.
   static TissueTable read(const std::string& path);
+  /// The same of a table's text, whose name stands for the file's in messages.
+  static TissueTable parse(const std::string& text, const std::string& name);
 
   /// Checks the ranges above and that the name is new; throws Error naming the tissue.
   void add(const Tissue& tissue);
@@ -56,6 +61,8 @@ public:
   const std::vector<Tissue>& tissues() const { return tissues_; }
 
 private:
+  static TissueTable of(const CsvFile& csv);
+
   std::vector<Tissue> tissues_;
 };
 

@@ -57,6 +57,30 @@ class TestLabelTable(unittest.TestCase):
                          ["my liver", "liver", "200", "100", "50"])
         self.assertEqual(row["impedance_MRayl"].ToDouble(), 1.65)
 
+    def test_texts_take_the_place_of_files(self):
+        """Of both tables; a message names the text as it names a file."""
+        columns = ",".join(NUMBERS[:8])
+        settings = {"LabelTableText": "id,name,r,g,b,tissue\n7,mine,200,100,50,jelly\n",
+                    "TissueTableText": f"tissue,{columns},source\njelly,1.7,1500,0.5,0.3,0.2,0.1,1,0,mine\n"
+                                       f"air,0.0004,330,1,0,0,0,1,0,mine\nsoft_tissue,1.6,1540,0.5,0,0,0,1,0,mine\n",
+                    "LabelTableFile": "nowhere.csv", "TissueTableFile": "nowhere.csv"}
+        scene, table = self.table(**settings)
+        row = self.row(table, 7)
+        self.assertEqual([row[name].ToString() for name in ("name", "tissue", "red")], ["mine", "jelly", "200"])
+        self.assertEqual([row[name].ToDouble() for name in NUMBERS[:6]], [1.7, 1500, 0.5, 0.3, 0.2, 0.1])
+        said = listen(scene)
+        scene.SetTissueTableText(f"tissue,{columns},source\njelly,-1,1500,0.5,0.3,0.2,0.1,1,0,mine\n")
+        scene.Update()
+        self.assertEqual(len(said), 1, said)
+        self.assertRegex(said[0], "the tissue editor's tissues.*jelly.*impedance_MRayl")
+
+    def test_every_column_is_explained(self):
+        """In a sentence with its unit and range."""
+        for column in NUMBERS:
+            with self.subTest(column=column):
+                self.assertRegex(vtkSonoLabelTable.Meaning(column), r"^\w.*\b(MRayl|m/s|dB|mm|sr|no unit)\b.*\d.*\.$")
+        self.assertEqual(vtkSonoLabelTable.Meaning("source"), "")
+
     def test_without_a_tissue_the_name_decides(self):
         _, table = self.table(LabelTableFile=self.file("id,name\n7,liver\n"))
         self.assertEqual(self.row(table, 7)["tissue"].ToString(), "liver")

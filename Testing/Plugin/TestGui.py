@@ -128,6 +128,13 @@ class TestGui(GuiCase):
             # Fonts and triangles are drawn a little differently from driver to driver.
             self.compare(picture, "-fail", "0.1", "-failpercent", "1")
 
+    def test_the_fan_applies_what_waits(self):
+        """So that no later Apply shows a slice of the labels in the body's view."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("fan_first.xml", folder), [])
+            state = pathlib.Path(folder, "fan_first.pvsm")
+            self.assertEqual(self.values_of(state, "SonoThoraxSource", "SpacingMm"), [4])
+
     def test_a_click_in_the_flat_image_picks_its_scan_line(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("pick_line.xml", folder, f"--data={self.label_map(folder)}"), [])
@@ -267,6 +274,16 @@ class TestGui(GuiCase):
     def values_of(self, state, kind, name):
         return [float(text) for text in self.texts_of(state, kind, name)]
 
+    def test_a_segmentation_is_opened_by_its_own_reader(self):
+        """Not by ParaView's for NRRD, which knows neither its segments nor where it lies."""
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "thing.seg.nrrd").write_bytes(THREE_LABELS)
+            self.assertEqual(self.play("open_segmentation.xml", folder), [])
+            readers = {p.get("type") for p in ElementTree.parse(pathlib.Path(folder, "opened.pvsm")).iter("Proxy")
+                       if p.get("group") == "sources"}
+        self.assertIn("SonoLabelMapReader", readers)
+        self.assertFalse(readers & {"NrrdReader", "PNrrdReader"})
+
     def test_tissue_editor(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.play("tissues.xml", folder, f"--data={self.label_map(folder)}"), [])
@@ -281,6 +298,18 @@ class TestGui(GuiCase):
         self.assertEqual([labels[2][column] for column in ("name", "r", "g", "b")], ["belly fat", "10", "200", "30"])
         for file in ("mine_labels.csv", "mine_tissues.csv"):
             self.assertIn(file, state)
+
+    def test_tissues_are_tried_without_files_and_follow_undo(self):
+        with tempfile.TemporaryDirectory() as folder:
+            errors = self.play("try_tissues.xml", folder, f"--data={self.label_map(folder)}")
+            self.assertEqual(errors, [])
+            self.assertEqual(list(pathlib.Path(folder).glob("**/*.csv")), [])
+            tried, undone, again = (self.texts_of(pathlib.Path(folder, name + ".pvsm"), "SonoSceneBuilder",
+                                                  "TissueTableText")[0] for name in ("tried", "undone", "again"))
+        skins = [next(csv.DictReader(row for row in text.splitlines() if row.startswith(("tissue,", "skin,"))))
+                 for text in (tried, again)]
+        self.assertEqual([skin["impedance_MRayl"] == "1.95" for skin in skins], [True, False])
+        self.assertEqual(undone, "")
 
     def test_the_tissue_editor_lists_guesses_first(self):
         with tempfile.TemporaryDirectory() as folder:

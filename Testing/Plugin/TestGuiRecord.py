@@ -53,6 +53,17 @@ class TestGuiRecord(GuiCase):
         self.assertNotAlmostEqual(pose["Axial"][0], -0.529887, places=3)
         self.assertNotAlmostEqual(pose["Lateral"][0], 0.842892, places=3)
 
+    def test_the_trace_keeps_how_the_layout_looks(self):
+        """Black behind the flat image, seen in 2D; the axes' names and the curves' colours; plain lines."""
+        with tempfile.TemporaryDirectory() as folder:
+            errors = self.play("record_layout.xml", folder, f"--data={self.label_map(folder)}")
+            self.assertEqual(errors, [])
+            trace = pathlib.Path(folder, "trace.py").read_text(encoding="utf-8")
+        for words in ("Background = [0.0, 0.0, 0.0]", "InteractionMode = '2D'", "BottomAxisTitle = 'Depth (mm)'",
+                      "RightAxisTitle = 'Envelope (dB)'", "SeriesColor = ", "AmbientColor = [1.0, 0.85, 0.2]"):
+            with self.subTest(words=words):
+                self.assertIn(words, trace)
+
 
 if __name__ == "__main__":
     sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())

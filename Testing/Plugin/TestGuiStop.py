@@ -15,8 +15,8 @@ THORAX = (85, 197)  # its row in the pipeline browser
 
 
 class TestGuiStop(GuiCase):
-    def play_with(self, name, folder, act):
-        """Plays a script on the scene of stop.py while a person acts; what ParaView wrote, and its return code."""
+    def play_with(self, name, folder, act, scene="stop.py"):
+        """Plays a script on a scene while a person acts; what ParaView wrote, and its return code."""
         failures = []
         person = Person(self, folder)
 
@@ -28,7 +28,7 @@ class TestGuiStop(GuiCase):
 
         acting = threading.Thread(target=act_alone)
         acting.start()
-        done = self.paraview(folder, f"--script={PLAYBACKS / 'stop.py'}", f"--test-script={PLAYBACKS / name}", "--exit")
+        done = self.paraview(folder, f"--script={PLAYBACKS / scene}", f"--test-script={PLAYBACKS / name}", "--exit")
         person.ended.set()
         acting.join()
         self.assertEqual(failures, [], done.stdout)
@@ -67,6 +67,23 @@ class TestGuiStop(GuiCase):
         self.assertNotEqual(seen["after"], seen["before"])
         self.assertEqual(seen["undone"], {"PathsPerLine": "100", "GainDb": "0"})
         self.assertEqual(seen["typed"], {"PathsPerLine": "100", "GainDb": "7"})
+
+    def test_a_first_run_that_was_stopped_is_laid_out_by_apply(self):
+        """Not before: views of what is not there would keep the colours and the camera of nothing."""
+        def act(person):
+            person.await_file("begun.pvsm")
+            person.click(*person.await_button())
+
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.play_with("first_run.xml", folder, act, "first_run.py")
+            stopped, whole = ([p.get("type") for p in ElementTree.parse(pathlib.Path(folder, name)).iter("Proxy")
+                               if p.get("group") in ("views", "sources", "filters")]
+                              for name in ("stopped.pvsm", "whole.pvsm"))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("ERR|", done.stdout)
+        self.assertIn("SonoUltrasound", stopped)
+        self.assertEqual([types.count("XYChartView") for types in (stopped, whole)], [0, 1])
+        self.assertEqual(whole.count("RenderView"), stopped.count("RenderView") + 2)
 
     @staticmethod
     def setting(state, name):

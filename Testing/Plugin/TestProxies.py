@@ -179,6 +179,14 @@ class TestProxies(unittest.TestCase):
         self.assertGreater(len(shown), 50)
         self.assertLess(shown.count("default"), 0.5 * len(shown))
 
+    def test_a_preset_stands_above_the_numbers_that_it_fills_in(self):
+        for kind in ("vtkSonoProbeSource", "vtkSonoUltrasound"):
+            root = ElementTree.parse(XML_FOLDER / f"{kind}.xml").getroot()
+            names = [element.get("name") for element in root.iter() if element.get("name")]
+            with self.subTest(filter=kind):
+                for filled in ("DepthMm", "ScanKind", "CentreFrequencyMHz"):
+                    self.assertLess(names.index("PresetFile"), names.index(filled))
+
     def test_simulate_ultrasound_has_the_settings_of_its_stages(self):
         """As they describe them: with their labels and tooltips, and all of them, but for what the filter sets."""
         manager = servermanager.ProxyManager()
@@ -220,6 +228,15 @@ class TestProxies(unittest.TestCase):
                     if getattr(own, name)() != getattr(alone, name)():
                         differ.add(name[3:])
         self.assertEqual(differ, {"MaxCollisions", "CoherenceMm", "LobeSigmaDeg", "TgcDbPerCm"})
+
+    def test_a_ruler_beside_ultrasound_counts_mm(self):
+        view = simple.CreateView("RenderView")
+        alone = simple.Show(simple.Ruler(), view).LabelFormat
+        source = simple.ThoraxPhantom()
+        beside = simple.Show(simple.Ruler(), view).LabelFormat
+        simple.Delete(source)
+        self.assertNotIn("mm", alone)
+        self.assertEqual(beside, "%.1f mm")
 
     def test_every_filter_is_in_the_ultrasound_menu(self):
         for _, _, description in self.each():
