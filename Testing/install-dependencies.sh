@@ -27,6 +27,8 @@ if [[ ${1:-} == tests ]]; then
     python3-pil python3-nibabel
     # registers phases
     elastix
+    # read what is written
+    dcmtk dicom3tools python3-pydicom
   )
 fi
 
