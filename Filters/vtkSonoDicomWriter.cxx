@@ -1,30 +1,21 @@
 #include "vtkSonoDicomWriter.h"
 
 #include "Core/Progress.h"
-#include "Core/Require.h"
 #include "Files/DicomCine.h"
 #include "Image/ScanConvert.h"
 #include "SonoProbeField.h"
-#include "SonoStage.h"
+#include "SonoTimeSteps.h"
 
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
-
-#include <algorithm>
 
 vtkStandardNewMacro(vtkSonoDicomWriter);
 
 namespace {
-
-using Pipeline = vtkStreamingDemandDrivenPipeline;
-
-constexpr double usualFrameTimeMs = 40.0;
 
 vtkUnsignedCharArray* greysOf(vtkImageData* image)
 {
@@ -65,6 +56,7 @@ sono::CineInfo cineOf(vtkImageData* image)
 } // namespace
 
 vtkSonoDicomWriter::vtkSonoDicomWriter()
+  : Steps(new sono::TimeSteps)
 {
   this->SetProgressText("Writing DICOM");
 }
@@ -89,56 +81,29 @@ int vtkSonoDicomWriter::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkSonoDicomWriter::ProcessRequest(vtkInformation* request, vtkInformationVector** input,
                                                vtkInformationVector* output)
 {
-  vtkInformation* inInfo = input[0]->GetInformationObject(0);
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
-  {
-    const int count = inInfo->Has(Pipeline::TIME_STEPS()) ? inInfo->Length(Pipeline::TIME_STEPS()) : 0;
-    const double* times = inInfo->Get(Pipeline::TIME_STEPS());
-    this->StepTimes.assign(times, times + count);
-    this->NextStep = 0;
-    this->Cine.reset();
-    return 1;
-  }
-  if (request->Has(Pipeline::REQUEST_UPDATE_EXTENT()))
-  {
-    if (this->NextStep < this->StepTimes.size())
-    {
-      inInfo->Set(Pipeline::UPDATE_TIME_STEP(), this->StepTimes[this->NextStep]);
-    }
-    return sono::requestWholeImage(input);
-  }
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
-  {
-    request->Remove(Pipeline::CONTINUE_EXECUTING());
-    this->WriteData();
-    if (this->Cine)
-    {
-      request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
-    }
-    return 1;
-  }
-  return this->Superclass::ProcessRequest(request, input, output);
+  const sono::StepWork work{ [this](vtkImageData* image) { this->Begin(image); },
+                             [this](vtkImageData* image) { this->AddFrames(image); }, [this] { this->Cine->finish(); },
+                             [this](bool isWritten) {
+                               this->Cine.reset();
+                               this->SetErrorCode(isWritten ? vtkErrorCode::NoError
+                                                            : vtkErrorCode::CannotOpenFileError);
+                             } };
+  return this->Steps->process(this, this->FileName, work, request, input)
+           ? 1
+           : this->Superclass::ProcessRequest(request, input, output);
 }
 
 void vtkSonoDicomWriter::Begin(vtkImageData* image)
 {
-  sono::requireInRange(sono::between(0, 100000).contains(this->FrameTimeMs), "FrameTimeMs", this->FrameTimeMs,
-                       "between 0 and 100000");
   if (this->FileName.empty())
   {
     throw sono::Error("No DICOM file is named; set FileName to one that ends in .dcm.");
   }
+  greysOf(image);
   sono::CineInfo info = cineOf(image);
   info.patientName = this->PatientName;
   info.patientId = this->PatientId;
-  const auto slices = static_cast<std::size_t>(image->GetDimensions()[2]);
-  const std::size_t frames = slices * std::max<std::size_t>(this->StepTimes.size(), 1);
-  const bool timesAreSaid = this->FrameTimeMs == 0.0 && this->StepTimes.size() > 1 && slices == 1;
-  const double stepMs = this->FrameTimeMs > 0.0 ? this->FrameTimeMs : usualFrameTimeMs;
-  for (std::size_t n = 0; n < frames; ++n)
-  {
-    info.timesS.push_back(timesAreSaid ? this->StepTimes[n] : 1e-3 * stepMs * double(n));
-  }
+  info.timesS = sono::frameTimesS(*this->Steps, std::size_t(image->GetDimensions()[2]), this->FrameTimeMs);
   this->Cine = std::make_unique<sono::DicomCine>(this->FileName, info);
 }
 
@@ -147,48 +112,9 @@ void vtkSonoDicomWriter::AddFrames(vtkImageData* image)
   int size[3];
   image->GetDimensions(size);
   const unsigned char* grey = greysOf(image)->GetPointer(0);
-  const sono::Progress progress = sono::progressOf(this);
-  const double steps = double(std::max<std::size_t>(this->StepTimes.size(), 1));
   for (int slice = 0; slice < size[2]; ++slice)
   {
     this->Cine->add(grey + std::ptrdiff_t(slice) * size[0] * size[1], size[0], size[1]);
-    if (!progress((double(this->NextStep) + double(slice + 1) / size[2]) / steps))
-    {
-      throw sono::Aborted();
-    }
-  }
-}
-
-void vtkSonoDicomWriter::WriteData()
-{
-  bool isWritten = false;
-  const bool isRun = sono::runWork(this, [&] {
-    if (this->GetAbortOutput())
-    {
-      throw sono::Aborted(); // the input was stopped, or has said why there is none
-    }
-    vtkImageData* image = vtkImageData::SafeDownCast(this->GetInput());
-    if (this->NextStep == 0)
-    {
-      greysOf(image);
-      this->Begin(image);
-    }
-    this->AddFrames(image);
-    ++this->NextStep;
-    if (this->NextStep >= this->StepTimes.size())
-    {
-      this->Cine->finish();
-      this->Cine.reset();
-    }
-    isWritten = true;
-  });
-  this->SetErrorCode(isWritten ? vtkErrorCode::NoError : vtkErrorCode::CannotOpenFileError);
-  if (!isWritten)
-  {
-    this->Cine.reset();
-    if (isRun)
-    {
-      sono::warn(this, "Stopped: '" + this->FileName + "' was not written; save it again.");
-    }
+    this->Steps->tell(this, double(slice + 1) / size[2]);
   }
 }

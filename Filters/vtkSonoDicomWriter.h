@@ -6,12 +6,12 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 class vtkImageData;
 
 namespace sono {
 class DicomCine;
+class TimeSteps;
 }
 
 /**
@@ -63,7 +63,7 @@ protected:
   ~vtkSonoDicomWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void WriteData() override;
+  void WriteData() override {} // ProcessRequest does
 
 private:
   vtkSonoDicomWriter(const vtkSonoDicomWriter&) = delete;
@@ -76,10 +76,8 @@ private:
   double FrameTimeMs = 0.0;
   std::string PatientName = "Simulated^Patient";
   std::string PatientId;
-  // While a file is being written:
-  std::vector<double> StepTimes; // of the input; empty: it has none
-  std::size_t NextStep = 0;
-  std::unique_ptr<sono::DicomCine> Cine;
+  std::unique_ptr<sono::TimeSteps> Steps;
+  std::unique_ptr<sono::DicomCine> Cine; // while it is being written
 };
 
 #endif

@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
-  nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdcmtk-dev
+  nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdcmtk-dev libhdf5-dev
 )
 if [[ ${1:-} != simulation ]]; then
   packages+=(
@@ -28,7 +28,7 @@ if [[ ${1:-} == tests ]]; then
     # registers phases
     elastix
     # read what is written
-    dcmtk dicom3tools python3-pydicom
+    dcmtk dicom3tools python3-pydicom python3-h5py
   )
 fi
 

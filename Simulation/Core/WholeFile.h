@@ -20,6 +20,8 @@ public:
 
   /// Bad where the folder is missing or protected, or the disk is full.
   std::ostream& stream() { return stream_; }
+  /// Where the bytes are until then, for libraries that write files of their own.
+  const std::string& partPath() const { return part_; }
   /// Gives the file its name. False where the stream is bad or the name cannot be given.
   bool finish();
 

@@ -93,7 +93,8 @@ class TestContent(DicomCase):
                     first = (region[f"ReferencePixelPhysicalValue{axis}"].value
                              - delta * region[f"ReferencePixel{axis}0"].value)
                     for pixel in (0, flat.GetDimensions()[n] - 1):  # in mm from the middle of the face
-                        self.assertAlmostEqual(10 * (first + delta * pixel), flat.GetOrigin()[n] + 0.5 * pixel, delta=1e-6)
+                        wanted = flat.GetOrigin()[n] + 0.5 * pixel
+                        self.assertAlmostEqual(10 * (first + delta * pixel), wanted, delta=1e-6)
                 path.unlink()
 
     def test_pixels_lie_where_the_sector_is(self):
@@ -101,13 +102,13 @@ class TestContent(DicomCase):
         data = pydicom.dcmread(self.written(self.chain.converter.GetOutputPort(1)))
         region = data.SequenceOfUltrasoundRegions[0]
         rows, columns = data.pixel_array.shape
-        x = 10 * (region.PhysicalDeltaX * (np.arange(columns) - region.ReferencePixelX0) + region.ReferencePixelPhysicalValueX)
-        y = 10 * (region.PhysicalDeltaY * (np.arange(rows) - region.ReferencePixelY0) + region.ReferencePixelPhysicalValueY)
+        x, y = (10 * (region[f"PhysicalDelta{axis}"].value * (np.arange(count) - region[f"ReferencePixel{axis}0"].value)
+                      + region[f"ReferencePixelPhysicalValue{axis}"].value) for axis, count in (("X", columns), ("Y", rows)))
         radius, angle = np.hypot(x, y[:, None]), np.degrees(np.arctan2(x, y[:, None]))
         np.testing.assert_array_less(0, data.pixel_array[(radius < 89) & (radius > 2) & (np.abs(angle) < 29.5)])
         self.assertEqual(data.pixel_array[(radius > 91) | ((np.abs(angle) > 31) & (radius > 4))].max(), 0)
         said = dict(entry.split("=") for entry in data.TransducerData)
-        self.assertEqual((float(said["sectorDeg"]), float(said["depthMm"]), said["scanKind"]), (60, 90, "phased_sector"))
+        self.assertEqual((said["scanKind"], float(said["sectorDeg"]), float(said["depthMm"])), ("phased_sector", 60, 90))
         self.assertEqual((data.TransducerType, data.DepthOfScanField), ("SECTOR_PHASED", 90))
         self.assertEqual(region.TransducerFrequency, 1000 * self.chain.probe.GetCentreFrequencyMHz())
         self.assertNotIn("radiusMm", said)
@@ -218,7 +219,8 @@ resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))
 writer.Write()
 print(len(said), *said)
 """
-        return subprocess.run([sys.executable, "-c", program, str(self.folder / "a.dcm")], capture_output=True, text=True)
+        return subprocess.run([sys.executable, "-c", program, str(self.folder / "a.dcm")],
+                              capture_output=True, text=True)
 
     def test_a_full_disk(self):
         result = self.limited(20000, "")
