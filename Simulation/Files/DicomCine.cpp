@@ -1,10 +1,8 @@
 #include "Files/DicomCine.h"
 
 #include "Core/Error.h"
-#include "Core/WholeFile.h"
 #include "Files/DicomHeader.h"
-
-#include <ostream>
+#include "Files/GreyFrames.h"
 
 namespace sono {
 
@@ -12,11 +10,6 @@ namespace {
 
 /// For the length of Pixel Data, which is even and has 32 bits, of which one value has another meaning.
 constexpr double mostBytes = 4294967294.0;
-
-std::string sizeText(int width, int height)
-{
-  return std::to_string(width) + " x " + std::to_string(height) + " pixels";
-}
 
 void require(const std::string& path, const CineInfo& info)
 {
@@ -47,66 +40,24 @@ void require(const std::string& path, const CineInfo& info)
 
 } // namespace
 
-struct DicomCine::State
-{
-  std::string path;
-  int width;
-  int height;
-  std::size_t count;
-  WholeFile file;
-  std::size_t added = 0;
-
-  [[noreturn]] void refuse(const std::string& why) const { throw Error("cannot write '" + path + "': " + why + "."); }
-  void requireRoom(bool ok) const
-  {
-    if (!ok)
-    {
-      refuse("its folder is missing or protected or the disk is full; make room, or choose another folder");
-    }
-  }
-};
-
 DicomCine::DicomCine(const std::string& path, const CineInfo& info)
 {
   require(path, info);
-  const std::string header = dicomHeader(info);
-  state_.reset(new State{ path, info.width, info.height, info.timesS.size(), WholeFile(path) });
-  state_->file.stream().write(header.data(), std::streamsize(header.size()));
-  state_->requireRoom(bool(state_->file.stream()));
+  frames_ = std::make_unique<GreyFrames>(path, dicomHeader(info), info.width, info.height, info.timesS.size());
+  const std::size_t bytes = std::size_t(info.width) * std::size_t(info.height) * info.timesS.size();
+  padding_ = std::string(bytes % 2, '\0'); // an element's length is even
 }
 
 DicomCine::~DicomCine() = default;
 
 void DicomCine::add(const std::uint8_t* grey, int width, int height)
 {
-  State& state = *state_;
-  const std::string number = "picture " + std::to_string(state.added + 1);
-  if (width != state.width || height != state.height)
-  {
-    state.refuse(number + " has " + sizeText(width, height) + " and the first " + sizeText(state.width, state.height) +
-                 "; keep the probe's depth, its sector and the pixel's size the same in all");
-  }
-  if (state.added == state.count)
-  {
-    state.refuse(number + " is one more than the " + std::to_string(state.count) + " that were announced");
-  }
-  ++state.added;
-  state.file.stream().write(reinterpret_cast<const char*>(grey), std::streamsize(width) * height);
-  state.requireRoom(bool(state.file.stream()));
+  frames_->add(grey, width, height);
 }
 
 void DicomCine::finish()
 {
-  State& state = *state_;
-  if (state.added < state.count)
-  {
-    state.refuse("it has " + std::to_string(state.added) + " pictures of " + std::to_string(state.count));
-  }
-  if (std::size_t(state.width) * std::size_t(state.height) * state.count % 2 != 0)
-  {
-    state.file.stream().put('\0'); // an element's length is even
-  }
-  state.requireRoom(state.file.finish());
+  frames_->finish(padding_);
 }
 
 } // namespace sono

@@ -10,6 +10,8 @@
 
 namespace sono {
 
+class GreyFrames;
+
 /// What there is to say of a sequence of pictures besides their greys.
 struct CineInfo
 {
@@ -45,8 +47,8 @@ public:
   void finish();
 
 private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<GreyFrames> frames_;
+  std::string padding_;
 };
 
 } // namespace sono
