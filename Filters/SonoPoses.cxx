@@ -3,6 +3,7 @@
 #include "Core/Error.h"
 
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -21,6 +22,9 @@ struct PoseColumns
 constexpr PoseColumns poseColumns[] = { { "Position", &ProbePose::positionMm },
                                         { "Axial", &ProbePose::axial },
                                         { "Lateral", &ProbePose::lateral } };
+constexpr PoseColumns fieldArrays[] = { { "PosePositionMm", &ProbePose::positionMm },
+                                        { "PoseAxial", &ProbePose::axial },
+                                        { "PoseLateral", &ProbePose::lateral } };
 constexpr const char* axes[] = { "X", "Y", "Z" };
 
 vtkDataArray* vectorsOf(vtkPointSet* points, const char* name)
@@ -116,6 +120,40 @@ void fillPoses(const std::vector<ProbePose>& poses, vtkTable* table)
       table->AddColumn(column);
     }
   }
+}
+
+void writePoses(const std::vector<ProbePose>& poses, vtkFieldData* field)
+{
+  for (const auto& [name, vector] : fieldArrays)
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->SetNumberOfComponents(3);
+    for (const ProbePose& pose : poses)
+    {
+      array->InsertNextTuple(&(pose.*vector).x);
+    }
+    field->AddArray(array);
+  }
+}
+
+std::vector<ProbePose> readPoses(vtkFieldData* field)
+{
+  std::vector<ProbePose> poses;
+  for (const auto& [name, vector] : fieldArrays)
+  {
+    vtkDataArray* array = field->GetArray(name);
+    if (!array || array->GetNumberOfComponents() != 3)
+    {
+      return {};
+    }
+    poses.resize(std::size_t(array->GetNumberOfTuples()));
+    for (std::size_t n = 0; n < poses.size(); ++n)
+    {
+      array->GetTuple(vtkIdType(n), &(poses[n].*vector).x);
+    }
+  }
+  return poses;
 }
 
 } // namespace sono

@@ -5,6 +5,7 @@
 #include <vector>
 
 class vtkDataObject;
+class vtkFieldData;
 class vtkTable;
 
 namespace sono {
@@ -15,5 +16,11 @@ std::vector<ProbePose> posesOf(vtkDataObject* data);
 
 /// A row a pose, with the columns that posesOf reads.
 void fillPoses(const std::vector<ProbePose>& poses, vtkTable* table);
+
+/// The poses of a sweep's images, in their field data: "PosePositionMm", "PoseAxial" and "PoseLateral", a tuple an
+/// image.
+void writePoses(const std::vector<ProbePose>& poses, vtkFieldData* field);
+/// Empty where there are none.
+std::vector<ProbePose> readPoses(vtkFieldData* field);
 
 } // namespace sono

@@ -12,6 +12,7 @@
 #include "SonoStage.h"
 #include "SonoVtkImageFile.h"
 
+#include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"

@@ -279,6 +279,8 @@ int vtkSonoSweep::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     images->SetDimensions(layout.width, layout.height, static_cast<int>(poses.size()));
     images->SetOrigin(layout.lateralMinMm, layout.axialMinMm, 0.0);
     images->SetSpacing(layout.pixelMm, layout.pixelMm, 1.0);
+    sono::writeProbe(probe, images->GetFieldData());
+    sono::writePoses(poses, images->GetFieldData());
     images->GetPointData()->SetScalars(this->Grey);
     images->GetPointData()->AddArray(this->Mask);
     if (this->WithLabels)

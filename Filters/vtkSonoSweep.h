@@ -30,7 +30,8 @@ class vtkUnsignedShortArray;
  *
  * Output 0: the images flat, each in the probe's own frame as of output 1 of vtkSonoScanConverter, one on the other: x
  * lateral and y depth in mm, z the number of the pose. Point arrays: "BMode" (1, black, to 255 in the scanned area, 0
- * outside), "Mask" (1 inside it) and, unless WithLabels is off, "Labels": the label of the scene's nearest voxel.
+ * outside), "Mask" (1 inside it) and, unless WithLabels is off, "Labels": the label of the scene's nearest voxel. The
+ * probe and the poses ("PosePositionMm", "PoseAxial", "PoseLateral") are in the field data.
  * Output 1: the poses as they were used, a table of the columns above, a row an image.
  *
  * On a GPU the poses go through the stages in groups, and bytes alone come back. Interrupted, the filter leaves no

@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
-  nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdcmtk-dev
+  nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdcmtk-dev libhdf5-dev
 )
 if [[ ${1:-} != simulation ]]; then
   packages+=(
@@ -27,6 +27,8 @@ if [[ ${1:-} == tests ]]; then
     python3-pil python3-nibabel
     # registers phases
     elastix
+    # read what is written
+    dcmtk dicom3tools python3-pydicom python3-h5py
   )
 fi
 

@@ -1,32 +1,43 @@
 #include "Core/WholeFile.h"
 
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 namespace sono {
 
+WholeFile::WholeFile(const std::string& path)
+  : path_(path)
+  , part_(path + "." + std::to_string(std::random_device()()) + ".part")
+  , stream_(part_, std::ios::binary | std::ios::trunc)
+{
+}
+
+WholeFile::~WholeFile()
+{
+  stream_.close();
+  std::error_code ignored;
+  std::filesystem::remove(part_, ignored); // none after `finish`
+}
+
+bool WholeFile::finish()
+{
+  stream_.close();
+  std::error_code error;
+  if (stream_)
+  {
+    std::filesystem::rename(part_, path_, error);
+  }
+  return stream_ && !error;
+}
+
 bool writeWholeFile(const std::string& path, const std::function<void(std::ostream&)>& write)
 {
-  const std::string partial = path + "." + std::to_string(std::random_device()()) + ".part";
-  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
-  if (!stream)
+  WholeFile file(path);
+  if (file.stream())
   {
-    return false;
+    write(file.stream());
   }
-  write(stream);
-  stream.close();
-  std::error_code error;
-  if (stream)
-  {
-    std::filesystem::rename(partial, path, error);
-  }
-  if (stream && !error)
-  {
-    return true;
-  }
-  std::filesystem::remove(partial, error);
-  return false;
+  return file.finish();
 }
 
 } // namespace sono

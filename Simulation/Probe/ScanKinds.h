@@ -30,6 +30,7 @@ struct ScanKindTraits
   const char* presetName; ///< in a preset file
   const char* label;      ///< in a panel
   const char* lines;      ///< how they lie, in a sentence that lists the kinds
+  const char* dicomType;  ///< DICOM's Transducer Type (PS3.3 C.8.5.6.1.4)
   LineOrigin origin;
   bool takesPart;                   ///< a line is sent and heard by a part of the elements, those about its start
   bool isVolume;                    ///< each elevation is such a plane, turned about the lateral axis

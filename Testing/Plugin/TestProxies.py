@@ -26,7 +26,7 @@ STAGES = ("SceneBuilder", "Probe", "RayTracer", "ImageFormation", "BMode", "Scan
 # Labels that say something else than the name: what an input is, ParaView's own property, a word that a unit hides.
 OTHER_LABELS = {("SonoRayTracer", "Input"), ("SonoSceneWriter", "Input"), ("SonoScanDetail", "SelectInputScalars"), ("SonoSceneBuilder", "SelectInputScalars"),
                 ("SonoUltrasound", "SelectInputScalars"), ("SonoSweep", "SelectInputScalars"),
-                ("SonoImageFormation", "Field"), ("EchoPictureWriter", "Input"),
+                ("SonoImageFormation", "Field"), ("EchoPictureWriter", "Input"), ("SonoDicomWriter", "Input"), ("SonoLineWriter", "Input"), ("SonoTrackedWriter", "Input"),
                 ("EchoPictureWriter", "SelectInputScalars")}
 
 
@@ -66,7 +66,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 28)
+        self.assertEqual(len(CLASSES), 32)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()

@@ -1,0 +1,93 @@
+#include "Files/ArrayElements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sono {
+
+namespace {
+
+constexpr double radPerDeg = 0.017453292519943295;
+
+double mmPerUs(const ProbeSettings& probe)
+{
+  return 1e-3 * probe.geometry.assumedSoundSpeedMPerS;
+}
+
+/// Whether lines start at places of their own, where a part of the elements sends them.
+bool hasStarts(const ScanGeometry& geometry)
+{
+  return geometry.lineOrigin() != LineOrigin::Apex;
+}
+
+/// Along the face, of all elements together.
+double faceWidthMm(const ProbeSettings& probe, double elementMm)
+{
+  const ScanGeometry& geometry = probe.geometry;
+  if (!hasStarts(geometry))
+  {
+    return probe.apertureMm;
+  }
+  const double linesMm =
+    geometry.faceRadiusMm() > 0.0 ? geometry.sectorDeg * radPerDeg * geometry.radiusMm : geometry.widthMm;
+  return linesMm + elementMm;
+}
+
+} // namespace
+
+ArrayElements arrayElements(const ProbeSettings& probe)
+{
+  const ScanGeometry& geometry = probe.geometry;
+  ArrayElements elements;
+  elements.widthMm =
+    probe.elementWidthMm > 0.0 ? probe.elementWidthMm : 0.5 * mmPerUs(probe) / probe.centreFrequencyMHz;
+  const double widthMm = faceWidthMm(probe, elements.widthMm);
+  const long columns = std::max(1l, std::lround(widthMm / elements.widthMm));
+  const bool isGrid = geometry.isVolume();
+  const long rows = isGrid ? std::max(1l, std::lround(probe.elevationApertureMm / elements.widthMm)) : 1;
+  elements.heightMm = isGrid ? elements.widthMm : probe.elevationApertureMm;
+  const double radiusMm = geometry.faceRadiusMm();
+  for (long row = 0; row < rows; ++row)
+  {
+    const double acrossMm = (double(row) - 0.5 * double(rows - 1)) * elements.widthMm;
+    for (long column = 0; column < columns; ++column)
+    {
+      const double alongMm = (double(column) - 0.5 * double(columns - 1)) * widthMm / double(columns);
+      const double angle = radiusMm > 0.0 ? alongMm / radiusMm : 0.0;
+      elements.azimuthsRad.push_back(angle);
+      elements.centresMm.push_back(radiusMm > 0.0 ? Vec3d(radiusMm * std::sin(angle), acrossMm,
+                                                          radiusMm * std::cos(angle) + geometry.fanCentreAxialMm())
+                                                  : Vec3d(alongMm, acrossMm, 0.0));
+    }
+  }
+  return elements;
+}
+
+LineFiring lineFiring(const ArrayElements& elements, const ProbeSettings& probe, const ScanLine& line)
+{
+  const double focusMm = probe.transmitFocusMm;
+  const Vec3d focus = line.originMm + focusMm * line.axis;
+  /// How far a wave of the element has to go, beside those of others.
+  const auto wayMm = [&](const Vec3d& centre) {
+    return focusMm > 0.0 ? glm::length(focus - centre) : -glm::dot(centre, line.axis);
+  };
+  LineFiring firing;
+  double longestMm = -std::numeric_limits<double>::infinity();
+  for (const Vec3d& centre : elements.centresMm)
+  {
+    const double fromLineMm = glm::length(centre - line.originMm);
+    const bool isActive =
+      !hasStarts(probe.geometry) || fromLineMm <= std::max(0.5 * probe.apertureMm, 0.501 * elements.widthMm);
+    firing.isActive.push_back(isActive);
+    longestMm = isActive ? std::max(longestMm, wayMm(centre)) : longestMm;
+  }
+  for (std::size_t n = 0; n < elements.centresMm.size(); ++n)
+  {
+    firing.delaysUs.push_back(firing.isActive[n] ? (longestMm - wayMm(elements.centresMm[n])) / mmPerUs(probe) : 0.0);
+  }
+  firing.startUs = (longestMm - wayMm(line.originMm)) / mmPerUs(probe);
+  return firing;
+}
+
+} // namespace sono

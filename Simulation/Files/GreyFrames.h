@@ -1,0 +1,38 @@
+#pragma once
+
+#include "Core/WholeFile.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace sono {
+
+/// A file that is a header and pictures of 8 bits, one after the other: whole or not at all.
+class GreyFrames
+{
+public:
+  /// Throws Error naming the path where it cannot be written.
+  GreyFrames(const std::string& path, const std::string& header, int width, int height, std::size_t count);
+
+  /// Throws Error for another size, one too many, and a full disk.
+  void add(const std::uint8_t* grey, int width, int height);
+  /// Throws Error where pictures are missing, or the disk is full. `padding` comes behind the last.
+  void finish(const std::string& padding = {});
+
+private:
+  [[noreturn]] void refuse(const std::string& why) const;
+  void requireRoom(bool ok) const;
+
+  std::string path_;
+  int width_;
+  int height_;
+  std::size_t count_;
+  std::size_t added_ = 0;
+  WholeFile file_;
+};
+
+/// "640 x 480 pixels".
+std::string sizeText(int width, int height);
+
+} // namespace sono
