@@ -28,9 +28,7 @@ struct CineInfo
 /// A DICOM file of pictures: an Ultrasound Multi-frame Image (PS3.3 A.7), 8-bit greys, not compressed, with
 /// - a region calibration: all pixels, in cm, from the middle of the transducer's face, which is the reference pixel;
 /// - the time between two frames, or each of the times where they differ;
-/// - the kind of transducer, its depth, and as Transducer Data its parameters as name=value (sectorDeg=75), units in
-/// the
-///   names;
+/// - the kind of transducer, its depth, and as Transducer Data its parameters, name=value (sectorDeg=75);
 /// - "Simulated" in the manufacturer, the series and the derivation; fresh UIDs below 2.25 (ITU-T X.667).
 /// The pictures are written one by one, so that their number does not ask for memory; the file appears when all are
 /// there, or not at all.
