@@ -122,18 +122,24 @@ void fillPoses(const std::vector<ProbePose>& poses, vtkTable* table)
   }
 }
 
+vtkSmartPointer<vtkDoubleArray> poseVectors(const char* name, const std::vector<ProbePose>& poses,
+                                            Vec3d ProbePose::*vector)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  for (const ProbePose& pose : poses)
+  {
+    array->InsertNextTuple(&(pose.*vector).x);
+  }
+  return array;
+}
+
 void writePoses(const std::vector<ProbePose>& poses, vtkFieldData* field)
 {
   for (const auto& [name, vector] : fieldArrays)
   {
-    vtkNew<vtkDoubleArray> array;
-    array->SetName(name);
-    array->SetNumberOfComponents(3);
-    for (const ProbePose& pose : poses)
-    {
-      array->InsertNextTuple(&(pose.*vector).x);
-    }
-    field->AddArray(array);
+    field->AddArray(poseVectors(name, poses, vector));
   }
 }
 

@@ -2,9 +2,12 @@
 
 #include "Probe/ScanGeometry.h"
 
+#include "vtkSmartPointer.h"
+
 #include <vector>
 
 class vtkDataObject;
+class vtkDoubleArray;
 class vtkFieldData;
 class vtkTable;
 
@@ -16,6 +19,10 @@ std::vector<ProbePose> posesOf(vtkDataObject* data);
 
 /// A row a pose, with the columns that posesOf reads.
 void fillPoses(const std::vector<ProbePose>& poses, vtkTable* table);
+
+/// One of the poses' vectors, a tuple a pose.
+vtkSmartPointer<vtkDoubleArray> poseVectors(const char* name, const std::vector<ProbePose>& poses,
+                                            Vec3d ProbePose::*vector);
 
 /// The poses of a sweep's images, in their field data: "PosePositionMm", "PoseAxial" and "PoseLateral", a tuple an
 /// image.

@@ -2,6 +2,7 @@
 
 #include "Core/Progress.h"
 #include "Files/ReadTracked.h"
+#include "SonoPoses.h"
 #include "SonoStage.h"
 
 #include "vtkCellArray.h"
@@ -40,19 +41,6 @@ sono::Mat4d matrixOf(const char* name, const double (&rows)[16])
   return matrix;
 }
 
-void addVectors(const char* name, const std::vector<sono::ProbePose>& poses, sono::Vec3d sono::ProbePose::*vector,
-                vtkPolyData* points)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(3);
-  for (const sono::ProbePose& pose : poses)
-  {
-    array->InsertNextTuple(&(pose.*vector).x);
-  }
-  points->GetPointData()->AddArray(array);
-}
-
 void fill(const sono::TrackedPoses& tracked, vtkPolyData* output)
 {
   vtkNew<vtkPoints> points;
@@ -71,8 +59,8 @@ void fill(const sono::TrackedPoses& tracked, vtkPolyData* output)
   }
   output->SetPoints(points);
   output->SetLines(lines);
-  addVectors("Axial", tracked.poses, &sono::ProbePose::axial, output);
-  addVectors("Lateral", tracked.poses, &sono::ProbePose::lateral, output);
+  output->GetPointData()->AddArray(sono::poseVectors("Axial", tracked.poses, &sono::ProbePose::axial));
+  output->GetPointData()->AddArray(sono::poseVectors("Lateral", tracked.poses, &sono::ProbePose::lateral));
   output->GetPointData()->AddArray(times);
   output->GetPointData()->AddArray(frames);
 }

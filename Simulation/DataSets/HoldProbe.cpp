@@ -1,6 +1,7 @@
 #include "DataSets/HoldProbe.h"
 
 #include "DataSets/ImageSight.h"
+#include "Kernel/LabelRow.h"
 #include "Trace/Trace.h"
 
 #include <algorithm>
@@ -19,16 +20,6 @@ Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
   const double angle = deg * M_PI / 180.0;
   return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
          axis * (glm::dot(axis, v) * (1.0 - std::cos(angle)));
-}
-
-/// 0 beyond the map, as of what is in no group.
-std::size_t labelAt(const Scene& scene, const Vec3d& worldMm)
-{
-  const LabelVolume& volume = scene.volume();
-  const Vec3i n = volume.placement.size;
-  const Vec3i v(glm::floor(scene.localFromWorld(worldMm) / volume.placement.spacingMm));
-  const bool isInside = glm::all(glm::greaterThanEqual(v, Vec3i(0))) && glm::all(glm::lessThan(v, n));
-  return isInside ? volume.voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x] : 0;
 }
 
 } // namespace
@@ -51,8 +42,9 @@ ProbePose jittered(const ProbePose& view, const PoseJitter& jitter)
 double maskSufficiency(const Scene& scene, const std::vector<std::uint8_t>& groups, const std::vector<MaskGroup>& masks,
                        const ImageSettings& settings, const ProbePose& pose)
 {
+  const LabelVolume& volume = scene.volume();
   std::vector<double> asked(masks.size() + 1, 0.0); // by value
-  for (const LabelInfo& label : scene.volume().labels)
+  for (const LabelInfo& label : volume.labels)
   {
     if (const std::size_t group = groups[std::size_t(label.id)])
     {
@@ -78,7 +70,8 @@ double maskSufficiency(const Scene& scene, const std::vector<std::uint8_t>& grou
       const double r = (bin + 0.5) * traced.binMm;
       const Vec3d place = lines[line].originMm + r * lines[line].axis;
       const double area = glm::distance(place, lines[line + 1].originMm + r * lines[line + 1].axis);
-      const std::size_t group = groups[labelAt(scene, place)];
+      const std::size_t group =
+        groups[labelAtIndex(volume.placement.indexFromWorld(place), volume.voxels.data(), volume.placement.size)];
       const float intensity = traced.intensity[line * std::size_t(traced.binCount) + std::size_t(bin)];
       all[group] += area;
       shown[group] += intensity < ImageSight::leastIntensity(tracing.frequencyMHz, r) ? 0.0 : area;
