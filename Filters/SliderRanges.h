@@ -36,6 +36,7 @@ inline const std::map<std::string, SliderRange>& sliderRanges()
     { "HazeDb", { -200, 0 } },
     { "HazeFallDbPerCmMHz", { 0, 5 } },
     { "LateralSigmaMm", { 0.1, 5 } },
+    { "LateralSmoothingLines", { 0, 8 } },
     { "LineCount", { 16, 512 } },
     { "MaxCollisions", { 0, 50 } },
     { "NoiseDb", { -200, 0 } },

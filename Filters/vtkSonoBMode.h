@@ -47,6 +47,7 @@ public:
   sonoParameter(HazeVariationDb, double);
   sonoParameter(NoiseSeed, int);
   sonoParameter(AxialSmoothingMm, double);
+  sonoParameter(LateralSmoothingLines, double);
   sonoParameter(Tgc1Db, double);
   sonoParameter(Tgc2Db, double);
   sonoParameter(Tgc3Db, double);

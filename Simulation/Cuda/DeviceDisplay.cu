@@ -48,14 +48,15 @@ __global__ void addNoiseAndHaze(const float* envelope, float* received, std::siz
   received[i] = value;
 }
 
-__global__ void smoothLines(const float* envelope, float* smoothed, std::size_t count, int samples,
-                            const float* weights, int half)
+/// Rows of `length` values, `stride` apart.
+__global__ void smoothRows(const float* envelope, float* smoothed, std::size_t count, int length, int stride,
+                           const float* weights, int half)
 {
   const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
   if (i < count)
   {
-    const int sample = int(i % samples);
-    smoothed[i] = smoothedEnvelope(envelope + (i - sample), samples, sample, weights, half);
+    const int place = int(i / stride % length);
+    smoothed[i] = smoothedEnvelope(envelope + (i - std::size_t(place) * stride), length, stride, place, weights, half);
   }
 }
 
@@ -306,7 +307,8 @@ void DeviceDisplay::prepare(const BModeJob& job, cudaStream_t stream, Traffic& t
   gainDb_.upload(job.gainDb, stream, traffic);
   lateralGainDb_.upload(job.lateralGainDb, stream, traffic);
   greyMap_.upload(job.greyMap, stream, traffic);
-  smoothing_.upload(job.smoothing, stream, traffic);
+  axialSmoothing_.upload(job.axialSmoothing, stream, traffic);
+  lateralSmoothing_.upload(job.lateralSmoothing, stream, traffic);
   haze_.upload(job.haze.power, stream, traffic);
 }
 
@@ -323,12 +325,19 @@ const float* DeviceDisplay::receive(const float* envelope, std::size_t count, in
       settings_.noiseSeed, haze_.data(), haze.nodeCount, haze.nodesPerSample);
     envelope = received_.data();
   }
-  if (!settings_.smoothing.empty())
+  if (!settings_.axialSmoothing.empty())
   {
-    smoothed_.resize(count);
-    smoothLines<<<blocks, threads, 0, stream>>>(envelope, smoothed_.data(), count, samples, smoothing_.data(),
-                                                int(settings_.smoothing.size()) - 1);
-    envelope = smoothed_.data();
+    smoothedAlong_.resize(count);
+    smoothRows<<<blocks, threads, 0, stream>>>(envelope, smoothedAlong_.data(), count, samples, 1,
+                                               axialSmoothing_.data(), int(settings_.axialSmoothing.size()) - 1);
+    envelope = smoothedAlong_.data();
+  }
+  if (!settings_.lateralSmoothing.empty())
+  {
+    smoothedAcross_.resize(count);
+    smoothRows<<<blocks, threads, 0, stream>>>(envelope, smoothedAcross_.data(), count, settings_.linesAcross, samples,
+                                               lateralSmoothing_.data(), int(settings_.lateralSmoothing.size()) - 1);
+    envelope = smoothedAcross_.data();
   }
   return envelope;
 }

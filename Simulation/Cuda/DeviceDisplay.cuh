@@ -40,11 +40,13 @@ private:
   DeviceArray<double> gainDb_;
   DeviceArray<float> lateralGainDb_;
   DeviceArray<float> greyMap_;
-  DeviceArray<float> smoothing_;
+  DeviceArray<float> axialSmoothing_;
+  DeviceArray<float> lateralSmoothing_;
   DeviceArray<float> haze_;
   DeviceArray<std::uint8_t> rank_;
   DeviceArray<float> received_;
-  DeviceArray<float> smoothed_;
+  DeviceArray<float> smoothedAlong_;
+  DeviceArray<float> smoothedAcross_;
 };
 
 } // namespace sono

@@ -207,13 +207,15 @@ struct EchoJob
 /// B-mode as a device needs it, for each sample of a line.
 struct BModeJob
 {
-  std::vector<float> gainFactor;    ///< for the automatic reference
-  std::vector<double> gainDb;       ///< of depth, all other gain and the bottom of the range, without the reference
-  std::vector<float> lateralGainDb; ///< of each line of an image
-  std::vector<float> greyMap;       ///< empty: linear
-  std::vector<float> smoothing;     ///< weights of 0, 1, ... samples away; empty: none
-  HazePower haze;                   ///< of the lines of an image
-  int firstReferenceSample = 0;     ///< of a line: the automatic reference leaves out what lies above
+  std::vector<float> gainFactor;       ///< for the automatic reference
+  std::vector<double> gainDb;          ///< of depth, all other gain and the bottom of the range, without the reference
+  std::vector<float> lateralGainDb;    ///< of each line of an image
+  std::vector<float> greyMap;          ///< empty: linear
+  std::vector<float> axialSmoothing;   ///< weights of 0, 1, ... samples away; empty: none
+  std::vector<float> lateralSmoothing; ///< the same of lines
+  int linesAcross = 1;                 ///< that lie in one plane
+  HazePower haze;                      ///< of the lines of an image
+  int firstReferenceSample = 0;        ///< of a line: the automatic reference leaves out what lies above
   bool automaticReference = true;
   double referenceAmplitude = 1.0;
   float rangeDb = 60.0f;

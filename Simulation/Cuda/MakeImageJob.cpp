@@ -421,7 +421,9 @@ BModeJob makeBModeJob(const BModeSettings& settings, int lineCount, int sampleCo
   job.rejectDb = float(settings.rejectDb);
   job.lateralGainDb = lateralGainDb(settings, lineCount);
   job.greyMap = settings.greyMap;
-  job.smoothing = smoothingWeights(settings, sampleMm);
+  job.axialSmoothing = axialSmoothing(settings, sampleMm);
+  job.lateralSmoothing = lateralSmoothing(settings);
+  job.linesAcross = linesAcross(settings, lineCount);
   job.haze = makeHaze(settings, lineCount, sampleCount, sampleMm);
   job.noiseRms = settings.addNoise ? float(std::pow(10.0, settings.noiseDb / 20.0)) : 0.0f;
   job.noiseNodesPerSample = noiseNodesPerSample(settings.pulseSigmaMm / sampleMm);

@@ -81,6 +81,7 @@ struct PoseJitter
   double rotationDeg = 0.0; ///< about axial
   double slideLateralMm = 0.0;
   double slideElevationMm = 0.0;
+  double pressMm = 0.0; ///< into the skin, see pressedIn
 
   /// Visits each number and its name in a file.
   template<class Self, class Visitor>
@@ -91,7 +92,10 @@ struct PoseJitter
     visitor(self.rotationDeg, "rotationDeg");
     visitor(self.slideLateralMm, "slideLateralMm");
     visitor(self.slideElevationMm, "slideElevationMm");
+    visitor(self.pressMm, "pressMm");
   }
+
+  static constexpr std::size_t count = 6;
 };
 
 /// Whose settings a parameter belongs to.
@@ -134,6 +138,14 @@ struct MaskGroup
   double leastVisiblePercent = 0.0;
 };
 
+/// Groups of the masks that a straight line between the mitral annulus' hinges divides, as annotators do.
+struct MitralLineGroups
+{
+  std::string ventricle; ///< names of groups
+  std::string atrium;
+  std::vector<std::string> valve; ///< patterns of labels, as those of a group
+};
+
 /// A data set as one file declares it. Data/datasets/schema.json and Data/docs/datasets.md say what each key means.
 struct DataSet
 {
@@ -146,7 +158,8 @@ struct DataSet
   int imagesPerExam = 1;
   std::vector<DataSetPatient> patients;
   std::array<double, splitCount> splitShares{ 0.7, 0.15, 0.15 }; ///< of the bodies whose split is drawn; sum 1
-  std::array<Draw, 5> jitter{ always(0), always(0), always(0), always(0), always(0) }; ///< in the order of PoseJitter
+  /// In the order of PoseJitter.
+  std::array<Draw, PoseJitter::count> jitter{ always(0), always(0), always(0), always(0), always(0), always(0) };
   ProbeSettings probe;
   std::vector<DrawnParameter> parameters;
   double pixelMm = 0.5;
@@ -154,6 +167,7 @@ struct DataSet
   std::string labelTissues; ///< path of the table which label is which tissue
   std::vector<DrawnTissue> drawnTissues;
   std::vector<MaskGroup> masks; ///< value n + 1 in a mask; 0 is everything else
+  std::optional<MitralLineGroups> mitralLine;
   DataSetFormat format = DataSetFormat::NnUNet;
   std::vector<ImageChannel> channels; ///< of each image's OpenEXR files, beside its PNGs; empty: there are none
 };

@@ -5,6 +5,7 @@
 #include "DataSets/DataSetInfo.h"
 #include "DataSets/HoldProbe.h"
 #include "DataSets/ImageChannels.h"
+#include "DataSets/MitralLine.h"
 #include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
 #include "Phantoms/DrawThorax.h"
@@ -49,6 +50,38 @@ std::vector<std::uint8_t> groupsOf(const std::vector<LabelInfo>& labels, const s
     }
   }
   return values;
+}
+
+/// The labels of the mitral valve, by id.
+std::vector<bool> valvesOf(const std::vector<LabelInfo>& labels, const std::vector<std::string>& valve)
+{
+  const std::vector<std::uint8_t> values = groupsOf(labels, { MaskGroup{ {}, valve } });
+  return { values.begin(), values.end() };
+}
+
+/// The mask's value of the group of a name.
+std::uint8_t valueOf(const std::vector<MaskGroup>& masks, const std::string& name)
+{
+  const auto group = std::find_if(masks.begin(), masks.end(), [&](const MaskGroup& each) { return each.name == name; });
+  return std::uint8_t(group - masks.begin() + 1);
+}
+
+/// Divides ventricle and atrium where the image shows both of the mitral annulus' hinges.
+void divideAtAnnulus(const DataSet& set, const std::vector<bool>& isValve, const std::vector<ImageLandmark>& landmarks,
+                     const std::uint16_t* labels, int width, std::vector<std::uint8_t>& mask)
+{
+  const auto named = [&](const char* name) {
+    return std::find_if(landmarks.begin(), landmarks.end(), [&](const ImageLandmark& l) { return l.name == name; });
+  };
+  const auto annulus = named("mitralAnnulus");
+  const auto apex = named("apex");
+  if (annulus != landmarks.end() && annulus->hinges.size() == 2 && apex != landmarks.end())
+  {
+    divideAtHinges(
+      annulus->hinges[0], annulus->hinges[1], apex->point,
+      { valueOf(set.masks, set.mitralLine->ventricle), valueOf(set.masks, set.mitralLine->atrium), &isValve }, labels,
+      width, mask);
+  }
 }
 
 /// One of a patient's views.
@@ -186,6 +219,7 @@ struct DataSetImager::Body
   std::vector<BodyView> views; ///< of the patient's
   FoundLandmarks landmarks;
   std::vector<std::uint8_t> groups; ///< the mask's value of each label id
+  std::vector<bool> isMitralValve;  ///< by label id; empty where no line divides the masks
 };
 
 /// An image before it is made; its view is one that is obtainable.
@@ -268,6 +302,10 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   LabelVolume volume = augmented(patient_->volume, augmentation);
   auto body = std::make_unique<Body>();
   body->groups = groupsOf(volume.labels, set.masks); // fat may be new
+  if (set.mitralLine)
+  {
+    body->isMitralValve = valvesOf(volume.labels, set.mitralLine->valve);
+  }
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
   body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
@@ -325,7 +363,7 @@ void DataSetImager::hold(PlacedImage& placed, int view, double& best)
   bool isHeld = false;
   for (int attempt = 0; attempt < mostAttempts && best < 1.0; ++attempt)
   {
-    const PoseJitter jitter = plan_->jitter(placed.facts.image.index, attempt);
+    PoseJitter jitter = plan_->jitter(placed.facts.image.index, attempt);
     ProbePose pose = jittered(*body_->views[std::size_t(view)].pose, jitter);
     if (!isCatheter)
     {
@@ -343,6 +381,12 @@ void DataSetImager::hold(PlacedImage& placed, int view, double& best)
       continue;
     }
     isHeld = true;
+    if (!isCatheter)
+    {
+      const ProbePose pressed = pressedIn(scene, pose, placed.input.settings.tracing.aperture, jitter.pressMm);
+      jitter.pressMm = glm::distance(pressed.positionMm, pose.positionMm);
+      pose = pressed;
+    }
     const double sufficiency = maskSufficiency(scene, body_->groups, plan_->set().masks, placed.input.settings, pose);
     if (sufficiency > best)
     {
@@ -429,13 +473,22 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
   made.mask.resize(made.grey.size());
   std::transform(seen.picture.labels.begin(), seen.picture.labels.end(), made.mask.begin(),
                  [&](std::uint16_t label) { return body_->groups[label]; });
+  const ImageSight sight(input.settings, input.pose, layout, *seen.arrivals);
+  if (body_->landmarks.heart)
+  {
+    facts.landmarks = landmarksInImage(*body_->landmarks.heart, input.pose, sight);
+  }
+  if (plan_->set().mitralLine)
+  {
+    divideAtAnnulus(plan_->set(), body_->isMitralValve, facts.landmarks, seen.picture.labels.begin(), layout.width,
+                    made.mask);
+  }
   const std::vector<ImageChannel>& channels = plan_->set().channels;
   if (!channels.empty())
   {
     made.channels = pixelChannels(channels, input, body_->simulator, seen.picture, made.mask);
     made.beam = beamChannels(channels, input, body_->simulator);
   }
-  const ImageSight sight(input.settings, input.pose, layout, *seen.arrivals);
   const std::vector<MaskGroup>& groups = plan_->set().masks;
   const std::vector<double> visible = sight.visibleShares(made.mask, groups.size());
   for (std::size_t group = 0; group < groups.size(); ++group)
@@ -447,10 +500,6 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
   const BodyView& view = body_->views[std::size_t(facts.image.view)];
   facts.found = view.found ? &*view.found : nullptr;
   facts.noLandmarks = body_->landmarks.refusal;
-  if (body_->landmarks.heart)
-  {
-    facts.landmarks = landmarksInImage(*body_->landmarks.heart, input.pose, sight);
-  }
   facts.width = layout.width;
   facts.height = layout.height;
   facts.lateralMinMm = layout.lateralMinMm;

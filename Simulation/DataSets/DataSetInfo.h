@@ -33,7 +33,7 @@ struct DataSetFacts
   DataSetSettings settings;
   bool onGpu = false;
   ProbePose pose;
-  PoseJitter jitter;
+  PoseJitter jitter; ///< less pressMm than was drawn where a rib is in the way
   DataSetFlags flags;
   const StandardView* found = nullptr; ///< of a view that was looked for by landmarks; null: it was not
   std::vector<ImageLandmark> landmarks;

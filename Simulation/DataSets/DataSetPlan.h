@@ -99,7 +99,7 @@ private:
   DataSetSettings base_;
   std::vector<PlannedBody> bodies_;
   std::vector<std::uint32_t> keys_; ///< of the parameters
-  std::array<std::uint32_t, 5> jitterKeys_{};
+  std::array<std::uint32_t, PoseJitter::count> jitterKeys_{};
   int digits_ = 7;
 };
 

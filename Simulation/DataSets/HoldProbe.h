@@ -10,7 +10,7 @@
 namespace sono {
 
 /// A view's pose as a hand holds it: moved along and across the array, then tilted, rocked and turned, each about its
-/// own axis. It may then be off the skin.
+/// own axis. It may then be off the skin, and is not yet pressed in.
 ProbePose jittered(const ProbePose& view, const PoseJitter& jitter);
 
 /// How near an image of this pose will come to what the masks' groups ask for (MaskGroup::leastVisiblePercent): the

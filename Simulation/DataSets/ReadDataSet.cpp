@@ -317,10 +317,11 @@ void readJitter(StrictObject object, DataSet& set)
 {
   std::size_t at = 0;
   const PoseJitter names;
-  PoseJitter::visit(names, [&](double, const char* name) {
+  PoseJitter::visit(names, [&](const double& value, const char* name) {
     if (object.has(name))
     {
-      set.jitter[at] = readDraw(object, name, { between(-90, 90) });
+      const bool isPress = &value == &names.pressMm;
+      set.jitter[at] = readDraw(object, name, { isPress ? between(0, 15) : between(-90, 90) });
     }
     ++at;
   });
@@ -340,6 +341,21 @@ void readMasks(StrictObject& root, DataSet& set)
     }
   }
   root.require("masks", set.masks.size() <= 255, "has more than 255 groups; remove some");
+}
+
+void readMitralLine(StrictObject object, DataSet& set)
+{
+  const auto group = [&](const char* key) {
+    const std::string name = object.text(key);
+    object.require(key,
+                   std::any_of(set.masks.begin(), set.masks.end(), [&](const MaskGroup& g) { return g.name == name; }),
+                   "is no group of 'masks'; correct it");
+    return name;
+  };
+  set.mitralLine = MitralLineGroups{ group("ventricle"), group("atrium"), object.texts("valve") };
+  object.require("atrium", set.mitralLine->atrium != set.mitralLine->ventricle,
+                 "is the ventricle's group; name another");
+  object.refuseOthers();
 }
 
 void readChannels(StrictObject& root, DataSet& set)
@@ -484,6 +500,10 @@ DataSet readDataSet(const std::string& path, const std::string& dataFolder)
     readTissues(root.object("tissues"), set);
   }
   readMasks(root, set);
+  if (root.has("mitralLine"))
+  {
+    readMitralLine(root.object("mitralLine"), set);
+  }
   if (root.has("channels"))
   {
     readChannels(root, set);

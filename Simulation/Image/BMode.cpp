@@ -136,6 +136,18 @@ double automaticReference(const std::vector<float>& envelope, int lineCount, con
   return largest >= smallestNormalFloat ? largest : 1.0;
 }
 
+/// By its width at half height, in steps; empty where that is 0.
+std::vector<float> gaussianOf(double width)
+{
+  std::vector<float> weights;
+  const double sigma = width / std::sqrt(8.0 * std::log(2.0));
+  for (int i = 0; width > 0.0 && i <= int(std::ceil(4.0 * sigma)); ++i)
+  {
+    weights.push_back(float(std::exp(-0.5 * (i / sigma) * (i / sigma))));
+  }
+  return weights;
+}
+
 void validateSizes(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm)
 {
   requireInRange(lineCount >= 1, "lineCount", lineCount, "at least 1");
@@ -149,6 +161,27 @@ void validateSizes(const std::vector<float>& envelope, int lineCount, int sample
   }
 }
 
+std::vector<float> smoothedAcross(std::vector<float> envelope, int lineCount, int sampleCount,
+                                  const BModeSettings& settings)
+{
+  const std::vector<float> weights = lateralSmoothing(settings);
+  if (weights.empty())
+  {
+    return envelope;
+  }
+  const int across = linesAcross(settings, lineCount);
+  std::vector<float> smoothed(envelope.size());
+  parallelFor(lineCount, {}, [&](int l) {
+    const float* plane = envelope.data() + std::size_t(l - l % across) * std::size_t(sampleCount);
+    float* line = smoothed.data() + std::size_t(l) * std::size_t(sampleCount);
+    for (int s = 0; s < sampleCount; ++s)
+    {
+      line[s] = smoothedEnvelope(plane + s, across, sampleCount, l % across, weights.data(), int(weights.size()) - 1);
+    }
+  });
+  return smoothed;
+}
+
 /// The envelope with noise and haze, smoothed.
 std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampleCount, double sampleMm,
                            const BModeSettings& settings)
@@ -158,7 +191,7 @@ std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampl
     addReceiverNoise(envelope, sampleCount, settings.noiseDb, settings.pulseSigmaMm / sampleMm, settings.noiseSeed);
   }
   const HazePower haze = makeHaze(settings, lineCount, sampleCount, sampleMm);
-  const std::vector<float> weights = smoothingWeights(settings, sampleMm);
+  const std::vector<float> axial = axialSmoothing(settings, sampleMm);
   parallelFor(lineCount, {}, [&](int l) {
     float* line = envelope.data() + std::size_t(l) * std::size_t(sampleCount);
     const float* power = haze.power.data() + std::size_t(l) * std::size_t(haze.nodeCount);
@@ -166,13 +199,13 @@ std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampl
     {
       line[s] = hazyEnvelope(line[s], power, float(s) * haze.nodesPerSample);
     }
-    const std::vector<float> rough(line, line + (weights.empty() ? 0 : sampleCount));
-    for (int s = 0; !weights.empty() && s < sampleCount; ++s)
+    const std::vector<float> rough(line, line + (axial.empty() ? 0 : sampleCount));
+    for (int s = 0; !axial.empty() && s < sampleCount; ++s)
     {
-      line[s] = smoothedEnvelope(rough.data(), sampleCount, s, weights.data(), int(weights.size()) - 1);
+      line[s] = smoothedEnvelope(rough.data(), sampleCount, 1, s, axial.data(), int(axial.size()) - 1);
     }
   });
-  return envelope;
+  return smoothedAcross(std::move(envelope), lineCount, sampleCount, settings);
 }
 
 } // namespace
@@ -197,7 +230,7 @@ std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, 
 
 std::vector<float> lateralGainDb(const BModeSettings& settings, int lineCount)
 {
-  const int across = settings.linesAcross > 0 ? settings.linesAcross : lineCount;
+  const int across = linesAcross(settings, lineCount);
   std::vector<float> gain(lineCount);
   for (int l = 0; l < lineCount; ++l)
   {
@@ -206,16 +239,19 @@ std::vector<float> lateralGainDb(const BModeSettings& settings, int lineCount)
   return gain;
 }
 
-std::vector<float> smoothingWeights(const BModeSettings& settings, double sampleMm)
+std::vector<float> axialSmoothing(const BModeSettings& settings, double sampleMm)
 {
-  std::vector<float> weights;
-  const double sigma =
-    settings.axialSmoothingMm / (sampleMm * settings.shownPerRange) / std::sqrt(8.0 * std::log(2.0)); // samples
-  for (int i = 0; settings.axialSmoothingMm > 0.0 && i <= int(std::ceil(4.0 * sigma)); ++i)
-  {
-    weights.push_back(float(std::exp(-0.5 * (i / sigma) * (i / sigma))));
-  }
-  return weights;
+  return gaussianOf(settings.axialSmoothingMm / (sampleMm * settings.shownPerRange));
+}
+
+std::vector<float> lateralSmoothing(const BModeSettings& settings)
+{
+  return gaussianOf(settings.lateralSmoothingLines);
+}
+
+int linesAcross(const BModeSettings& settings, int lineCount)
+{
+  return settings.linesAcross > 0 ? settings.linesAcross : lineCount;
 }
 
 float gainFactor(double decibels)
@@ -230,7 +266,7 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   validateSizes(echoEnvelope, lineCount, sampleCount, sampleMm);
 
   std::vector<float> received;
-  if (settings.addNoise || settings.addHaze || settings.axialSmoothingMm > 0.0)
+  if (settings.addNoise || settings.addHaze || settings.axialSmoothingMm > 0.0 || settings.lateralSmoothingLines > 0.0)
   {
     received = receive(echoEnvelope, lineCount, sampleCount, sampleMm, settings);
   }

@@ -21,8 +21,12 @@ struct BModeLines
 std::vector<double> depthGainDb(const BModeSettings& settings, int sampleCount, double sampleMm);
 /// The lateral gain of each line, dB.
 std::vector<float> lateralGainDb(const BModeSettings& settings, int lineCount);
-/// The weights of the envelope's smoothing, 0, 1, ... samples away; empty where there is none.
-std::vector<float> smoothingWeights(const BModeSettings& settings, double sampleMm);
+/// The weights of the envelope's smoothing, 0, 1, ... samples away along a line; empty where there is none.
+std::vector<float> axialSmoothing(const BModeSettings& settings, double sampleMm);
+/// The same across the lines, 0, 1, ... lines away.
+std::vector<float> lateralSmoothing(const BModeSettings& settings);
+/// Of an image's lines those that lie side by side in a plane.
+int linesAcross(const BModeSettings& settings, int lineCount);
 /// The same as a factor, at most the largest finite float.
 float gainFactor(double decibels);
 

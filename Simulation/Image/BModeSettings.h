@@ -32,12 +32,13 @@ struct BModeSettings
   double hazeFallDbPerCmMHz = 1.4;
   double hazeVariationDb = 3.0;
   std::uint64_t noiseSeed = 1;
-  double axialSmoothingMm = 0.0; ///< of the envelope, before any gain
-  double frequencyMHz = 2.5;     ///< centre of the band that is received, > 0
-  double pulseSigmaMm = 0.2;     ///< standard deviation of the receive filter's pulse: the noise's grain along a line
-  double hazeGrowthPerMm = 0.0;  ///< of a harmonic picture, see bodyWallGrowthPerMm; 0: the haze is the fundamental's
-  int linesAcross = 0;           ///< lines side by side; those that follow lie in other planes. 0: all
-  double shownPerRange = 1.0;    ///< see ScanGeometry: TGC and smoothing are by what is shown
+  double axialSmoothingMm = 0.0;      ///< of the envelope, before any gain
+  double lateralSmoothingLines = 0.0; ///< the same, behind it
+  double frequencyMHz = 2.5;          ///< centre of the band that is received, > 0
+  double pulseSigmaMm = 0.2;    ///< standard deviation of the receive filter's pulse: the noise's grain along a line
+  double hazeGrowthPerMm = 0.0; ///< of a harmonic picture, see bodyWallGrowthPerMm; 0: the haze is the fundamental's
+  int linesAcross = 0;          ///< lines side by side; those that follow lie in other planes. 0: all
+  double shownPerRange = 1.0;   ///< see ScanGeometry: TGC and smoothing are by what is shown
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -86,6 +87,10 @@ struct BModeSettings
             Parameter{ "axialSmoothingMm", "Axial Smoothing (mm)", between(0, 20),
                        "Width at half height of the Gaussian that smooths the envelope along each line, in mm, 0 to "
                        "20. 0: none." });
+    visitor(self.lateralSmoothingLines,
+            Parameter{ "lateralSmoothingLines", "Lateral Smoothing (lines)", between(0, 50),
+                       "Width at half height of the Gaussian that smooths the envelope across the lines of a plane, in "
+                       "lines, 0 to 50: a sector's speckle gets the wider the deeper it lies. 0: none." });
     visitSliders(self.tgcDb, visitor,
                  { "tgc1Db", "tgc2Db", "tgc3Db", "tgc4Db", "tgc5Db", "tgc6Db", "tgc7Db", "tgc8Db" },
                  { "TGC 1 (dB)", "TGC 2 (dB)", "TGC 3 (dB)", "TGC 4 (dB)", "TGC 5 (dB)", "TGC 6 (dB)", "TGC 7 (dB)",

@@ -5,6 +5,7 @@
 #include "Kernel/Rng.h"
 #include "Kernel/Vec.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -99,9 +100,10 @@ SONO_HD inline float hazyEnvelope(float envelope, const float* power, float posi
   return envelope >= 0.0f && envelope < 1e18f ? sqrtf(envelope * envelope + here) : envelope;
 }
 
-/// Weighted mean of the amplitudes about sample s of a line; `weights` are those of 0 to `half` samples away. What is
-/// no amplitude does not count, and stays.
-SONO_HD inline float smoothedEnvelope(const float* line, int count, int s, const float* weights, int half)
+/// Weighted mean of the amplitudes about the s-th of a row of `count`, `stride` apart: samples of a line, or lines at a
+/// depth; `weights` are those of 0 to `half` places away. What is no amplitude does not count, and stays.
+SONO_HD inline float smoothedEnvelope(const float* row, int count, std::ptrdiff_t stride, int s, const float* weights,
+                                      int half)
 {
   const int first = s - half > 0 ? s - half : 0;
   const int last = s + half < count - 1 ? s + half : count - 1;
@@ -110,11 +112,13 @@ SONO_HD inline float smoothedEnvelope(const float* line, int count, int s, const
   for (int i = first; i <= last; ++i)
   {
     const float weight = weights[i < s ? s - i : i - s];
-    const bool usable = line[i] >= 0.0f && line[i] <= largestFiniteFloat;
-    sum += usable ? weight * line[i] : 0.0f;
+    const float value = row[i * stride];
+    const bool usable = value >= 0.0f && value <= largestFiniteFloat;
+    sum += usable ? weight * value : 0.0f;
     total += usable ? weight : 0.0f;
   }
-  return line[s] >= 0.0f && line[s] <= largestFiniteFloat ? sum / total : line[s];
+  const float here = row[s * stride];
+  return here >= 0.0f && here <= largestFiniteFloat ? sum / total : here;
 }
 
 } // namespace sono

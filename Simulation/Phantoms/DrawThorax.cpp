@@ -24,7 +24,8 @@ ThoraxParameters drawThoraxParameters(std::uint64_t seed)
   p.heartLeftMm = draw(-6.0, 0.0);
   p.heartBackMm = dilated ? draw(4.0, 9.0) : draw(0.0, 6.0); // a large heart keeps off the ribs
   p.heartUpMm = draw(-8.0, 8.0);
-  p.extraFatMm = draw(0.0, 20.0);
+  const double fat = draw(0.0, 1.0);
+  p.extraFatMm = 20.0 * fat * fat; // few are stout
   p.ribSpacingMm = draw(26.0, 32.0);
   p.lungOverlapMm = draw(0.0, 20.0);
   p.breathing = draw(0.0, 0.6);
@@ -32,6 +33,11 @@ ThoraxParameters drawThoraxParameters(std::uint64_t seed)
   p.leftLateral = supine ? draw(0.0, 0.4) : draw(0.6, 1.0);
   p.phase = draw(0.0, 1.0);
   p.ejectionPercent = dilated ? draw(20.0, 45.0) : draw(52.0, 62.0);
+  // On the left side the heart lies against the chest wall; along its axis.
+  const double forwardMm = supine ? 0.0 : draw(0.0, dilated ? 3.0 : 6.0);
+  p.heartLeftMm += 0.53 * forwardMm;
+  p.heartBackMm -= 0.65 * forwardMm;
+  p.heartUpMm -= 0.545 * forwardMm;
   return p;
 }
 

@@ -87,6 +87,11 @@ public:
     view.normal = fit.normal();
     view.points = pointsAround(view.markMm, fit);
     const bool isParasternal = isShortAxis || name == "PLAX";
+    if (!isParasternal && name != "SC4C" && view.demands.size() > 1)
+    {
+      // As sonographers keep it: the left ventricle near the middle, the other chambers beside and below.
+      view.demands.front().pull = 3.0 * double(view.demands.size() - 1);
+    }
     view.look = isParasternal    ? glm::normalize(inferolateral_ + backwards)
                 : name == "SC4C" ? glm::normalize(0.5 * axis_ - septal_)
                                  : axis_;

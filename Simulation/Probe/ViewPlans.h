@@ -16,6 +16,7 @@ struct ViewDemand
   Vec3d nearMm{ 0.0 };     ///< only what is near this point counts, world LPS mm
   double withinMm = 1e9;
   double leastPercent = 0.0; ///< of its section by the ideal plane, that a view must show
+  double pull = 1.0;         ///< weight of its middle in where the image's axis points
 };
 
 /// A standard view as it ideally is, whether or not a probe can be put there. World LPS mm.

@@ -106,10 +106,13 @@ IdealSection idealSection(const Scene& scene, const ViewPlan& plan, const ViewSt
       }
     }
   }
+  double pull = 0.0;
   for (std::size_t i = 0; i < structures.count(); ++i)
   {
-    section.middle += sums[i] / std::max(1e-9, section.areaMm2[i]) / double(structures.count());
+    section.middle += plan.demands[i].pull * sums[i] / std::max(1e-9, section.areaMm2[i]);
+    pull += plan.demands[i].pull;
   }
+  section.middle /= std::max(1e-9, pull);
   return section;
 }
 

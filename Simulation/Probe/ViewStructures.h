@@ -32,7 +32,7 @@ private:
 struct IdealSection
 {
   std::vector<double> areaMm2; ///< by demand
-  Vec3d middle{ 0.0 };         ///< of the demands' middles, local
+  Vec3d middle{ 0.0 };         ///< of the demands' middles, by their pull, local
 };
 
 IdealSection idealSection(const Scene& scene, const ViewPlan& plan, const ViewStructures& structures);

@@ -67,10 +67,21 @@ VoxelBox muscleBox(const Vec3i& size, const std::vector<std::uint8_t>& tissues, 
   return { glm::max(box.first - marginVoxels, Vec3i(0)), glm::min(box.last + marginVoxels, size) };
 }
 
-bool namesLeftVentricle(std::string name)
+std::string lowerCase(std::string name)
 {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return name;
+}
+
+bool namesLeftVentricle(const std::string& label)
+{
+  const std::string name = lowerCase(label);
   return name.find("left") != std::string::npos && name.find("ventric") != std::string::npos;
+}
+
+bool namesPapillaryMuscle(const std::string& label)
+{
+  return lowerCase(label).find("papillar") != std::string::npos;
 }
 
 /// Eigenvector of the largest eigenvalue, by squaring the matrix until it is all that is left.
@@ -103,15 +114,17 @@ struct Masks
   bool hasLeft = false;
 };
 
-Vec3d longAxis(const VoxelBox& box, const Vec3i& size, const Vec3d& spacingMm, const std::vector<char>& mask)
+/// Of the voxels of a box of which isPart(index in the volume, index in the box) holds.
+template<class IsPart>
+Vec3d longAxis(const VoxelBox& box, const Vec3i& size, const Vec3d& spacingMm, const IsPart& isPart)
 {
   Vec3d sum(0.0);
   Mat3d products(0.0);
   double count = 0.0;
   for (int k = box.first.z; k < box.last.z; ++k)
   {
-    forSlice(box, k, size, [&](const Vec3i& p, std::size_t, std::size_t n) {
-      if (mask[n])
+    forSlice(box, k, size, [&](const Vec3i& p, std::size_t at, std::size_t n) {
+      if (isPart(at, n))
       {
         const Vec3d q = Vec3d(p - box.first) * spacingMm;
         sum += q;
@@ -189,7 +202,8 @@ FibreField buildFibreField(const LabelVolume& volume, const std::vector<std::uin
     }
   });
   masks.hasLeft = hasLeft;
-  const Vec3d axis = longAxis(box, size, spacingMm, masks.hasLeft ? masks.left : masks.blood);
+  const std::vector<char>& cavity = masks.hasLeft ? masks.left : masks.blood;
+  const Vec3d axis = longAxis(box, size, spacingMm, [&](std::size_t, std::size_t n) { return cavity[n] != 0; });
   std::vector<float> depth = distanceTo(masks.left, boxSize, spacingMm);
   {
     const std::vector<float> toBlood = distanceTo(masks.blood, boxSize, spacingMm);
@@ -244,6 +258,25 @@ FibreField buildFibreField(const LabelVolume& volume, const std::vector<std::uin
       }
     }
   });
+  for (const LabelInfo& label : volume.labels)
+  {
+    if (namesPapillaryMuscle(label.name))
+    {
+      const auto isPart = [&](std::size_t at, std::size_t) {
+        return int(volume.voxels[at]) == label.id && isMuscle[tissueVoxels[at]];
+      };
+      const Vec3d along = longAxis(box, size, spacingMm, isPart);
+      for (int k = box.first.z; k < box.last.z; ++k)
+      {
+        forSlice(box, k, size, [&](const Vec3i& p, std::size_t at, std::size_t n) {
+          if (isPart(at, n))
+          {
+            field.set(p, along);
+          }
+        });
+      }
+    }
+  }
   return field;
 }
 

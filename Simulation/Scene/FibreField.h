@@ -39,7 +39,8 @@ constexpr double fibreAngleOutsideDeg = -60.0;
 /// The fibres of a heart's walls. `isMuscle` and `isBlood` tell the tissues; the depth in the wall is the share of the
 /// distance to the cavity in that to both of its surfaces. A wall between the left ventricle's blood (a label whose
 /// name holds "left" and "ventric") and other blood counts as the left ventricle's. "Around" is across the long axis of
-/// the left ventricle's blood (of all blood where no label is named so): the principal axis of its voxels.
+/// the left ventricle's blood (of all blood where no label is named so): the principal axis of its voxels. The fibres
+/// of a papillary muscle (a label whose name holds "papillar") run along it, its own principal axis.
 FibreField buildFibreField(const LabelVolume& volume, const std::vector<std::uint8_t>& tissueVoxels,
                            const std::vector<bool>& isMuscle, const std::vector<bool>& isBlood);
 

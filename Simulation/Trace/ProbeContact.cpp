@@ -174,4 +174,35 @@ std::optional<ProbePose> poseOnSkin(const Scene& scene, const ProbePose& pose)
   return std::nullopt;
 }
 
+ProbePose pressedIn(const Scene& scene, const ProbePose& pose, const BeamAperture& aperture, double pressMm)
+{
+  ProbePose probe = pose.orthonormalized();
+  const Vec3d start = probe.positionMm;
+  const Vec3d lateral = 0.5 * aperture.apertureMm * probe.lateral;
+  const Vec3d elevation = 0.5 * aperture.elevationApertureMm * glm::cross(probe.axial, probe.lateral);
+  const auto meetsBone = [&](const Vec3d& middle) {
+    for (int place = 0; place < 9; ++place)
+    {
+      const LabelInfo* label =
+        labelAt(scene, middle + double(place % 3 - 1) * lateral + double(place / 3 - 1) * elevation);
+      if (!isOutside(scene, label) && keepsSoundOut(scene.tissues()[scene.tissueOfLabel()[std::size_t(label->id)]]))
+      {
+        return true;
+      }
+    }
+    return false;
+  };
+  const double step = halfVoxelMm(scene);
+  for (double t = std::min(step, pressMm); t > 0.0; t = t < pressMm ? std::min(t + step, pressMm) : 0.0)
+  {
+    const Vec3d middle = start + t * probe.axial;
+    if (meetsBone(middle))
+    {
+      break;
+    }
+    probe.positionMm = middle;
+  }
+  return probe;
+}
+
 } // namespace sono

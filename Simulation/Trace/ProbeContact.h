@@ -27,4 +27,9 @@ double shareInsideVolume(const Scene& scene, const ScanGeometry& geometry, const
 /// outside on to the first that is not, at most 60 mm, by half a voxel's edge. None where no surface lies there.
 std::optional<ProbePose> poseOnSkin(const Scene& scene, const ProbePose& pose);
 
+/// The pose of a probe on the skin that a hand presses in by `pressMm`, mm along its axis: what the face displaces is
+/// out of its way. Less far, by steps of half a voxel's edge, where any of nine places over the aperture, of one that
+/// is not named the middle, would come into a tissue that keeps sound out (probeContactWarning), such as a rib.
+ProbePose pressedIn(const Scene& scene, const ProbePose& pose, const BeamAperture& aperture, double pressMm);
+
 } // namespace sono

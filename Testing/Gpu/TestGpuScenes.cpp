@@ -225,6 +225,7 @@ TEST(GpuSmall, EveryUsualKernel)
   settings.bmode.addNoise = true;
   settings.bmode.addHaze = true;
   settings.bmode.axialSmoothingMm = 0.3;
+  settings.bmode.lateralSmoothingLines = 1.5;
   settings.bmode.noiseDb = -60.0;
   settings.matchStages();
   settings.setDevice(Device::Cuda);

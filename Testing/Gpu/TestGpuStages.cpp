@@ -185,6 +185,7 @@ TEST(GpuStages, WholeImagesAndSweeps)
   s.bmode.noiseDb = -80.0;
   s.bmode.addHaze = true;
   s.bmode.axialSmoothingMm = 0.3;
+  s.bmode.lateralSmoothingLines = 1.5;
   std::vector<ProbePose> poses;
   for (int i = 0; i < 21; ++i) // a group and a part of one
   {

@@ -220,7 +220,7 @@ TEST(AssumedSoundSpeed, GainAndSmoothingAreByWhatIsShown)
   const double shownMm = 0.05;
   const double sampleMm = shownMm / s.shownPerRange;
   EXPECT_NEAR(depthGainDb(s, 401, sampleMm)[400], 8.0, 1e-9); // 400 samples are 2 cm
-  const std::vector<float> weights = smoothingWeights(s, sampleMm);
+  const std::vector<float> weights = axialSmoothing(s, sampleMm);
   EXPECT_NEAR(weights[10], 0.5, 1e-6); // half a millimetre from its middle
 }
 

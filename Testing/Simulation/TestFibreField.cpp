@@ -104,6 +104,47 @@ TEST(FibreField, ASeptumTurnsFromTheLeftVentricleToTheRight)
   EXPECT_EQ(field.at({ 10, 20, 45 }), Vec3f(0.0f));
 }
 
+TEST(FibreField, OfAPapillaryMuscleRunAlongIt)
+{
+  // A rod through blood, slanting, and the wall that it stands on.
+  LabelVolume volume;
+  volume.placement.size = { 40, 40, 60 };
+  volume.voxels.assign(volume.placement.voxelCount(), 1);
+  const Vec3d from(14.0, 20.0, 10.0);
+  const Vec3d along = glm::normalize(Vec3d(0.3, 0.1, 1.0));
+  const auto at = [&](int i, int j, int k) -> std::uint16_t& {
+    return volume.voxels[std::size_t(i + 40 * (j + 40 * k))];
+  };
+  for (int k = 0; k < 60; ++k)
+  {
+    for (int j = 0; j < 40; ++j)
+    {
+      for (int i = 0; i < 40; ++i)
+      {
+        const Vec3d way = Vec3d(i, j, k) + 0.5 - from;
+        const double t = glm::dot(way, along);
+        const bool isRod = t > 0.0 && t < 35.0 && glm::length(way - t * along) < 4.0;
+        at(i, j, k) = isRod ? 3 : (i < 5 ? 2 : 1);
+      }
+    }
+  }
+  volume.collectLabels();
+  volume.labels[0].name = "left_ventricle_blood";
+  volume.labels[2].name = "Papillary_muscle";
+  std::vector<std::uint8_t> tissues;
+  for (const std::uint16_t label : volume.voxels)
+  {
+    tissues.push_back(label == 1 ? 1 : 0);
+  }
+  const FibreField field = buildFibreField(volume, tissues, { true, false }, { false, true });
+  for (const double t : { 3.0, 15.0, 30.0 })
+  {
+    const Vec3d got = glm::normalize(Vec3d(field.at(Vec3i(glm::floor(from + t * along)))));
+    EXPECT_GT(std::abs(glm::dot(got, along)), std::cos(2.0 * M_PI / 180.0)) << t;
+  }
+  EXPECT_LT(std::abs(field.at({ 2, 20, 30 }).x), 0.1f); // the wall's stay in it
+}
+
 TEST(FibreField, NoneWhereNoTissueHasAnisotropy)
 {
   const auto scene = makeScene(Vec3i(10), Vec3d(1.0), { muscle(0.0) }, [](const Vec3d&) { return 0; });

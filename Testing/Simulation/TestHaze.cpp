@@ -115,11 +115,17 @@ TEST(Haze, LeavesWhatIsNoAmplitude)
   EXPECT_EQ(grey[3], 1.0f);
 }
 
-TEST(AxialSmoothing, TurnsAStepIntoTheNormalDistribution)
+BModeSettings plain()
 {
   BModeSettings settings;
   settings.tgcDbPerCm = 0.0;
   settings.automaticReference = false;
+  return settings;
+}
+
+TEST(AxialSmoothing, TurnsAStepIntoTheNormalDistribution)
+{
+  BModeSettings settings = plain();
   settings.axialSmoothingMm = 0.4;
   const double sampleMm = 0.01;
   std::vector<float> envelope(1000, 0.2f);
@@ -131,6 +137,28 @@ TEST(AxialSmoothing, TurnsAStepIntoTheNormalDistribution)
     const double x = (sample - 499.5) * sampleMm / sigmaMm;
     const double expected = 0.2 + 0.6 * 0.5 * std::erfc(-x / std::sqrt(2.0));
     EXPECT_NEAR(std::pow(10.0, 3.0 * (grey[std::size_t(sample)] - 1.0)), expected, 1e-4) << sample;
+  }
+}
+
+TEST(LateralSmoothing, TurnsAStepIntoTheNormalDistributionWithinItsPlane)
+{
+  constexpr int across = 200;
+  BModeSettings settings = plain();
+  settings.lateralSmoothingLines = 20.0;
+  settings.linesAcross = across;
+  const int samples = 3;
+  std::vector<float> envelope(2 * across * samples, 0.2f);
+  std::fill(envelope.begin() + 100 * samples, envelope.begin() + across * samples, 0.8f); // the second plane is even
+  const auto grey = makeBMode(envelope, 2 * across, samples, 0.1, settings).grey;
+  const double sigma = 20.0 / 2.3548200450;
+  for (const int line : { 0, 80, 95, 100, 110, 199, 200, 210, 399 })
+  {
+    const double step = line < across ? 0.5 * std::erfc(-(line - 99.5) / (sigma * std::sqrt(2.0))) : 0.0;
+    for (int s = 0; s < samples; ++s)
+    {
+      const float level = grey[std::size_t(line * samples + s)];
+      EXPECT_NEAR(std::pow(10.0, 3.0 * (level - 1.0)), 0.2 + 0.6 * step, 1e-4) << line;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "DataSets/DataSetImager.h"
 #include "DataSets/ImageLandmarks.h"
+#include "DataSets/MitralLine.h"
 #include "Image/LabelSlice.h"
 #include "Image/ShownPlace.h"
 
@@ -66,6 +67,84 @@ DataSetImage apicalImage(const std::string& path, const std::string& view)
 }
 
 } // namespace
+
+/// A ventricle above, an atrium below, and leaflets that open into the ventricle with the atrium's blood between them.
+TEST(MitralLine, DividesByAStraightLineBetweenTheHinges)
+{
+  constexpr int width = 60;
+  enum Label : std::uint16_t
+  {
+    Nothing,
+    Ventricle,
+    Atrium,
+    Valve,
+    Outflow
+  };
+  std::vector<std::uint16_t> labels;
+  std::vector<std::uint8_t> mask; // 1 ventricle with its outflow, 2 atrium
+  for (int row = 0; row < width; ++row)
+  {
+    for (int column = 0; column < width; ++column)
+    {
+      const double funnel = std::abs(column - 30.0) - (10.0 - 0.7 * (30.0 - row)); // < 0 within it
+      Label label = row < 30 ? Ventricle : Atrium;
+      label = row < 30 && row > 18 && funnel < 0.0 ? Atrium : label;
+      label = row < 30 && row > 18 && std::abs(funnel) < 1.5 ? Valve : label;
+      label = column < 10 || column > 50 ? Nothing : label;
+      label = row >= 30 && column < 18 && column >= 10 ? Outflow : label;
+      labels.push_back(label);
+      mask.push_back(label == Ventricle || label == Outflow ? 1 : label == Atrium ? 2 : 0);
+    }
+  }
+  std::vector<bool> isValve(5, false);
+  isValve[Valve] = true;
+  const auto point = [](double column, double row) {
+    ImagePoint p;
+    p.column = column;
+    p.row = row;
+    return p;
+  };
+  for (const bool isSwapped : { false, true })
+  {
+    std::vector<std::uint8_t> divided = mask;
+    const ImagePoint left = point(20.0, 29.0);
+    const ImagePoint right = point(40.0, 31.0);
+    divideAtHinges(isSwapped ? right : left, isSwapped ? left : right, point(31.0, 2.0), { 1, 2, &isValve },
+                   labels.data(), width, divided);
+    for (std::size_t at = 0; at < mask.size(); ++at)
+    {
+      const int column = int(at % width);
+      const int row = int(at / width);
+      const double along = 20.0 * (column - 20.0) + 2.0 * (row - 29.0);
+      const bool isBetween = along >= 0.0 && along <= 404.0;
+      const int expected = !isBetween || labels[at] == Nothing ? mask[at] : row <= 29.0 + 0.1 * (column - 20.0) ? 1 : 2;
+      ASSERT_EQ(divided[at], expected) << column << ", " << row;
+    }
+  }
+}
+
+TEST(MitralLine, OfAnImageRunsThroughItsHinges)
+{
+  const sono::testing::TemporaryFolder folder;
+  const DataSetImage image = apicalImage(folder.file("set.json"), "A4C");
+  const Json annulus = Json::parse(image.info)["landmarks"]["mitralAnnulus"];
+  ASSERT_EQ(annulus["hinges"].size(), 2u);
+  const Json& a = annulus["hinges"][0];
+  const Json& b = annulus["hinges"][1];
+  const double slope =
+    (b["row"].get<double>() - a["row"].get<double>()) / (b["column"].get<double>() - a["column"].get<double>());
+  int columns = 0;
+  for (int column = int(a["column"].get<double>()) + 3; column < int(b["column"].get<double>()) - 2;
+       ++column, ++columns)
+  {
+    const double line = a["row"].get<double>() + slope * (column - a["column"].get<double>());
+    const auto above = image.mask[std::size_t(int(line) - 2) * std::size_t(image.width) + std::size_t(column)];
+    const auto below = image.mask[std::size_t(int(line) + 3) * std::size_t(image.width) + std::size_t(column)];
+    EXPECT_EQ(above, 1) << column;
+    EXPECT_EQ(below, 3) << column;
+  }
+  EXPECT_GT(columns, 30);
+}
 
 /// The labels of a picture say which voxel each pixel shows; a voxel's middle is shown in the middle of these.
 TEST(ShownPlace, IsWhereTheLabelsAre)

@@ -67,7 +67,7 @@ TEST(ThoraxBodies, ASeedGivesTheSameBodyOnEveryPlatform)
 {
   const ThoraxParameters drawn = drawThoraxParameters(7);
   const std::vector<double> known{ 106.784299016, 99.143105447, 50.782354772, 59.564087391, 12.762989759, 0.484433955,
-                                   -1.876859307,  2.423125863,  -1.734114647, 3.466116190,  1.043950364,  29.200596690,
+                                   -0.291145059,  0.478381974,  -3.364707600, 0.600698072,  1.043950364,  29.200596690,
                                    10.145078897,  0.423161638,  0.602345586,  0.134070456,  60.861917853 };
   std::size_t i = 0;
   ThoraxParameters::visit(drawn, [&](double value, const Parameter& parameter) {
