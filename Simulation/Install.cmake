@@ -7,6 +7,12 @@ set(public_headers
   DataSets/WriteDataSet.h
   Echo/FormRf.h
   Echo/PointScatterers.h
+  Files/ArrayElements.h
+  Files/DicomCine.h
+  Files/DicomMasks.h
+  Files/LineCine.h
+  Files/ReadTracked.h
+  Files/TrackedCine.h
   Image/BMode.h
   Image/GreyMap.h
   Image/LabelSlice.h
