@@ -23,6 +23,7 @@ set(public_headers
   Labels/LabelTable.h
   Labels/ReadIntensities.h
   Labels/ReadLabelMap.h
+  Link/LiveLink.h
   Phantoms/CalibrationPhantom.h
   Phantoms/PhantomTargets.h
   Phantoms/TestObjects.h

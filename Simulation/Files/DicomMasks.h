@@ -15,7 +15,7 @@ namespace sono {
 /// occurs, numbered from 1 in the order of their ids, with its name, colour and code; a frame for each picture and
 /// label in it, which names the picture's frame in that file, its place (of the first pixel, LPS mm), time and pixel
 /// size. Label 0 is no segment. The pictures are taken one by one and their bits kept in a file without a name beside
-/// it, so that their number does not ask for memory, but for about 5 KB a frame of what is said of it; DCMTK's own
+/// it, so that their number does not ask for memory, but for about 8 KB a frame of what is said of it; DCMTK's own
 /// segmentations keep all frames there. The file appears when all are there, or not at all.
 class DicomMasks
 {

@@ -261,9 +261,10 @@ struct ProbeSettings : BeamAperture
   static void visitElements(Self& self, Visitor&& visitor)
   {
     visitor(self.elementCount,
-            Parameter{ "elementCount", "Element Count", between(0, 65536),
-                       "Elements of the array, of a matrix of all its rows together, 0 to 65,536, as files of RF lines "
-                       "have them. Where the aperture or the lines' face needs more, it is so many." });
+            Parameter{
+              "elementCount", "Element Count", between(0, 65536),
+              "Elements of the array, of a matrix of all its rows together, 0 to 65,536, no unit, as files of RF lines "
+              "have them. Where the aperture or the lines' face needs more, it is so many." });
     visitor(self.kerfMm, Parameter{ "kerfMm", "Kerf (mm)", between(0, 1000),
                                     "Gap between two elements in mm, 0 to 1000, as files of RF lines have it." });
   }
@@ -292,8 +293,8 @@ struct ProbeSettings : BeamAperture
   BeamAperture aperture() const;
 };
 
-/// The same as a preset file gives it; its aperture is that of the active elements (see apertureOf). A matrix has as many
-/// elements along the array as across it.
+/// The same as a preset file gives it; its aperture is that of the active elements (see apertureOf). A matrix has as
+/// many elements along the array as across it.
 struct ProbePreset : ProbeSettings
 {
   std::string name;
