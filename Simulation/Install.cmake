@@ -7,7 +7,6 @@ set(public_headers
   DataSets/WriteDataSet.h
   Echo/FormRf.h
   Echo/PointScatterers.h
-  Files/ArrayElements.h
   Files/DicomCine.h
   Files/DicomMasks.h
   Files/LineCine.h
@@ -30,6 +29,7 @@ set(public_headers
   Phantoms/ThoraxPhantom.h
   Probe/AcousticWindow.h
   Probe/ArrayBeam.h
+  Probe/ArrayElements.h
   Probe/HeartLandmarks.h
   Probe/PulseEchoFieldFile.h
   Probe/PulseFile.h

@@ -1,4 +1,5 @@
 """Clients of others get the newest picture where it stands, and say where the probe is."""
+import contextlib
 import pathlib
 import socket
 import struct
@@ -17,7 +18,7 @@ from sonovdb.vtkSonoFilters import vtkSonoLiveLink
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-EXAMPLE = pathlib.Path("/usr/share/doc/openigtlink-examples/examples/Receiver/ReceiveClient.cxx")
+EXAMPLES = pathlib.Path("/usr/share/doc/openigtlink-examples/examples")
 RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 RECEIVE = """
@@ -75,6 +76,20 @@ class LinkCase(unittest.TestCase):
         link.Update()
         self.assertEqual(link.GetOpenPort(), 0)
 
+    @contextlib.contextmanager
+    def example(self, source, *arguments):
+        """A client that the library brings, built and run; the file of what it says."""
+        program, log = self.folder / "client", self.folder / "log"
+        subprocess.run(["g++", "-w", str(EXAMPLES / source), "-I/usr/include/openigtlink", "-lOpenIGTLink", "-o",
+                        str(program)], check=True)
+        with open(log, "w") as file:
+            client = subprocess.Popen([str(program), *map(str, arguments)], stdout=file, stderr=file)
+        try:
+            yield log
+        finally:
+            client.kill()
+            client.wait()
+
     def connect(self, link):
         connection = socket.create_connection(("127.0.0.1", link.GetOpenPort()), timeout=20)
         self.addCleanup(connection.close)
@@ -105,22 +120,13 @@ class TestSending(LinkCase):
             self.assertAlmostEqual(np.linalg.det(pose[:3, :3]), 1, places=5)
             self.close(link)
 
-    @unittest.skipUnless(EXAMPLE.exists(), "openigtlink-examples is not installed")
+    @unittest.skipUnless(EXAMPLES.exists(), "openigtlink-examples is not installed")
     def test_the_library_s_own_client_gets_it(self):
-        program = self.folder / "client"
-        subprocess.run(["g++", "-w", str(EXAMPLE), "-I/usr/include/openigtlink", "-lOpenIGTLink", "-o", str(program)],
-                       check=True)
         link = self.link()
-        log = self.folder / "log"
-        with open(log, "w") as file:
-            client = subprocess.Popen([str(program), "127.0.0.1", str(link.GetOpenPort())], stdout=file, stderr=file)
-        try:
-            width, height, _ = self.chain.converter.GetOutput().GetDimensions()
+        width, height, _ = self.chain.converter.GetOutput().GetDimensions()
+        with self.example("Receiver/ReceiveClient.cxx", "127.0.0.1", link.GetOpenPort()) as log:
             self.assertTrue(wait_until(lambda: "TRANSFORM" in log.read_text()), log.read_text())
             self.assertIn(f"({width}, {height}, 1)", log.read_text())
-        finally:
-            client.kill()
-            client.wait()
 
     def test_a_slow_client_gets_the_newest(self):
         """One that does not read: nobody waits for it, what it gets later is whole, and the last is the newest."""
@@ -161,6 +167,15 @@ class TestReceiving(LinkCase):
         peers.run(SEND, link.GetOpenPort(), self.folder / "poses.npy", "ProbeToReference")
         self.assertTrue(wait_until(lambda: link.GetReceivedCount() == 3), link.GetStatus())
         self.check_pose(link, self.poses()[-1])
+
+    @unittest.skipUnless(EXAMPLES.exists(), "openigtlink-examples is not installed")
+    def test_the_library_s_own_tracker_moves_the_probe(self):
+        link = self.link(Transform="Tracker")
+        with self.example("Tracker/TrackerClient.cxx", "127.0.0.1", link.GetOpenPort(), 50):
+            self.assertTrue(wait_until(lambda: link.GetReceivedCount() >= 5), link.GetStatus())
+        position, axial, lateral = np.reshape(link.GetReceivedPose(), (3, 3))
+        np.testing.assert_allclose([axial @ axial, lateral @ lateral, axial @ lateral], [1, 1, 0], atol=1e-6)
+        self.assertGreater(np.abs(position).max(), 0)
 
     def test_in_parts_and_among_others(self):
         """Bytes come as the network likes, and messages of other kinds between them."""

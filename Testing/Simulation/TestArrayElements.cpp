@@ -1,4 +1,4 @@
-#include "Files/ArrayElements.h"
+#include "Probe/ArrayElements.h"
 
 #include <gtest/gtest.h>
 
