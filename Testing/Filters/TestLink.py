@@ -57,6 +57,12 @@ class LinkCase(unittest.TestCase):
     def setUpClass(cls):
         cls.chain = Chain()
         cls.chain.converter.SetPixelMm(0.5)
+        link = make(vtkSonoLiveLink, Port=0)
+        link.SetInputConnection(cls.chain.converter.GetOutputPort())
+        said = listen(link)
+        link.Update()
+        if said and "without OpenIGTLink" in said[0]:
+            raise unittest.SkipTest(said[0])
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
