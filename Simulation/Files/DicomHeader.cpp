@@ -137,7 +137,7 @@ std::string dicomHeader(const CineInfo& info)
   putTimes(data, info.timesS);
   putTransducer(data, info.probe);
   putRegion(data, info);
-  return dicomFileStart(file, std::uint64_t(info.width) * std::uint64_t(info.height) * info.timesS.size());
+  return dicomBytes(file) + pixelDataStart(std::uint64_t(info.width) * std::uint64_t(info.height) * info.timesS.size());
 }
 
 } // namespace sono

@@ -139,32 +139,40 @@ void putOrigin(DcmItem& data, const CineInfo& info)
   putText(data, DCM_LossyImageCompression, "00");
 }
 
-std::string dicomFileStart(DcmFileFormat& file, std::uint64_t pixelBytes)
+std::string dicomBytes(DcmObject& object)
 {
   const E_TransferSyntax syntax = EXS_LittleEndianExplicit;
-  file.validateMetaInfo(syntax);
+  if (auto* const file = dynamic_cast<DcmFileFormat*>(&object))
+  {
+    file->validateMetaInfo(syntax);
+  }
   std::string bytes;
   std::string room(1 << 16, '\0');
   DcmOutputBufferStream stream(room.data(), offile_off_t(room.size()));
-  file.transferInit();
+  object.transferInit();
   OFCondition status = EC_StreamNotifyClient;
   while (status == EC_StreamNotifyClient)
   {
-    status = file.write(stream, syntax, EET_ExplicitLength, nullptr);
+    status = object.write(stream, syntax, EET_ExplicitLength, nullptr);
     void* part = nullptr;
     offile_off_t length = 0;
     stream.flushBuffer(part, length);
     bytes.append(static_cast<const char*>(part), std::size_t(length));
   }
-  file.transferEnd();
+  object.transferEnd();
   if (status.bad())
   {
     throw Error(std::string("The header of a DICOM file cannot be made: ") + status.text() + ".");
   }
-  // Pixel Data is the last element: tag, type, two empty bytes and length (PS3.5 7.1.2).
-  bytes += std::string("\xe0\x7f\x10\x00OB\0\0", 8);
-  appendNumber(std::uint32_t(pixelBytes + pixelBytes % 2), bytes);
   return bytes;
+}
+
+std::string pixelDataStart(std::uint64_t bytes)
+{
+  // Tag, type, two empty bytes and length (PS3.5 7.1.2).
+  std::string start("\xe0\x7f\x10\x00OB\0\0", 8);
+  appendNumber(std::uint32_t(bytes + bytes % 2), start);
+  return start;
 }
 
 } // namespace sono

@@ -31,8 +31,10 @@ DcmItem& addCode(DcmItem& item, const DcmTagKey& sequence, const char* scheme, c
 /// Patient, study, who made it, and that it is a simulation, of this image or of what belongs to it.
 void putOrigin(DcmItem& data, const CineInfo& info);
 
-/// The bytes of the file up to the first of so many bytes of pixels (explicit little endian), which follow, and a zero
-/// where their number is odd.
-std::string dicomFileStart(DcmFileFormat& file, std::uint64_t pixelBytes);
+/// The bytes of a file without pixels, or of an item (explicit little endian).
+std::string dicomBytes(DcmObject& object);
+
+/// What stands before so many bytes of pixels, which come behind all else, and a zero where their number is odd.
+std::string pixelDataStart(std::uint64_t bytes);
 
 } // namespace sono

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <ostream>
 
 namespace sono {
 
@@ -169,8 +170,8 @@ void putFrame(DcmItem& groups, const CineInfo& cine, const ProbePose& pose, std:
 
 } // namespace
 
-std::string dicomMaskHeader(const CineInfo& cine, const std::vector<ProbePose>& poses,
-                            const std::vector<LabelInfo>& segments, const std::vector<DicomMasks::Frame>& frames)
+void writeMaskHeader(const CineInfo& cine, const std::vector<ProbePose>& poses, const std::vector<LabelInfo>& segments,
+                     const std::vector<DicomMasks::Frame>& frames, std::ostream& stream)
 {
   DcmFileFormat file;
   DcmDataset& data = *file.getDataset();
@@ -196,22 +197,24 @@ std::string dicomMaskHeader(const CineInfo& cine, const std::vector<ProbePose>& 
     putOrientation(shared, poses.front());
   }
   putText(data, DCM_NumberOfFrames, std::to_string(frames.size()));
-  // By itself: to look for the sequence for each frame would take long.
-  auto* const perFrame = new DcmSequenceOfItems(DCM_PerFrameFunctionalGroupsSequence);
-  checkDicom(data.insert(perFrame, true), DCM_PerFrameFunctionalGroupsSequence);
+  stream << dicomBytes(file);
+  // The frames' sequence is the last before the pixels. Of a length that is not said, it need not be held as a whole:
+  // tag, type, two empty bytes and that length; in the end a tag and no length (PS3.5 7.5).
+  stream << std::string("\x00\x52\x30\x92SQ\0\0\xff\xff\xff\xff", 12);
   for (const DicomMasks::Frame& frame : frames)
   {
-    auto* const groups = new DcmItem(DCM_Item);
-    checkDicom(perFrame->append(groups), DCM_PerFrameFunctionalGroupsSequence);
+    DcmItem groups(DCM_Item);
     const ProbePose& pose = poses[frame.picture];
-    putFrame(*groups, cine, pose, frame.picture, numberOf[frame.label]);
+    putFrame(groups, cine, pose, frame.picture, numberOf[frame.label]);
     if (!isParallel)
     {
-      putOrientation(*groups, pose);
+      putOrientation(groups, pose);
     }
+    stream << dicomBytes(groups);
   }
+  stream << std::string("\xfe\xff\xdd\xe0\0\0\0\0", 8);
   const std::uint64_t bits = std::uint64_t(frames.size()) * std::uint64_t(cine.width) * std::uint64_t(cine.height);
-  return dicomFileStart(file, (bits + 7) / 8);
+  stream << pixelDataStart((bits + 7) / 8);
 }
 
 } // namespace sono

@@ -4,6 +4,7 @@
 #include "Files/DicomMaskHeader.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace sono {
@@ -39,34 +40,39 @@ DicomMasks::DicomMasks(const std::string& path, const CineInfo& cine, const std:
   }
 }
 
-void DicomMasks::addBits(const std::uint16_t* labels, std::uint16_t label)
+void DicomMasks::addBits(const std::uint16_t* labels, const std::set<std::uint16_t>& shown)
 {
   const std::size_t count = std::size_t(cine_.width) * std::size_t(cine_.height);
-  bytes_.clear();
-  unsigned byte = lastByte_;
-  std::size_t bit = lastBits_;
+  // A frame a label, one behind the other, the first pixel in the lowest bit (PS3.5 8.1.1).
+  bytes_.assign((lastBits_ + shown.size() * count + 7) / 8, 0);
+  bytes_.front() = lastByte_;
+  std::vector<std::size_t> firstBit(std::numeric_limits<std::uint16_t>::max() + 1);
+  std::size_t end = lastBits_;
+  for (const std::uint16_t label : shown)
+  {
+    firstBit[label] = end;
+    end += count;
+  }
   for (std::size_t n = 0; n < count; ++n)
   {
-    byte |= unsigned(labels[n] == label) << bit; // the first pixel is the lowest bit (PS3.5 8.1.1)
-    if (++bit == 8)
+    if (labels[n] != 0)
     {
-      bytes_.push_back(char(byte));
-      byte = 0;
-      bit = 0;
+      const std::size_t bit = firstBit[labels[n]] + n;
+      bytes_[bit / 8] = std::uint8_t(bytes_[bit / 8] | 1u << bit % 8);
     }
   }
-  lastByte_ = std::uint8_t(byte);
-  lastBits_ = bit;
-  bits_.write(bytes_.data(), std::streamsize(bytes_.size()));
+  lastBits_ = end % 8;
+  lastByte_ = lastBits_ > 0 ? bytes_.back() : 0;
+  bits_.write(reinterpret_cast<const char*>(bytes_.data()), std::streamsize(end / 8));
   tally_.requireRoom(bool(bits_));
 }
 
 void DicomMasks::add(const std::uint16_t* labels, int width, int height)
 {
   tally_.add(width, height);
+  const std::size_t count = std::size_t(width) * std::size_t(height);
   std::set<std::uint16_t> shown;
   std::uint16_t last = 0;
-  const std::size_t count = std::size_t(width) * std::size_t(height);
   for (std::size_t n = 0; n < count; ++n)
   {
     if (labels[n] != last)
@@ -76,6 +82,10 @@ void DicomMasks::add(const std::uint16_t* labels, int width, int height)
     }
   }
   shown.erase(0);
+  if (shown.empty())
+  {
+    return;
+  }
   if (double(frames_.size() + shown.size()) * double(count) / 8.0 > mostBytes)
   {
     tally_.refuse("the masks are more than the 4 GB that a DICOM file holds; write fewer pictures, or larger pixels");
@@ -83,8 +93,8 @@ void DicomMasks::add(const std::uint16_t* labels, int width, int height)
   for (const std::uint16_t label : shown)
   {
     frames_.push_back({ tally_.added() - 1, label });
-    addBits(labels, label);
   }
+  addBits(labels, shown);
 }
 
 void DicomMasks::finish()
@@ -113,7 +123,7 @@ void DicomMasks::finish()
   }
   const auto bytes = std::uint64_t(bits_.tellp());
   WholeFile file(path_);
-  file.stream() << dicomMaskHeader(cine_, poses_, segments, frames_);
+  writeMaskHeader(cine_, poses_, segments, frames_, file.stream());
   bits_.seekg(0);
   file.stream() << bits_.rdbuf() << std::string(bytes % 2, '\0'); // an element's length is even
   tally_.requireRoom(bool(bits_) && file.finish());

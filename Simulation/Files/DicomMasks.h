@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace sono {
 /// occurs, numbered from 1 in the order of their ids, with its name, colour and code; a frame for each picture and
 /// label in it, which names the picture's frame in that file, its place (of the first pixel, LPS mm), time and pixel
 /// size. Label 0 is no segment. The pictures are taken one by one and their bits kept in a file without a name beside
-/// it, so that their number does not ask for memory, but for about 8 KB a frame of what is said of it; DCMTK's own
-/// segmentations keep all frames there. The file appears when all are there, or not at all.
+/// it, so that their number does not ask for memory, where DCMTK's own segmentations keep all frames. The file appears
+/// when all are there, or not at all.
 class DicomMasks
 {
 public:
@@ -38,7 +39,7 @@ public:
   };
 
 private:
-  void addBits(const std::uint16_t* labels, std::uint16_t label);
+  void addBits(const std::uint16_t* labels, const std::set<std::uint16_t>& shown);
 
   std::string path_;
   CineInfo cine_;
@@ -46,10 +47,10 @@ private:
   std::vector<LabelInfo> labels_;
   std::vector<Frame> frames_;
   PictureTally tally_;
-  std::fstream bits_;         ///< of all frames, one after the other without a gap
-  std::uint8_t lastByte_ = 0; ///< that is not full
-  std::size_t lastBits_ = 0;  ///< in it
-  std::vector<char> bytes_;   ///< of one frame, kept for its room
+  std::fstream bits_;               ///< of all frames, one after the other without a gap
+  std::uint8_t lastByte_ = 0;       ///< that is not full
+  std::size_t lastBits_ = 0;        ///< in it
+  std::vector<std::uint8_t> bytes_; ///< of one picture, kept for its room
 };
 
 } // namespace sono
