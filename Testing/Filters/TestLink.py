@@ -251,6 +251,13 @@ class TestRefusals(LinkCase):
         np.testing.assert_array_equal(greys_of(link.GetOutput()), greys_of(self.chain.converter.GetOutputDataObject(1)))
         self.assertEqual(vtk_to_numpy(link.GetOutput().GetPointData().GetArray("Labels")).max() > 0, True)
 
+    def test_other_computers_do_not_reach_it(self):
+        """The kernel's list of sockets: it listens at 127.0.0.1 alone."""
+        link = self.link()
+        sockets = [line.split()[1].split(":") for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]
+                   if line.split()[3] == "0A"]
+        self.assertEqual([address for address, port in sockets if int(port, 16) == link.GetOpenPort()], ["0100007F"])
+
     def test_another_port(self):
         link = self.link()
         before = link.GetOpenPort()
