@@ -6,6 +6,7 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedShortArray.h"
 
 namespace sono {
 
@@ -19,6 +20,19 @@ GreySlices::GreySlices(vtkImageData* image)
   }
   image->GetDimensions(size_.data());
   first_ = greys->GetPointer(0);
+}
+
+LabelSlices::LabelSlices(vtkImageData* image)
+{
+  auto* labels = vtkUnsignedShortArray::SafeDownCast(image->GetPointData()->GetArray("Labels"));
+  if (!labels || labels->GetNumberOfComponents() != 1)
+  {
+    throw Error(
+      "The image has no point array 'Labels'; switch the labels on where the image is made, or the label masks "
+      "off.");
+  }
+  image->GetDimensions(size_.data());
+  first_ = labels->GetPointer(0);
 }
 
 GreyLayout greyLayout(vtkImageData* image, const ScanGeometry& geometry)

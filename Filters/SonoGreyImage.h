@@ -21,20 +21,35 @@ struct GreyLayout
 /// a place.
 GreyLayout greyLayout(vtkImageData* image, const ScanGeometry& geometry);
 
-/// The "BMode" of an image's slices; of the image, which must outlive it. Throws Error where there is none.
-class GreySlices
+/// A point array of an image's slices; of the image, which must outlive it.
+template<class Value>
+class PictureSlices
 {
 public:
-  explicit GreySlices(vtkImageData* image);
-
   int width() const { return size_[0]; }
   int height() const { return size_[1]; }
   int count() const { return size_[2]; }
-  const unsigned char* at(int slice) const { return first_ + std::ptrdiff_t(slice) * size_[0] * size_[1]; }
+  const Value* at(int slice) const { return first_ + std::ptrdiff_t(slice) * size_[0] * size_[1]; }
 
-private:
+protected:
+  PictureSlices() = default;
+
   std::array<int, 3> size_{};
-  const unsigned char* first_;
+  const Value* first_ = nullptr;
+};
+
+/// The "BMode" of an image's slices. Throws Error where there is none.
+class GreySlices : public PictureSlices<unsigned char>
+{
+public:
+  explicit GreySlices(vtkImageData* image);
+};
+
+/// Their "Labels". Throws Error where there are none.
+class LabelSlices : public PictureSlices<unsigned short>
+{
+public:
+  explicit LabelSlices(vtkImageData* image);
 };
 
 } // namespace sono

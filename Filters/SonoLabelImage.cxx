@@ -89,32 +89,6 @@ void copyWholeNumbers(const Value* values, std::size_t count, vtkDataArray* arra
   }
 }
 
-void readLabelTable(vtkFieldData* field, LabelVolume& volume)
-{
-  vtkDataArray* ids = field->GetArray("LabelIds");
-  auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelNames"));
-  vtkDataArray* colors = field->GetArray("LabelColors");
-  auto* codes = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelCodes"));
-  if (!ids || !names || names->GetNumberOfValues() != ids->GetNumberOfTuples())
-  {
-    return;
-  }
-  for (vtkIdType row = 0; row < ids->GetNumberOfTuples(); ++row)
-  {
-    LabelInfo label;
-    label.id = static_cast<int>(ids->GetTuple1(row));
-    label.name = names->GetValue(row);
-    label.code = codes && row < codes->GetNumberOfValues() ? codes->GetValue(row) : std::string();
-    if (colors && colors->GetNumberOfComponents() == 3 && row < colors->GetNumberOfTuples())
-    {
-      const double* rgb = colors->GetTuple3(row);
-      label.color = { float(rgb[0]), float(rgb[1]), float(rgb[2]) };
-      label.hasColor = true;
-    }
-    volume.labels.push_back(label);
-  }
-}
-
 } // namespace
 
 GridPlacement placementOfImage(vtkImageData* image)
@@ -310,9 +284,37 @@ LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels)
     default:
       throw Error(nameOf(labels) + " is not numeric and holds no labels; choose another array.");
   }
-  readLabelTable(image->GetFieldData(), volume);
+  volume.labels = labelTableOf(image->GetFieldData());
   volume.collectLabels();
   return volume;
+}
+
+std::vector<LabelInfo> labelTableOf(vtkFieldData* field)
+{
+  std::vector<LabelInfo> table;
+  vtkDataArray* ids = field->GetArray("LabelIds");
+  auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelNames"));
+  vtkDataArray* colors = field->GetArray("LabelColors");
+  auto* codes = vtkStringArray::SafeDownCast(field->GetAbstractArray("LabelCodes"));
+  if (!ids || !names || names->GetNumberOfValues() != ids->GetNumberOfTuples())
+  {
+    return table;
+  }
+  for (vtkIdType row = 0; row < ids->GetNumberOfTuples(); ++row)
+  {
+    LabelInfo label;
+    label.id = static_cast<int>(ids->GetTuple1(row));
+    label.name = names->GetValue(row);
+    label.code = codes && row < codes->GetNumberOfValues() ? codes->GetValue(row) : std::string();
+    if (colors && colors->GetNumberOfComponents() == 3 && row < colors->GetNumberOfTuples())
+    {
+      const double* rgb = colors->GetTuple3(row);
+      label.color = { float(rgb[0]), float(rgb[1]), float(rgb[2]) };
+      label.hasColor = true;
+    }
+    table.push_back(label);
+  }
+  return table;
 }
 
 void writeLabelTable(const std::vector<LabelInfo>& labels, vtkFieldData* field)

@@ -71,6 +71,9 @@ LabelVolume labelVolumeFromImage(vtkImageData* image, vtkDataArray* labels);
 /// one row a label.
 void writeLabelTable(const std::vector<LabelInfo>& labels, vtkFieldData* field);
 
+/// The rows of such a table; empty where there is none.
+std::vector<LabelInfo> labelTableOf(vtkFieldData* field);
+
 /// The label's own colour, or one that differs from its neighbours' in number.
 std::array<float, 3> displayColor(const LabelInfo& label);
 

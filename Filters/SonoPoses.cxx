@@ -162,4 +162,10 @@ std::vector<ProbePose> readPoses(vtkFieldData* field)
   return poses;
 }
 
+std::vector<ProbePose> picturePoses(vtkFieldData* field, const ProbePose& probe, std::size_t count)
+{
+  const std::vector<ProbePose> poses = readPoses(field);
+  return poses.empty() ? std::vector<ProbePose>(count, probe) : poses;
+}
+
 } // namespace sono

@@ -29,5 +29,7 @@ vtkSmartPointer<vtkDoubleArray> poseVectors(const char* name, const std::vector<
 void writePoses(const std::vector<ProbePose>& poses, vtkFieldData* field);
 /// Empty where there are none.
 std::vector<ProbePose> readPoses(vtkFieldData* field);
+/// Those of `count` pictures: of a sweep its own, else all that of the probe.
+std::vector<ProbePose> picturePoses(vtkFieldData* field, const ProbePose& probe, std::size_t count);
 
 } // namespace sono

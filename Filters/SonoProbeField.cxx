@@ -114,8 +114,14 @@ ProbeField readProbe(vtkFieldData* field)
   const auto read = [field](auto& value, const Parameter& parameter) {
     value = valueOf<std::decay_t<decltype(value)>>(readNumber(propertyName(parameter).c_str(), field));
   };
-  ProbeSettings::visitPreset(probe, read);
-  if (field->HasArray("CompoundFans")) // not in older files
+  ScanGeometry::visitLayout(probe.geometry, read);
+  ProbeSettings::visitPulse(probe, read);
+  BeamAperture::visit(probe, read);
+  if (field->HasArray("KerfMm")) // not in older files
+  {
+    ProbeSettings::visitElements(probe, read);
+  }
+  if (field->HasArray("CompoundFans"))
   {
     ScanGeometry::visitCompounding(probe.geometry, read);
   }

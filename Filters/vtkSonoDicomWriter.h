@@ -9,6 +9,7 @@
 
 namespace sono {
 class DicomCine;
+class DicomMasks;
 }
 
 /**
@@ -18,7 +19,8 @@ class DicomCine;
  * Takes an image that carries its probe: that of vtkSonoScanConverter or vtkSonoUltrasound, flat or in the world, or
  * the pictures of vtkSonoSweep. The point array "BMode" becomes the frames, the transducer on top: each slice of each
  * time step, one after the other, of which the writer holds one at a time. What else is in the file: sono::DicomCine.
- * The file's name ends in .dcm.
+ * The file's name ends in .dcm. Beside it, if wanted, NAME.seg.dcm: the label that each pixel shows, of the point array
+ * "Labels", as a DICOM Segmentation, see sono::DicomMasks.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoDicomWriter : public vtkSonoFrameWriter
 {
@@ -37,6 +39,20 @@ public:
   vtkGetCharFromStdStringMacro(PatientId);
   ///@}
 
+  ///@{
+  /**
+   * Whether the labels are written, too. Default off.
+   */
+  vtkSetMacro(LabelMasks, bool);
+  vtkGetMacro(LabelMasks, bool);
+  vtkBooleanMacro(LabelMasks, bool);
+  ///@}
+
+  /**
+   * Where they are written: NAME.seg.dcm beside NAME.dcm.
+   */
+  std::string LabelMaskFileName();
+
 protected:
   vtkSonoDicomWriter();
   ~vtkSonoDicomWriter() override;
@@ -53,7 +69,9 @@ private:
 
   std::string PatientName = "Simulated^Patient";
   std::string PatientId;
+  bool LabelMasks = false;
   std::unique_ptr<sono::DicomCine> Cine; // while it is being written
+  std::unique_ptr<sono::DicomMasks> Masks;
 };
 
 #endif

@@ -1,5 +1,6 @@
 #include "vtkSonoLabelMapReader.h"
 
+#include "Core/EndsWith.h"
 #include "Core/KeyText.h"
 #include "Labels/KnownNumbers.h"
 #include "Labels/LabelTable.h"
@@ -34,9 +35,9 @@ namespace {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-bool endsWith(const std::string& fileName, const char* ending)
+bool hasEnding(const std::string& fileName, const char* ending)
 {
-  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(fileName), ending);
+  return sono::endsWith(vtksys::SystemTools::LowerCase(fileName), ending);
 }
 
 /// Names that the image itself lacks come from a table beside the file.
@@ -95,7 +96,7 @@ std::string listOfNames(const std::string& name)
 
 bool isVti(const std::string& fileName)
 {
-  return endsWith(fileName, ".vti");
+  return hasEnding(fileName, ".vti");
 }
 
 /// When each phase is: of one file as the file says, of several 0, 1, 2, ...
@@ -251,12 +252,12 @@ int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
 {
   for (const char* ending : { ".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".vti" })
   {
-    if (fileName && endsWith(fileName, ending))
+    if (fileName && hasEnding(fileName, ending))
     {
       return 1;
     }
   }
-  return fileName && endsWith(fileName, ".dcm") && sono::isDicomSeg(fileName) ? 1 : 0;
+  return fileName && hasEnding(fileName, ".dcm") && sono::isDicomSeg(fileName) ? 1 : 0;
 }
 
 int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)

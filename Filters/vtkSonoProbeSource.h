@@ -69,6 +69,8 @@ public:
   sonoParameter(TransmitFocusMm, double);
   sonoParameter(ElevationFocusMm, double);
   sonoParameter(ElementWidthMm, double);
+  sonoParameter(ElementCount, int);
+  sonoParameter(KerfMm, double);
   sonoParameter(AssumedSoundSpeedMPerS, double);
   sonoParameter(CompoundFans, int);
   sonoParameter(CompoundSpanDeg, double);

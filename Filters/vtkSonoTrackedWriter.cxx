@@ -39,11 +39,7 @@ void vtkSonoTrackedWriter::Open(vtkImageData* image)
   info.pixelMm = { layout.pixelMm, layout.pixelMm };
   info.firstMm = layout.firstMm;
   info.timesS = this->TimesS(std::size_t(greys.count()));
-  info.poses = sono::readPoses(image->GetFieldData());
-  if (info.poses.empty())
-  {
-    info.poses.assign(info.timesS.size(), probe.pose);
-  }
+  info.poses = sono::picturePoses(image->GetFieldData(), probe.pose, info.timesS.size());
   this->Cine = std::make_unique<sono::TrackedCine>(this->GetFileName(), info);
 }
 

@@ -7,6 +7,11 @@ set(public_headers
   DataSets/WriteDataSet.h
   Echo/FormRf.h
   Echo/PointScatterers.h
+  Files/DicomCine.h
+  Files/DicomMasks.h
+  Files/LineCine.h
+  Files/ReadTracked.h
+  Files/TrackedCine.h
   Image/BMode.h
   Image/GreyMap.h
   Image/LabelSlice.h
@@ -17,12 +22,14 @@ set(public_headers
   Labels/LabelTable.h
   Labels/ReadIntensities.h
   Labels/ReadLabelMap.h
+  Link/LiveLink.h
   Phantoms/CalibrationPhantom.h
   Phantoms/PhantomTargets.h
   Phantoms/TestObjects.h
   Phantoms/ThoraxPhantom.h
   Probe/AcousticWindow.h
   Probe/ArrayBeam.h
+  Probe/ArrayElements.h
   Probe/HeartLandmarks.h
   Probe/PulseEchoFieldFile.h
   Probe/PulseFile.h

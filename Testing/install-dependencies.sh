@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# install-dependencies.sh [simulation|tests]: installs the Debian 12 packages that SonoVDB needs to build and run; those of
-# the simulator alone, or those of the tests, too. Returns at once when all are there.
+# install-dependencies.sh [simulation|tests [--peers]]: installs the Debian 12 packages that SonoVDB needs to build and run;
+# those of the simulator alone, or those of the tests, too. Returns at once when all are there. With --peers, programs of
+# others from PyPI that read what is written (1.4 GB) go into build/peers, too; tests that ask them are skipped without.
 set -euo pipefail
 
 packages=(
@@ -8,7 +9,7 @@ packages=(
   g++ cmake ninja-build ccache
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev
-  nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdcmtk-dev libhdf5-dev
+  nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdcmtk-dev libhdf5-dev libopenigtlink-dev
 )
 if [[ ${1:-} != simulation ]]; then
   packages+=(
@@ -28,15 +29,38 @@ if [[ ${1:-} == tests ]]; then
     # registers phases
     elastix
     # read what is written
-    dcmtk dicom3tools python3-pydicom python3-h5py
+    dcmtk dicom3tools python3-pydicom python3-h5py openigtlink-examples
   )
 fi
+# As the tests know them.
+peers=(highdicom==0.28.2 pyigtl==0.3.4 PyMUST==0.1.9 zea==0.1.8 "jax[cpu]==0.10.2" pyuff_ustb h5py)
 
 fail()
 {
   echo "$(basename "$0"): $*" >&2
   exit 1
 }
+
+install_peers()
+{
+  local folder
+  folder="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/build/peers"
+  local wanted="${peers[*]}"
+  if [[ -f $folder/installed && $(< "$folder/installed") == "$wanted" ]]; then
+    echo "The programs of others are in $folder."
+    return
+  fi
+  /usr/bin/python3 -m venv --clear "$folder"
+  "$folder/bin/pip" install --quiet --no-cache-dir "${peers[@]}"
+  echo "$wanted" > "$folder/installed"
+}
+
+with_peers=
+if [[ ${2:-} == --peers ]]; then
+  [[ $1 == tests ]] || fail "--peers goes with tests."
+  with_peers=yes
+  packages+=(python3-venv)
+fi
 
 command -v dpkg-query > /dev/null || fail "dpkg-query was not found; this script knows Debian 12 only."
 
@@ -55,6 +79,7 @@ for package in "${packages[@]}"; do
 done
 if ((${#missing[@]} == 0)); then
   echo "All ${#packages[@]} packages are installed."
+  [[ -z $with_peers ]] || install_peers
   exit 0
 fi
 
@@ -78,3 +103,4 @@ if ((${#unknown[@]} > 0)); then
 fi
 
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
+[[ -z $with_peers ]] || install_peers

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Files/DicomIds.h"
 #include "Probe/ScanGeometry.h"
 
 #include <array>
@@ -23,6 +24,7 @@ struct CineInfo
   std::vector<double> timesS;                ///< of each picture, in increasing order
   std::string patientName;                   ///< as DICOM has it, family^given, in UTF-8; may be empty
   std::string patientId;
+  DicomIds ids = freshDicomIds();
 };
 
 /// A DICOM file of pictures: an Ultrasound Multi-frame Image (PS3.3 A.7), 8-bit greys, not compressed, with

@@ -1,12 +1,32 @@
 #pragma once
 
 #include "Core/WholeFile.h"
+#include "Files/FrameTally.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
 namespace sono {
+
+/// The pictures of a file, which come one by one and have one size.
+class PictureTally : public FrameTally
+{
+public:
+  PictureTally(const std::string& path, int width, int height, std::size_t count)
+    : FrameTally(path, "picture", count)
+    , width_(width)
+    , height_(height)
+  {
+  }
+
+  /// Throws Error for another size, too.
+  void add(int width, int height);
+
+private:
+  int width_;
+  int height_;
+};
 
 /// A file that is a header and pictures of 8 bits, one after the other: whole or not at all.
 class GreyFrames
@@ -21,14 +41,7 @@ public:
   void finish(const std::string& padding = {});
 
 private:
-  [[noreturn]] void refuse(const std::string& why) const;
-  void requireRoom(bool ok) const;
-
-  std::string path_;
-  int width_;
-  int height_;
-  std::size_t count_;
-  std::size_t added_ = 0;
+  PictureTally tally_;
   WholeFile file_;
 };
 

@@ -1,5 +1,6 @@
 #include "Files/LineCine.h"
 
+#include "Core/EndsWith.h"
 #include "Core/Error.h"
 
 namespace sono {
@@ -9,11 +10,6 @@ namespace {
 [[noreturn]] void refuse(const std::string& path, const std::string& why)
 {
   throw Error("cannot write '" + path + "': " + why + ".");
-}
-
-bool endsWith(const std::string& path, const std::string& ending)
-{
-  return path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "Files/TrackedCine.h"
 
+#include "Core/EndsWith.h"
 #include "Core/Error.h"
 #include "Files/GreyFrames.h"
 
@@ -8,11 +9,6 @@
 namespace sono {
 
 namespace {
-
-bool endsWith(const std::string& path, const std::string& ending)
-{
-  return path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
 
 std::string decimal(double number)
 {

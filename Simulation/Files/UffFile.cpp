@@ -1,7 +1,7 @@
 #include "Core/Version.h"
-#include "Files/ArrayElements.h"
 #include "Files/Hdf5File.h"
 #include "Files/LineCine.h"
+#include "Probe/ArrayElements.h"
 
 #include <algorithm>
 

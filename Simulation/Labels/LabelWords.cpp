@@ -1,5 +1,6 @@
 #include "Labels/LabelWords.h"
 
+#include "Core/EndsWith.h"
 #include <cctype>
 #include <cstddef>
 
@@ -40,11 +41,6 @@ bool endsBefore(const std::string& name, std::size_t at)
   }
   // A capital begins a word after a small letter, and after capitals where a small one follows it.
   return here == Kind::Capital && (before == Kind::Small || kindOf(name, at + 1) == Kind::Small);
-}
-
-bool endsWith(const std::string& word, const std::string& ending)
-{
-  return word.size() > ending.size() && word.compare(word.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace sono {
 
@@ -284,9 +285,14 @@ LabelVolume readDicomSeg(const std::string& path, const Progress& progress)
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return stack.slices[a] < stack.slices[b]; });
+  std::set<std::pair<int, int>> places; // of a segment
   for (std::size_t n = 0; n < frameCount; ++n)
   {
     const std::size_t frame = order[n];
+    if (!places.emplace(stack.slices[frame], frames.segments[frame]).second)
+    {
+      refuse(path, "two of its frames show one segment at one place, as a film does; save one picture of it");
+    }
     const std::uint64_t firstBit = frame * planePixels * frames.bits;
     const std::uint8_t* const bytes = pixels.read(firstBit / 8, (firstBit + planePixels * frames.bits + 7) / 8);
     const auto segmentAt = [&](std::uint64_t pixel) -> int {

@@ -227,6 +227,8 @@ struct ProbeSettings : BeamAperture
   /// Of the harmonic alone. 1 MPa is chosen: a P4-2 that sends 1.8 MHz through 0.5 dB/(cm MHz) makes 1.5 MPa at its
   /// focus of it, a mechanical index of 1.1.
   double facePressureKPa = 1000.0;
+  int elementCount = 64;
+  double kerfMm = 0.025;
 
   template<class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -242,6 +244,7 @@ struct ProbeSettings : BeamAperture
     ScanGeometry::visitLayout(self.geometry, visitor);
     visitPulse(self, visitor);
     BeamAperture::visit(self, visitor);
+    visitElements(self, visitor);
   }
   template<class Self, class Visitor>
   static void visitPulse(Self& self, Visitor&& visitor)
@@ -251,6 +254,19 @@ struct ProbeSettings : BeamAperture
     visitor(self.fractionalBandwidth, Parameter{ "fractionalBandwidth", "Fractional Bandwidth", inside(0, 2),
                                                  "Bandwidth of the pulse at -6 dB as a part of the centre frequency, "
                                                  "between 0 and 2, no unit." });
+  }
+
+  /// Of the array as it is built, for files of lines: no picture depends on them.
+  template<class Self, class Visitor>
+  static void visitElements(Self& self, Visitor&& visitor)
+  {
+    visitor(self.elementCount,
+            Parameter{
+              "elementCount", "Element Count", between(0, 65536),
+              "Elements of the array, of a matrix of all its rows together, 0 to 65,536, no unit, as files of RF lines "
+              "have them. Where the aperture or the lines' face needs more, it is so many." });
+    visitor(self.kerfMm, Parameter{ "kerfMm", "Kerf (mm)", between(0, 1000),
+                                    "Gap between two elements in mm, 0 to 1000, as files of RF lines have it." });
   }
 
   /// No preset says it.
@@ -277,14 +293,12 @@ struct ProbeSettings : BeamAperture
   BeamAperture aperture() const;
 };
 
-/// The same with the array's elements, as a preset file gives them; its aperture is that of the active ones (see
-/// apertureOf). A matrix has as many elements along the array as across it.
+/// The same as a preset file gives it; its aperture is that of the active elements (see apertureOf). A matrix has as
+/// many elements along the array as across it.
 struct ProbePreset : ProbeSettings
 {
   std::string name;
   double elementHeightMm = 0.0; ///< of a matrix, too, that of one element
-  double kerfMm = 0.0;
-  int elementCount = 1;
 };
 
 /// Reads a preset: a JSON object with "name", "scan" (a kind's presetName, see ScanKinds.h) and numbers, each as

@@ -22,11 +22,12 @@ def greys_of(image):
     return vtk_to_numpy(image.GetPointData().GetArray("BMode")).reshape(slices, height, width)
 
 
-def sweep_of(chain, count):
-    """A sweep of the chain's probe that walks along the array, a millimetre an image."""
+def sweep_of(chain, count, step=None):
+    """A sweep of the chain's probe that walks by a step (mm), along the array, a millimetre an image."""
     pose = {part: np.array(getattr(chain.probe, "Get" + part)()) for part in ("PositionMm", "Axial", "Lateral")}
+    step = pose["Lateral"] if step is None else step
     table = vtkTable()
-    for name, vectors in (("Position", pose["PositionMm"] + np.arange(count)[:, None] * pose["Lateral"]),
+    for name, vectors in (("Position", pose["PositionMm"] + np.arange(count)[:, None] * step),
                           ("Axial", np.tile(pose["Axial"], (count, 1))),
                           ("Lateral", np.tile(pose["Lateral"], (count, 1)))):
         for axis in range(3):
@@ -71,13 +72,13 @@ class DicomCase(unittest.TestCase):
         self.assertEqual(list(path.parent.glob("*.part")), [])
         return path
 
-
-class TestContent(DicomCase):
     def check(self, path):
         """dicom3tools' validator finds no error."""
         result = subprocess.run(["dciodvfy", str(path)], capture_output=True, text=True)
         self.assertEqual([line for line in result.stderr.splitlines() if line.startswith("Error")], [])
 
+
+class TestContent(DicomCase):
     def test_pydicom_finds_greys_and_places(self):
         for port in (0, 1):  # in the world and flat
             with self.subTest(port=port):

@@ -1,6 +1,7 @@
 #include "Targets.h"
 
 #include "Core/Error.h"
+#include "Files/ReadTracked.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/LabelTable.h"
 #include "Labels/ReadIntensities.h"
@@ -69,6 +70,10 @@ const std::vector<Target>& targets()
     { "tissues", "x.csv", [](const std::string& path) { attempt([&] { TissueTable::read(path); }); } },
     { "label_tissues", "x.csv", [](const std::string& path) { attempt([&] { LabelTissueMap::read(path); }); } },
     { "pulse", "x.csv", [](const std::string& path) { attempt([&] { readPulse(path); }); } },
+    { "tracked", "x.igs.mha",
+      [](const std::string& path) {
+        attempt([&] { readTracked(path, "ProbeToReference", Mat4d(1.0), Mat4d(1.0)); });
+      } },
     { "field", "x.nrrd", [](const std::string& path) { attempt([&] { readPulseEchoField(path); }); } },
   };
   return list;

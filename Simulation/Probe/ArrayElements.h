@@ -6,9 +6,10 @@
 
 namespace sono {
 
-/// An array's elements and how they send the lines, in the probe's frame: x lateral, y elevation, z into the body. A
-/// probe says how wide an element and the beam's aperture are, not how many elements there are: they stand side by side
-/// over the face, without gaps; over the aperture, where all lines start at one point.
+/// An array's elements, in the probe's frame: x lateral, y elevation, z into the body. They stand side by side, a kerf
+/// between two, in the middle of the face: as many as the probe says, and no fewer than its aperture has, or the face
+/// that its lines start from; around a catheter or a convex face no more than there is room for. Of a matrix as many
+/// rows.
 struct ArrayElements
 {
   std::vector<Vec3d> centresMm;

@@ -1,4 +1,4 @@
-#include "Files/ArrayElements.h"
+#include "Probe/ArrayElements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,8 @@ namespace sono {
 namespace {
 
 constexpr double radPerDeg = 0.017453292519943295;
+constexpr double fullTurn = 360.0 * radPerDeg;
+constexpr long maxCount = std::numeric_limits<long>::max();
 
 double mmPerUs(const ProbeSettings& probe)
 {
@@ -21,7 +23,7 @@ bool hasStarts(const ScanGeometry& geometry)
   return geometry.lineOrigin() != LineOrigin::Apex;
 }
 
-/// Along the face, of all elements together.
+/// Along the face, of the elements that the lines need, together.
 double faceWidthMm(const ProbeSettings& probe, double elementMm)
 {
   const ScanGeometry& geometry = probe.geometry;
@@ -42,18 +44,23 @@ ArrayElements arrayElements(const ProbeSettings& probe)
   ArrayElements elements;
   elements.widthMm =
     probe.elementWidthMm > 0.0 ? probe.elementWidthMm : 0.5 * mmPerUs(probe) / probe.centreFrequencyMHz;
-  const double widthMm = faceWidthMm(probe, elements.widthMm);
-  const long columns = std::max(1l, std::lround(widthMm / elements.widthMm));
+  const double pitchMm = elements.widthMm + probe.kerfMm;
   const bool isGrid = geometry.isVolume();
-  const long rows = isGrid ? std::max(1l, std::lround(probe.elevationApertureMm / elements.widthMm)) : 1;
-  elements.heightMm = isGrid ? elements.widthMm : probe.elevationApertureMm;
+  const long built = isGrid ? std::lround(std::sqrt(double(probe.elementCount))) : long(probe.elementCount);
+  const auto countOver = [&](double widthMm) {
+    return std::max({ 1l, built, std::lround((widthMm + probe.kerfMm) / pitchMm) });
+  };
   const double radiusMm = geometry.faceRadiusMm();
+  const long around = radiusMm > 0.0 ? std::max(1l, long(fullTurn * radiusMm / pitchMm)) : maxCount;
+  const long columns = std::min(countOver(faceWidthMm(probe, elements.widthMm)), around);
+  const long rows = isGrid ? countOver(probe.elevationApertureMm) : 1;
+  elements.heightMm = isGrid ? elements.widthMm : probe.elevationApertureMm;
   for (long row = 0; row < rows; ++row)
   {
-    const double acrossMm = (double(row) - 0.5 * double(rows - 1)) * elements.widthMm;
+    const double acrossMm = (double(row) - 0.5 * double(rows - 1)) * pitchMm;
     for (long column = 0; column < columns; ++column)
     {
-      const double alongMm = (double(column) - 0.5 * double(columns - 1)) * widthMm / double(columns);
+      const double alongMm = (double(column) - 0.5 * double(columns - 1)) * pitchMm;
       const double angle = radiusMm > 0.0 ? alongMm / radiusMm : 0.0;
       elements.azimuthsRad.push_back(angle);
       elements.centresMm.push_back(radiusMm > 0.0 ? Vec3d(radiusMm * std::sin(angle), acrossMm,
@@ -72,13 +79,17 @@ LineFiring lineFiring(const ArrayElements& elements, const ProbeSettings& probe,
   const auto wayMm = [&](const Vec3d& centre) {
     return focusMm > 0.0 ? glm::length(focus - centre) : -glm::dot(centre, line.axis);
   };
+  const bool isWhole = !hasStarts(probe.geometry) && probe.apertureMm == 0.0; // it is not known
+  const double leastMm = 0.501 * (elements.widthMm + probe.kerfMm);
+  const double halfAlongMm = std::max(0.5 * probe.apertureMm, leastMm);
+  const double halfAcrossMm = std::max(0.5 * probe.elevationApertureMm, leastMm);
   LineFiring firing;
   double longestMm = -std::numeric_limits<double>::infinity();
   for (const Vec3d& centre : elements.centresMm)
   {
-    const double fromLineMm = glm::length(centre - line.originMm);
+    const Vec3d fromLine = centre - line.originMm;
     const bool isActive =
-      !hasStarts(probe.geometry) || fromLineMm <= std::max(0.5 * probe.apertureMm, 0.501 * elements.widthMm);
+      isWhole || (std::hypot(fromLine.x, fromLine.z) <= halfAlongMm && std::abs(fromLine.y) <= halfAcrossMm);
     firing.isActive.push_back(isActive);
     longestMm = isActive ? std::max(longestMm, wayMm(centre)) : longestMm;
   }
