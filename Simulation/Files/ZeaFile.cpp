@@ -1,5 +1,5 @@
 #include "Core/Version.h"
-#include "Files/ArrayElements.h"
+#include "Probe/ArrayElements.h"
 #include "Files/Hdf5File.h"
 #include "Files/LineCine.h"
 

@@ -17,6 +17,7 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkSonoBMode.h"
+#include "vtkSonoChannelData.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoPhantomSource.h"
 #include "vtkSonoProbeSource.h"
@@ -53,6 +54,7 @@ TEST(FilterDefaults, StagesHaveTheSettingsOfSimulation)
 {
   expectPrinted<sono::TraceSettings>(vtkNew<vtkSonoRayTracer>().Get());
   expectPrinted<sono::EchoSettings>(vtkNew<vtkSonoImageFormation>().Get());
+  expectPrinted<sono::ChannelSettings>(vtkNew<vtkSonoChannelData>().Get());
   expectPrinted<sono::BModeSettings>(vtkNew<vtkSonoBMode>().Get());
   expectPrinted<sono::DisplaySettings>(vtkNew<vtkSonoScanConverter>().Get());
   expectPrinted<sono::ProbeSettings>(vtkNew<vtkSonoProbeSource>().Get());

@@ -1,8 +1,9 @@
-#include "Files/ArrayElements.h"
+#include "Probe/ArrayElements.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace sono {
 
@@ -34,16 +35,15 @@ double faceWidthMm(const ProbeSettings& probe, double elementMm)
   return linesMm + elementMm;
 }
 
-} // namespace
-
-ArrayElements arrayElements(const ProbeSettings& probe)
+/// As many columns as are named; 0: as fit.
+ArrayElements elementsOf(const ProbeSettings& probe, long columns)
 {
   const ScanGeometry& geometry = probe.geometry;
   ArrayElements elements;
   elements.widthMm =
     probe.elementWidthMm > 0.0 ? probe.elementWidthMm : 0.5 * mmPerUs(probe) / probe.centreFrequencyMHz;
   const double widthMm = faceWidthMm(probe, elements.widthMm);
-  const long columns = std::max(1l, std::lround(widthMm / elements.widthMm));
+  columns = columns > 0 ? columns : std::max(1l, std::lround(widthMm / elements.widthMm));
   const bool isGrid = geometry.isVolume();
   const long rows = isGrid ? std::max(1l, std::lround(probe.elevationApertureMm / elements.widthMm)) : 1;
   elements.heightMm = isGrid ? elements.widthMm : probe.elevationApertureMm;
@@ -60,6 +60,37 @@ ArrayElements arrayElements(const ProbeSettings& probe)
                                                           radiusMm * std::cos(angle) + geometry.fanCentreAxialMm())
                                                   : Vec3d(alongMm, acrossMm, 0.0));
     }
+  }
+  return elements;
+}
+
+} // namespace
+
+ArrayElements arrayElements(const ProbeSettings& probe)
+{
+  return elementsOf(probe, 0);
+}
+
+ArrayElements arrayElements(const ProbeSettings& probe, int count)
+{
+  const ScanGeometry& geometry = probe.geometry;
+  if (geometry.isVolume() || geometry.lineOrigin() == LineOrigin::Catheter)
+  {
+    throw Error(std::string("the probe is a ") + traitsOf(geometry.kind).label +
+                ": channels are made of arrays with one row of elements; choose a linear, phased or curvilinear one");
+  }
+  if (probe.apertureMm <= 0.0 && !hasStarts(geometry))
+  {
+    throw Error("the probe does not name its aperture: set apertureMm, the width of its elements together");
+  }
+  const ArrayElements elements = elementsOf(probe, count);
+  const double pitchMm = faceWidthMm(probe, elements.widthMm) / double(elements.centresMm.size());
+  if (elements.widthMm > 1.01 * pitchMm)
+  {
+    std::ostringstream sentence;
+    sentence << count << " elements of " << elements.widthMm << " mm do not fit on a face of "
+             << faceWidthMm(probe, elements.widthMm) << " mm: set a smaller elementCount or elementWidthMm";
+    throw Error(sentence.str());
   }
   return elements;
 }

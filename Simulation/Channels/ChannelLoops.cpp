@@ -1,0 +1,305 @@
+#include "Channels/ChannelLoops.h"
+
+#include "Core/Simd.h"
+
+#include <algorithm>
+
+namespace sono {
+
+namespace {
+
+constexpr int B = channelBlock;
+
+/// By point of a block.
+struct BlockOf
+{
+  float v[B];
+};
+
+/// The parabola of E over 1/r at a frequency, by point.
+struct ElevationOf
+{
+  BlockOf middleRe, middleIm, slopeRe, slopeIm, bendRe, bendIm;
+};
+
+/// G without E of all elements at the first frequency, and the spans of 1/r.
+inline void begin(const ChannelChunk& c, const ChannelBlock& points, ChannelRoom& room, BlockOf& middle, BlockOf& half)
+{
+  const int padded = c.padded;
+  const int pieces = c.perElement;
+  const float perPiece = 1.0f / float(pieces);
+  const float firstWaves = c.firstMHz * c.shape.wavesPerMm;
+  const float stepWaves = c.stepMHz * c.shape.wavesPerMm;
+  const float firstNp = c.firstMHz * c.npPerMmMHz;
+  const float stepNp = c.stepMHz * c.npPerMmMHz;
+  for (int s = 0; s < B; ++s)
+  {
+    float* perR = room.perRange.data() + std::ptrdiff_t(s) * padded;
+    std::fill(perR, perR + padded, 0.0f);
+    const float x = points.x[s], y = points.y[s], z = points.z[s];
+    for (int p = 0; p < pieces; ++p)
+    {
+      const std::ptrdiff_t at = (std::ptrdiff_t(s) * pieces + p) * padded;
+      float *wRe = room.waveRe.data() + at, *wIm = room.waveIm.data() + at;
+      float *sRe = room.stepRe.data() + at, *sIm = room.stepIm.data() + at;
+      float* across2 = room.across2.data() + at;
+      const std::ptrdiff_t first = std::ptrdiff_t(p) * padded;
+      const float *px = c.pieceX + first, *pz = c.pieceZ + first;
+      const float *nx = c.pieceNormalX + first, *nz = c.pieceNormalZ + first;
+#pragma GCC ivdep
+      for (int n = 0; n < padded; ++n)
+      {
+        const PieceSight sight =
+          pieceSees({ px[n], pz[n], nx[n], nz[n] }, c.halfWidthMm, c.isSoft, c.isFlat, c.shortestMm, x, y, z);
+        const ComplexNumber start = turned(sight.rangeMm * firstWaves);
+        const ComplexNumber step = turned(sight.rangeMm * stepWaves);
+        const float size = sight.size * perPiece * expNegative(-firstNp * sight.rangeMm);
+        const float left = expNegative(-stepNp * sight.rangeMm);
+        wRe[n] = size * start.re;
+        wIm[n] = size * start.im;
+        sRe[n] = left * step.re;
+        sIm[n] = left * step.im;
+        across2[n] = sight.halfAcross2;
+        perR[n] += sight.rangeMm * perPiece;
+      }
+    }
+    float low = 3e38f;
+    float high = 0.0f;
+    for (int n = 0; n < c.elements; ++n)
+    {
+      low = smaller(low, perR[n]);
+      high = larger(high, perR[n]);
+    }
+    const InverseRange span{ 0.5f * (1.0f / low + 1.0f / high), larger(1e-7f, 0.5f * (1.0f / low - 1.0f / high)) };
+    middle.v[s] = span.middle;
+    half.v[s] = span.half;
+#pragma GCC ivdep
+    for (int n = 0; n < padded; ++n)
+    {
+      perR[n] = span.at(1.0f / larger(perR[n], c.shortestMm));
+    }
+  }
+}
+
+inline void elevationAt(const ChannelChunk& c, const ChannelBlock& points, float frequencyMHz, const BlockOf& middle,
+                        const BlockOf& half, ElevationOf& out)
+{
+  const float waves = frequencyMHz * c.shape.wavesPerMm;
+#pragma GCC ivdep
+  for (int s = 0; s < B; ++s)
+  {
+    const ComplexParabola e = parabolaThrough(elevationMean(c.shape, waves, points.y[s], middle.v[s] - half.v[s]),
+                                              elevationMean(c.shape, waves, points.y[s], middle.v[s]),
+                                              elevationMean(c.shape, waves, points.y[s], middle.v[s] + half.v[s]));
+    out.middleRe.v[s] = e.middle.re;
+    out.middleIm.v[s] = e.middle.im;
+    out.slopeRe.v[s] = e.slope.re;
+    out.slopeIm.v[s] = e.slope.im;
+    out.bendRe.v[s] = e.bend.re;
+    out.bendIm.v[s] = e.bend.im;
+  }
+}
+
+/// G of a point's elements at frequency number `bin`, and the waves on to the next.
+inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequencyMHz, const ComplexParabola& e,
+                 float* hRe, float* hIm)
+{
+  const int padded = c.padded;
+  const float k = 6.2831853f * frequencyMHz * c.shape.wavesPerMm;
+  const float k2 = k * k;
+  for (int p = 0; p < c.perElement; ++p)
+  {
+    const std::ptrdiff_t at = (std::ptrdiff_t(s) * c.perElement + p) * padded;
+    float *wRe = room.waveRe.data() + at, *wIm = room.waveIm.data() + at;
+    const float *sRe = room.stepRe.data() + at, *sIm = room.stepIm.data() + at;
+    const float* across2 = room.across2.data() + at;
+    const float before = p == 0 ? 0.0f : 1.0f;
+#pragma GCC ivdep
+    for (int n = 0; n < padded; ++n)
+    {
+      const float width = sincOfSquare(k2 * across2[n]);
+      const float re = wRe[n];
+      const float im = wIm[n];
+      hRe[n] = before * hRe[n] + width * re;
+      hIm[n] = before * hIm[n] + width * im;
+      wRe[n] = re * sRe[n] - im * sIm[n];
+      wIm[n] = re * sIm[n] + im * sRe[n];
+    }
+  }
+  if (!c.isFlat)
+  {
+    const float* place = room.perRange.data() + std::ptrdiff_t(s) * padded;
+#pragma GCC ivdep
+    for (int n = 0; n < padded; ++n)
+    {
+      const ComplexNumber heard = ComplexNumber{ hRe[n], hIm[n] } * e.at(place[n]);
+      hRe[n] = heard.re;
+      hIm[n] = heard.im;
+    }
+  }
+}
+
+/// What reaches a point from all elements.
+inline ComplexNumber arrives(const float* dRe, const float* dIm, const float* hRe, const float* hIm, int padded)
+{
+  float re[vectorWidth] = {};
+  float im[vectorWidth] = {};
+  for (int n = 0; n < padded; n += vectorWidth)
+  {
+    for (int i = 0; i < vectorWidth; ++i)
+    {
+      re[i] += dRe[n + i] * hRe[n + i] - dIm[n + i] * hIm[n + i];
+      im[i] += dRe[n + i] * hIm[n + i] + dIm[n + i] * hRe[n + i];
+    }
+  }
+  for (int width = vectorWidth / 2; width > 0; width /= 2)
+  {
+    for (int i = 0; i < width; ++i)
+    {
+      re[i] += re[i + width];
+      im[i] += im[i + width];
+    }
+  }
+  return { re[0], im[0] };
+}
+
+/// The amplitudes of a block's points at a frequency, and what takes them to the next.
+struct Amplitudes
+{
+  BlockOf re, im, stepRe, stepIm;
+};
+
+inline void beginAmplitudes(const ChannelChunk& c, const ChannelBlock& points, Amplitudes& a)
+{
+  for (int s = 0; s < B; ++s)
+  {
+    const float waves = 2.0f * points.lagMm[s] * c.shape.wavesPerMm;
+    const ComplexNumber start = turned(waves * c.firstMHz) * ComplexNumber{ points.re[s], points.im[s] };
+    const ComplexNumber step = turned(waves * c.stepMHz);
+    const float size = expf(-points.sinkNp[s] * (c.firstMHz - c.centreMHz));
+    const float left = expf(-points.sinkNp[s] * c.stepMHz);
+    a.re.v[s] = size * start.re;
+    a.im.v[s] = size * start.im;
+    a.stepRe.v[s] = left * step.re;
+    a.stepIm.v[s] = left * step.im;
+  }
+}
+
+inline void advance(Amplitudes& a)
+{
+  for (int s = 0; s < B; ++s)
+  {
+    const float re = a.re.v[s];
+    const float im = a.im.v[s];
+    a.re.v[s] = re * a.stepRe.v[s] - im * a.stepIm.v[s];
+    a.im.v[s] = re * a.stepIm.v[s] + im * a.stepRe.v[s];
+  }
+}
+
+/// Adds to one transmit's sums what each element hears of the points.
+inline void addHeard(const BlockOf& echoRe, const BlockOf& echoIm, const float* hRe, const float* hIm, int padded,
+                     float* sumRe, float* sumIm)
+{
+  for (int n = 0; n < padded; n += vectorWidth)
+  {
+    float re[vectorWidth];
+    float im[vectorWidth];
+    for (int i = 0; i < vectorWidth; ++i)
+    {
+      re[i] = sumRe[n + i];
+      im[i] = sumIm[n + i];
+    }
+    for (int s = 0; s < B; ++s)
+    {
+      const float* gRe = hRe + std::ptrdiff_t(s) * padded + n;
+      const float* gIm = hIm + std::ptrdiff_t(s) * padded + n;
+      const float eRe = echoRe.v[s];
+      const float eIm = echoIm.v[s];
+      for (int i = 0; i < vectorWidth; ++i)
+      {
+        re[i] += eRe * gRe[i] - eIm * gIm[i];
+        im[i] += eRe * gIm[i] + eIm * gRe[i];
+      }
+    }
+    for (int i = 0; i < vectorWidth; ++i)
+    {
+      sumRe[n + i] = re[i];
+      sumIm[n + i] = im[i];
+    }
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, const ChannelBlock& block,
+                                                   ChannelRoom& room, float* sums)
+{
+  const ChannelChunk c = chunk;
+  BlockOf middle, half;
+  begin(c, block, room, middle, half);
+  Amplitudes amplitudes;
+  beginAmplitudes(c, block, amplitudes);
+  ElevationOf nodes[3];
+  const float centre = 0.5f * (channelBins - 1);
+  for (int node = 0; node < 3 && !c.isFlat; ++node)
+  {
+    elevationAt(c, block, c.firstMHz + float(node) * centre * c.stepMHz, middle, half, nodes[node]);
+  }
+  for (int bin = 0; bin < c.bins; ++bin)
+  {
+    const float frequencyMHz = c.firstMHz + float(bin) * c.stepMHz;
+    const float at = (float(bin) - centre) / centre;
+    for (int s = 0; s < B; ++s)
+    {
+      ComplexParabola e{};
+      if (!c.isFlat)
+      {
+        const auto between = [&](const BlockOf ElevationOf::*part) {
+          const float low = (nodes[0].*part).v[s], mid = (nodes[1].*part).v[s], high = (nodes[2].*part).v[s];
+          return mid + at * (0.5f * (high - low) + at * (0.5f * (high + low) - mid));
+        };
+        e = { { between(&ElevationOf::middleRe), between(&ElevationOf::middleIm) },
+              { between(&ElevationOf::slopeRe), between(&ElevationOf::slopeIm) },
+              { between(&ElevationOf::bendRe), between(&ElevationOf::bendIm) } };
+      }
+      const std::ptrdiff_t row = std::ptrdiff_t(s) * c.padded;
+      hear(c, room, s, frequencyMHz, e, room.heardRe.data() + row, room.heardIm.data() + row);
+    }
+    for (int t = 0; t < c.transmits; ++t)
+    {
+      const std::ptrdiff_t row = (std::ptrdiff_t(bin) * c.transmits + t) * 2 * c.padded;
+      BlockOf echoRe, echoIm;
+      for (int s = 0; s < B; ++s)
+      {
+        const std::ptrdiff_t of = std::ptrdiff_t(s) * c.padded;
+        const ComplexNumber echo = arrives(c.drive + row, c.drive + row + c.padded, room.heardRe.data() + of,
+                                           room.heardIm.data() + of, c.padded) *
+                                   ComplexNumber{ amplitudes.re.v[s], amplitudes.im.v[s] };
+        echoRe.v[s] = echo.re;
+        echoIm.v[s] = echo.im;
+      }
+      addHeard(echoRe, echoIm, room.heardRe.data(), room.heardIm.data(), c.padded, sums + row, sums + row + c.padded);
+    }
+    advance(amplitudes);
+  }
+}
+
+} // namespace
+
+ChannelRoom::ChannelRoom(int padded, int perElement)
+{
+  const std::size_t elements = std::size_t(channelBlock) * std::size_t(padded);
+  for (std::vector<float>* values : { &waveRe, &waveIm, &stepRe, &stepIm, &across2 })
+  {
+    values->resize(elements * std::size_t(perElement));
+  }
+  for (std::vector<float>* values : { &perRange, &heardRe, &heardIm })
+  {
+    values->resize(elements);
+  }
+}
+
+void addBlock(const ChannelChunk& chunk, const ChannelBlock& block, ChannelRoom& room, float* sums)
+{
+  add(chunk, block, room, sums);
+}
+
+} // namespace sono
