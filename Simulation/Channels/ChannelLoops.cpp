@@ -16,10 +16,10 @@ struct BlockOf
   float v[B];
 };
 
-/// The parabola of E over 1/r at a frequency, by point.
+/// E over 1/r at a frequency, by power and point.
 struct ElevationOf
 {
-  BlockOf middleRe, middleIm, slopeRe, slopeIm, bendRe, bendIm;
+  BlockOf re[ComplexCurve::nodes], im[ComplexCurve::nodes];
 };
 
 /// G without E of all elements at the first frequency, and the spans of 1/r.
@@ -88,20 +88,17 @@ inline void elevationAt(const ChannelChunk& c, const ChannelBlock& points, float
 #pragma GCC ivdep
   for (int s = 0; s < B; ++s)
   {
-    const ComplexParabola e = parabolaThrough(elevationMean(c.shape, waves, points.y[s], middle.v[s] - half.v[s]),
-                                              elevationMean(c.shape, waves, points.y[s], middle.v[s]),
-                                              elevationMean(c.shape, waves, points.y[s], middle.v[s] + half.v[s]));
-    out.middleRe.v[s] = e.middle.re;
-    out.middleIm.v[s] = e.middle.im;
-    out.slopeRe.v[s] = e.slope.re;
-    out.slopeIm.v[s] = e.slope.im;
-    out.bendRe.v[s] = e.bend.re;
-    out.bendIm.v[s] = e.bend.im;
+    const ComplexCurve e = elevationCurve(c.shape, waves, points.y[s], { middle.v[s], half.v[s] });
+    for (int n = 0; n < ComplexCurve::nodes; ++n)
+    {
+      out.re[n].v[s] = e.c[n].re;
+      out.im[n].v[s] = e.c[n].im;
+    }
   }
 }
 
 /// G of a point's elements at frequency number `bin`, and the waves on to the next.
-inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequencyMHz, const ComplexParabola& e,
+inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequencyMHz, const ComplexCurve& e,
                  float* hRe, float* hIm)
 {
   const int padded = c.padded;
@@ -249,16 +246,15 @@ SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, co
     const float at = (float(bin) - centre) / centre;
     for (int s = 0; s < B; ++s)
     {
-      ComplexParabola e{};
-      if (!c.isFlat)
+      ComplexCurve e{};
+      for (int n = 0; n < ComplexCurve::nodes && !c.isFlat; ++n)
       {
-        const auto between = [&](const BlockOf ElevationOf::*part) {
-          const float low = (nodes[0].*part).v[s], mid = (nodes[1].*part).v[s], high = (nodes[2].*part).v[s];
+        const auto between = [&](const BlockOf& first, const BlockOf& second, const BlockOf& third) {
+          const float low = first.v[s], mid = second.v[s], high = third.v[s];
           return mid + at * (0.5f * (high - low) + at * (0.5f * (high + low) - mid));
         };
-        e = { { between(&ElevationOf::middleRe), between(&ElevationOf::middleIm) },
-              { between(&ElevationOf::slopeRe), between(&ElevationOf::slopeIm) },
-              { between(&ElevationOf::bendRe), between(&ElevationOf::bendIm) } };
+        e.c[n] = { between(nodes[0].re[n], nodes[1].re[n], nodes[2].re[n]),
+                   between(nodes[0].im[n], nodes[1].im[n], nodes[2].im[n]) };
       }
       const std::ptrdiff_t row = std::ptrdiff_t(s) * c.padded;
       hear(c, room, s, frequencyMHz, e, room.heardRe.data() + row, room.heardIm.data() + row);

@@ -55,7 +55,7 @@ struct TilePoint
   float x, y, z;
   ComplexNumber amplitude;
   InverseRange span;
-  ComplexParabola elevation;
+  ComplexCurve elevation;
 };
 
 __device__ float meanRange(const ShellJob& job, int n, float x, float y, float z)
@@ -71,7 +71,7 @@ __device__ float meanRange(const ShellJob& job, int n, float x, float y, float z
   return sum / float(job.perElement);
 }
 
-/// `mean` of whole groups of lanes; the nearest and the furthest element of a point.
+/// A point whose nearest and furthest elements are so far away.
 __device__ TilePoint pointAt(const ShellJob& job, int i, float frequencyMHz, float low, float high)
 {
   TilePoint out;
@@ -85,10 +85,7 @@ __device__ TilePoint pointAt(const ShellJob& job, int i, float frequencyMHz, flo
   out.span = { 0.5f * (1.0f / low + 1.0f / high), larger(1e-7f, 0.5f * (1.0f / low - 1.0f / high)) };
   if (!job.isFlat)
   {
-    const float waves = frequencyMHz * job.shape.wavesPerMm;
-    out.elevation = parabolaThrough(elevationMean(job.shape, waves, out.y, out.span.middle - out.span.half),
-                                    elevationMean(job.shape, waves, out.y, out.span.middle),
-                                    elevationMean(job.shape, waves, out.y, out.span.middle + out.span.half));
+    out.elevation = elevationCurve(job.shape, frequencyMHz * job.shape.wavesPerMm, out.y, out.span);
   }
   return out;
 }

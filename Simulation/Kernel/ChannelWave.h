@@ -101,25 +101,41 @@ SONO_HD inline ComplexNumber elevationMean(const ElementShape& shape, float wave
   return sum;
 }
 
-/// A parabola through the values at -1, 0 and 1.
-struct ComplexParabola
+/// A curve of the fourth degree over [-1, 1].
+struct ComplexCurve
 {
-  ComplexNumber middle, slope, bend;
+  static constexpr int nodes = 5; ///< at -1, -1/2, 0, 1/2, 1
 
+  ComplexNumber c[nodes]; ///< by power
+
+  SONO_HD static float place(int node) { return 0.5f * float(node - 2); }
   SONO_HD ComplexNumber at(float x) const
   {
-    return { middle.re + x * (slope.re + x * bend.re), middle.im + x * (slope.im + x * bend.im) };
+    ComplexNumber sum = c[4];
+    for (int n = 3; n >= 0; --n)
+    {
+      sum = { c[n].re + x * sum.re, c[n].im + x * sum.im };
+    }
+    return sum;
   }
 };
 
-SONO_HD inline ComplexParabola parabolaThrough(const ComplexNumber& a, const ComplexNumber& b, const ComplexNumber& c)
+/// The powers' factors of one part of a curve from its values at the nodes, in place.
+SONO_HD inline void curveThrough(float* v)
 {
-  return { b,
-           { 0.5f * (c.re - a.re), 0.5f * (c.im - a.im) },
-           { 0.5f * (c.re + a.re) - b.re, 0.5f * (c.im + a.im) - b.im } };
+  const float middle = v[2];
+  const float odd = 0.5f * (v[4] - v[0]);
+  const float third = 1.3333333f * (odd - (v[3] - v[1]));
+  const float even = 0.5f * (v[4] + v[0]) - middle;
+  const float fourth = 1.3333333f * (even - 2.0f * (v[3] + v[1]) + 4.0f * middle);
+  v[0] = middle;
+  v[1] = odd - third;
+  v[2] = even - fourth;
+  v[3] = third;
+  v[4] = fourth;
 }
 
-/// The span of 1/r over an array's elements, in which E is a parabola.
+/// The span of 1/r over an array's elements, over which E is a ComplexCurve: within 0.4 % (20 mm before a P4-2), mostly 0.1 %.
 struct InverseRange
 {
   float middle;
@@ -127,6 +143,27 @@ struct InverseRange
 
   SONO_HD float at(float perR) const { return (perR - middle) / half; }
 };
+
+/// E at a frequency, for all elements.
+SONO_HD inline ComplexCurve elevationCurve(const ElementShape& shape, float waves, float yMm, const InverseRange& span)
+{
+  float re[ComplexCurve::nodes];
+  float im[ComplexCurve::nodes];
+  for (int n = 0; n < ComplexCurve::nodes; ++n)
+  {
+    const ComplexNumber e = elevationMean(shape, waves, yMm, span.middle + ComplexCurve::place(n) * span.half);
+    re[n] = e.re;
+    im[n] = e.im;
+  }
+  curveThrough(re);
+  curveThrough(im);
+  ComplexCurve curve;
+  for (int n = 0; n < ComplexCurve::nodes; ++n)
+  {
+    curve.c[n] = { re[n], im[n] };
+  }
+  return curve;
+}
 
 /// A piece of an element in the image plane.
 struct ElementPiece
