@@ -10,8 +10,9 @@ namespace sono {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double faintest = 1e-3;
-constexpr double leastShare = 0.16; // as of surfaces' echoes, section 12.6
+constexpr double faintest = 3e-4;
+constexpr double leastShare = 0.08; // of the strongest frequency: from there on the taper rises,
+constexpr double wholeShare = 0.24; // up to here; half of it at 0.16, as surfaces' echoes end, section 12.6
 constexpr int searched = 2048;      // frequencies of a sampled pulse
 
 bool isFinite(double a)
@@ -36,7 +37,7 @@ PulseSpectrum::PulseSpectrum(double centreMHz, double fractionalBandwidth)
 
 PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
   : pulse_(std::move(pulse))
-  , strongestMHz_(0.0)
+  , strongestMHz_(1e-9) // no taper until it is known
 {
   const SampledPulse& p = *pulse_;
   if (p.amplitude.empty() || !(p.stepUs > 0.0) || !std::isfinite(p.startUs + p.stepUs) ||
@@ -65,13 +66,16 @@ PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
 
 std::complex<double> PulseSpectrum::at(double frequencyMHz) const
 {
+  const double risen =
+    std::clamp((frequencyMHz / strongestMHz_ - leastShare) / (wholeShare - leastShare), 0.0, 1.0);
+  const double taper = 0.5 - 0.5 * std::cos(pi * risen);
   if (!pulse_)
   {
     const double off = (frequencyMHz - strongestMHz_) / spreadMHz_;
-    return 0.5 / (spreadMHz_ * std::sqrt(2.0 * pi)) * std::exp(-0.5 * off * off);
+    return taper * 0.5 / (spreadMHz_ * std::sqrt(2.0 * pi)) * std::exp(-0.5 * off * off);
   }
   const std::complex<double> turn = std::polar(1.0, 2.0 * pi * frequencyMHz * pulse_->stepUs);
-  std::complex<double> phase = std::polar(pulse_->stepUs, 2.0 * pi * frequencyMHz * pulse_->startUs);
+  std::complex<double> phase = std::polar(taper * pulse_->stepUs, 2.0 * pi * frequencyMHz * pulse_->startUs);
   std::complex<double> sum = 0.0;
   for (const double amplitude : pulse_->amplitude)
   {

@@ -9,7 +9,7 @@ namespace sono {
 
 /// The spectrum of a round trip's pulse, P(f) = integral of p(t) exp(2 pi i f t) dt, us: of a Gaussian one,
 /// exp(-(t / s)^2 / 2) cos(2 pi f0 t) with the bandwidth's s (Data/docs/physics.md section 4.3), or of one that is
-/// given, as it is.
+/// given, as it is. No transducer hears low frequencies: from 0.24 to 0.08 of the strongest one it falls to 0.
 class PulseSpectrum
 {
 public:
@@ -18,8 +18,7 @@ public:
   explicit PulseSpectrum(std::shared_ptr<const SampledPulse> pulse);
 
   std::complex<double> at(double frequencyMHz) const;
-  /// Where it is above -60 dB of its largest modulus; from 0.16 of its strongest frequency on, since no transducer
-  /// hears what is lower.
+  /// Where it is above -70 dB of its largest modulus.
   double lowMHz() const { return lowMHz_; }
   double highMHz() const { return highMHz_; }
   double strongestMHz() const { return strongestMHz_; }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace sono {
+
+/// Frames that come one after the other, all of one size, into a file that announced how many. Throws Error naming the
+/// file.
+class FrameOrder
+{
+public:
+  /// `values` of each frame; `what` they are of, and what to keep so that they stay as many ("keep ...").
+  FrameOrder(std::string path, std::size_t values, const std::vector<double>& timesS, std::string what,
+             std::string advice);
+
+  [[noreturn]] void refuse(const std::string& why) const;
+  /// The number of the next frame, from 0 on, which has so many values.
+  std::size_t next(std::size_t values);
+  /// All have come.
+  void finish() const;
+
+private:
+  std::string path_;
+  std::string advice_;
+  std::size_t valueCount_;
+  std::size_t frameCount_;
+  std::size_t added_ = 0;
+};
+
+} // namespace sono
