@@ -1,5 +1,6 @@
 #include "Channels/ChannelPlan.h"
 
+#include "Channels/ChannelLoops.h"
 #include "Core/Require.h"
 #include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
@@ -16,6 +17,8 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double dbPerNp = 8.685889638065035;
 constexpr double mostSamples = 1e9;
 constexpr double leastShellUs = 8.0;
+/// A block's frequencies span at most this share of the centre frequency: E is a parabola over them.
+constexpr double mostSpan = 0.12;
 constexpr double shellShare = 0.25; // of the longest stretch that a single point takes
 
 /// No piece is wider than the shortest wavelength of the pulse's -6 dB band, as SIMUS has it.
@@ -194,7 +197,8 @@ ChannelShells makeShells(const ChannelPlan& plan, const ChannelPoints& points)
     windowUs = std::max(windowUs, lastUs - shell.firstSample / plan.samplingMHz);
   }
   out.points = points.ordered(order);
-  out.samples = std::max(16, int(std::ceil(windowUs * plan.samplingMHz)) + 2);
+  windowUs = std::max(windowUs, (channelBins - 1) / (mostSpan * plan.centreMHz));
+  out.samples = int(std::ceil(windowUs * plan.samplingMHz)) + 2;
   out.stepMHz = plan.samplingMHz / out.samples;
   out.firstBin = std::max(1, int(std::ceil(plan.spectrum.lowMHz() / out.stepMHz)));
   out.bins = std::max(0, int(std::floor(plan.highMHz / out.stepMHz)) - out.firstBin + 1);
