@@ -259,6 +259,13 @@ SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, co
       const std::ptrdiff_t row = std::ptrdiff_t(s) * c.padded;
       hear(c, room, s, frequencyMHz, e, room.heardRe.data() + row, room.heardIm.data() + row);
     }
+    BlockOf sizeRe, sizeIm;
+    for (int s = 0; s < B; ++s)
+    {
+      const float size = 1.0f + block.rise[s] * (frequencyMHz / c.centreMHz - 1.0f);
+      sizeRe.v[s] = size * amplitudes.re.v[s];
+      sizeIm.v[s] = size * amplitudes.im.v[s];
+    }
     for (int t = 0; t < c.transmits; ++t)
     {
       const std::ptrdiff_t row = (std::ptrdiff_t(bin) * c.transmits + t) * 2 * c.padded;
@@ -268,7 +275,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, co
         const std::ptrdiff_t of = std::ptrdiff_t(s) * c.padded;
         const ComplexNumber echo = arrives(c.drive + row, c.drive + row + c.padded, room.heardRe.data() + of,
                                            room.heardIm.data() + of, c.padded) *
-                                   ComplexNumber{ amplitudes.re.v[s], amplitudes.im.v[s] };
+                                   ComplexNumber{ sizeRe.v[s], sizeIm.v[s] };
         echoRe.v[s] = echo.re;
         echoIm.v[s] = echo.im;
       }

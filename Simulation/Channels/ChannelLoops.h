@@ -36,7 +36,7 @@ struct ChannelChunk
 struct ChannelBlock
 {
   float x[channelBlock], y[channelBlock], z[channelBlock];
-  float re[channelBlock], im[channelBlock], lagMm[channelBlock], sinkNp[channelBlock];
+  float re[channelBlock], im[channelBlock], lagMm[channelBlock], sinkNp[channelBlock], rise[channelBlock];
 };
 
 /// Room for a block, used again.

@@ -2,7 +2,8 @@
 
 namespace sono {
 
-void ChannelPoints::push(const Vec3f& place, float amplitudeRe, float amplitudeIm, float lag, float sink)
+void ChannelPoints::push(const Vec3f& place, float amplitudeRe, float amplitudeIm, float lag, float sink,
+                         float rising)
 {
   x.push_back(place.x);
   y.push_back(place.y);
@@ -11,6 +12,7 @@ void ChannelPoints::push(const Vec3f& place, float amplitudeRe, float amplitudeI
   im.push_back(amplitudeIm);
   lagMm.push_back(lag);
   sinkNp.push_back(sink);
+  rise.push_back(rising);
 }
 
 void ChannelPoints::append(const ChannelPoints& other)
@@ -25,6 +27,7 @@ void ChannelPoints::append(const ChannelPoints& other)
   add(im, other.im);
   add(lagMm, other.lagMm);
   add(sinkNp, other.sinkNp);
+  add(rise, other.rise);
 }
 
 ChannelPoints ChannelPoints::ordered(const std::vector<std::size_t>& numbers) const
@@ -44,6 +47,7 @@ ChannelPoints ChannelPoints::ordered(const std::vector<std::size_t>& numbers) co
   take(im, out.im);
   take(lagMm, out.lagMm);
   take(sinkNp, out.sinkNp);
+  take(rise, out.rise);
   return out;
 }
 

@@ -23,6 +23,7 @@ ChannelBlock blockOf(const ChannelPoints& points, std::size_t first, std::size_t
     block.im[s] = isThere ? points.im[i] : 0.0f;
     block.lagMm[s] = points.lagMm[i];
     block.sinkNp[s] = points.sinkNp[i];
+    block.rise[s] = points.rise[i];
   }
   return block;
 }

@@ -164,7 +164,7 @@ private:
     if (heard.coherent && isWithin(widened(m.row->finestReach, at.depthMm), m.cosSquared, m.sinSquared))
     {
       const float amplitude = coherentStrength(table, *m.row, fabsf(m.signedCosine), point.areaMm2) * heard.lit;
-      push(point.position, 0.0f, -float(perEcho_) * amplitude, at, out);
+      push(point.position, 0.0f, -float(perEcho_) * amplitude, 1.0f, at, out);
     }
   }
 
@@ -187,14 +187,14 @@ private:
       float(perEcho_) * heard.lit *
       diffuseStrength(m.row->logDiffuse, logL, logE, glm::dot(point.normal, beam.lateral),
                       glm::dot(point.normal, beam.elevation), point.areaMm2);
-    push(point.position, amplitude * point.phaseRe, amplitude * point.phaseIm, at, out);
+    push(point.position, amplitude * point.phaseRe, amplitude * point.phaseIm, 0.0f, at, out);
   }
 
-  void push(const Vec3f& local, float re, float im, const FanPlaces::Place& at, ChannelPoints& out) const
+  void push(const Vec3f& local, float re, float im, float rise, const FanPlaces::Place& at, ChannelPoints& out) const
   {
     const FanPlaces::Arrival arrival = fan_.arrival(at);
     out.push(Vec3f(frame_.fromWorld(setup_.sources.scene->worldFromLocal(Vec3d(local)))), re, im, arrival.lagMm,
-             arrival.sinkNp);
+             arrival.sinkNp, rise);
   }
 
   const EchoSetup& setup_;

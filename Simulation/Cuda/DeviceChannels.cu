@@ -23,7 +23,7 @@ constexpr int sumsPerThread = tileTransmits * tileElements / threads;
 
 struct DevicePoints
 {
-  const float *x, *y, *z, *re, *im, *lagMm, *sinkNp;
+  const float *x, *y, *z, *re, *im, *lagMm, *sinkNp, *rise;
 };
 
 struct ShellJob
@@ -79,7 +79,8 @@ __device__ TilePoint pointAt(const ShellJob& job, int i, float frequencyMHz, flo
   out.y = job.points.y[i];
   out.z = job.points.z[i];
   const ComplexNumber turn = turned(2.0f * job.points.lagMm[i] * job.shape.wavesPerMm * frequencyMHz);
-  const float size = expf(-job.points.sinkNp[i] * (frequencyMHz - job.centreMHz));
+  const float size = expf(-job.points.sinkNp[i] * (frequencyMHz - job.centreMHz)) *
+                     (1.0f + job.points.rise[i] * (frequencyMHz / job.centreMHz - 1.0f));
   const ComplexNumber amplitude = turn * ComplexNumber{ job.points.re[i], job.points.im[i] };
   out.amplitude = { size * amplitude.re, size * amplitude.im };
   out.span = { 0.5f * (1.0f / low + 1.0f / high), larger(1e-7f, 0.5f * (1.0f / low - 1.0f / high)) };
@@ -269,7 +270,7 @@ __global__ void addParts(const float* parts, int count, size_t values, float* su
 struct OnDevice
 {
   DeviceArray<float> pieceX, pieceZ, pieceNormalX, pieceNormalZ;
-  DeviceArray<float> x, y, z, re, im, lagMm, sinkNp;
+  DeviceArray<float> x, y, z, re, im, lagMm, sinkNp, rise;
   DeviceArray<float> drive, parts, sums;
 };
 
@@ -308,6 +309,7 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   on.im.upload(shells.points.im, stream, traffic);
   on.lagMm.upload(shells.points.lagMm, stream, traffic);
   on.sinkNp.upload(shells.points.sinkNp, stream, traffic);
+  on.rise.upload(shells.points.rise, stream, traffic);
   on.drive.upload(drive, stream, traffic);
   ShellJob job{};
   job.pieceX = on.pieceX.data();
@@ -329,7 +331,7 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   job.transmits = int(plan.transmits.each.size());
   job.drive = on.drive.data();
   job.points = { on.x.data(),  on.y.data(),     on.z.data(),     on.re.data(),
-                 on.im.data(), on.lagMm.data(), on.sinkNp.data() };
+                 on.im.data(), on.lagMm.data(), on.sinkNp.data(), on.rise.data() };
   const std::size_t bytes = std::size_t(tilePoints) * std::size_t(pieces.padded) * sizeof(float2);
   if (bytes > sharedMemoryFor(sumShellKernel))
   {
