@@ -10,7 +10,8 @@ namespace sono {
 
 namespace {
 
-constexpr double coherentStepPerLambda = 0.3;
+constexpr double coherentStepPerLambda = 0.45;
+constexpr float leastShare = 0.01; ///< of a point's echo: what cancels more is left out
 
 /// Adds the echoes of a brick's surfaces.
 class SurfaceWalk
@@ -68,7 +69,7 @@ public:
       return;
     }
     const Heard heard = hear(point.position, point.normal, point.row, *at, table);
-    addCoherent(point, heard, *at, table, out);
+    addCoherent(point, 1.0f, heard, *at, table, out);
     addDiffuse(point, heard, *at, table, out);
   }
 
@@ -86,10 +87,23 @@ private:
     return fan_.at(place.x, place.z);
   }
 
+  /// How much steeper a surface may be that is mirrored from some element to another.
+  float apertureTangent(float depthMm) const { return halfApertureMm_ / larger(depthMm, halfApertureMm_); }
   /// A tangent that counts for a beam, and so much more as the aperture's ends see a surface from the side.
   float widened(float reach, float depthMm) const
   {
-    return reach < 0.0f ? reach : reach + halfApertureMm_ / larger(depthMm, halfApertureMm_);
+    return reach < 0.0f ? reach : reach + apertureTangent(depthMm);
+  }
+  /// What its neighbours leave of a point's coherent echo, of a piece whose blobs are so wide (see SurfaceEcho.h): the
+  /// Gaussian's own, towards the direction in which an element comes nearest to a mirror. It fades the surface out where
+  /// it cancels, without an edge that would echo.
+  float shareLeft(const Vec3f& normal, float blobMm, const FanPlaces::Place& at) const
+  {
+    const float along = glm::dot(normal, beams_[std::size_t(at.nearest())].axis);
+    const float tangent = sqrtf(larger(0.0f, 1.0f - along * along)) / larger(fabsf(along), 1e-3f);
+    const float excess = float(2.0 * 6.283185307179586 / lambdaMm_) * blobMm *
+                         larger(0.0f, tangent - apertureTangent(at.depthMm));
+    return expNegative(-0.5f * excess * excess);
   }
 
   Heard hear(const Vec3f& position, const Vec3f& normal, int rowFromA, const FanPlaces::Place& at,
@@ -123,11 +137,13 @@ private:
     if (heard.coherent)
     {
       const PieceNet net = coherentCuts_.of(piece.axis, surfaces_.pieces().spacingMm());
+      const PieceNet blobs = surfaces_.nets().coherentNet(piece);
+      const float blobMm = float(0.5 * blobPerStep) * (blobs.stepU + blobs.stepV);
       for (int n = 0; n < net.points(); ++n)
       {
         SurfacePoint point = piecePoint(piece, net, n);
         point.row = row;
-        addCoherent(point, heard, at, table, out);
+        addCoherent(point, shareLeft(point.normal, blobMm, at), heard, at, table, out);
       }
     }
     if (heard.diffuse)
@@ -157,13 +173,14 @@ private:
              &table.rows[cosine < 0.0f ? point.row ^ 1 : point.row] };
   }
 
-  void addCoherent(const SurfacePoint& point, const Heard& heard, const FanPlaces::Place& at,
+  void addCoherent(const SurfacePoint& point, float share, const Heard& heard, const FanPlaces::Place& at,
                    const SurfaceTable& table, ChannelPoints& out) const
   {
     const Meeting m = meet(point, beams_[std::size_t(at.nearest())], table);
-    if (heard.coherent && isWithin(widened(m.row->finestReach, at.depthMm), m.cosSquared, m.sinSquared))
+    if (heard.coherent && share > leastShare &&
+        isWithin(widened(m.row->finestReach, at.depthMm), m.cosSquared, m.sinSquared))
     {
-      const float amplitude = coherentStrength(table, *m.row, fabsf(m.signedCosine), point.areaMm2) * heard.lit;
+      const float amplitude = coherentStrength(table, *m.row, fabsf(m.signedCosine), point.areaMm2) * heard.lit * share;
       push(point.position, 0.0f, -float(perEcho_) * amplitude, 1.0f, at, out);
     }
   }

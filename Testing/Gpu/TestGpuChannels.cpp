@@ -87,21 +87,14 @@ TEST(GpuChannels, TenPlaneWavesOfTheA4C)
   }
   std::printf("A4C: %zu points, %zu of them of smooth surfaces, in %.2f s\n", points.size(), surfaces,
               secondsSince(start));
-  SONO_GPU_OR_SKIP();
   ChannelSettings settings;
   settings.transmitSpanDeg = 40.0;
   const ChannelPlan plan(settings, probe);
   const ChannelShells shells = makeShells(plan, points);
   std::printf("%zu shells of %d samples, %d frequencies\n", shells.shells.size(), shells.samples, shells.bins);
-  formChannelsOnDevice(plan, cloud(10), {}); // the device wakes up
-  start = std::chrono::steady_clock::now();
-  const ChannelData data = formChannelsOnDevice(plan, points, {});
-  const double seconds = secondsSince(start);
-  std::printf("ten plane waves, 64 elements: %.2f s\n", seconds);
-  EXPECT_LT(seconds, 30.0);
-  // Of every 40th point, which the CPU does in seconds too.
+  // Of every 100th point, which the CPU does in seconds too.
   std::vector<std::size_t> some;
-  for (std::size_t n = 0; n < points.size(); n += 40)
+  for (std::size_t n = 0; n < points.size(); n += 100)
   {
     some.push_back(n);
   }
@@ -109,6 +102,13 @@ TEST(GpuChannels, TenPlaneWavesOfTheA4C)
   start = std::chrono::steady_clock::now();
   const ChannelData cpu = formChannels(plan, part);
   std::printf("of %zu points the CPU takes %.2f s\n", part.size(), secondsSince(start));
+  SONO_GPU_OR_SKIP();
+  formChannelsOnDevice(plan, cloud(10), {}); // the device wakes up
+  start = std::chrono::steady_clock::now();
+  const ChannelData data = formChannelsOnDevice(plan, points, {});
+  const double seconds = secondsSince(start);
+  std::printf("ten plane waves, 64 elements: %.2f s\n", seconds);
+  EXPECT_LT(seconds, 30.0);
   EXPECT_LT(difference(formChannelsOnDevice(plan, part, {}), cpu), 1e-3);
 }
 
