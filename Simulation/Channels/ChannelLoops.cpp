@@ -3,12 +3,55 @@
 #include "Core/Simd.h"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 namespace sono {
 
 namespace {
 
 constexpr int B = channelBlock;
+
+/// Numbers that are computed together.
+typedef float Lanes __attribute__((vector_size(vectorWidth * sizeof(float))));
+
+// Vectors are handed over by reference: by value it would depend on the processor how.
+inline void load(const float* from, Lanes& lanes)
+{
+  std::memcpy(&lanes, from, sizeof lanes);
+}
+inline void keep(const Lanes& lanes, float* to)
+{
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+/// Lane i becomes the sum of two of a, i and i + half, or of b where i has that bit.
+template<int half, int... i>
+inline void halve(Lanes& a, const Lanes& b, std::integer_sequence<int, i...>)
+{
+  a = __builtin_shufflevector(a, b, ((i & half) ? vectorWidth + i - half : i)...) +
+         __builtin_shufflevector(a, b, ((i & half) ? vectorWidth + i : i + half)...);
+}
+
+template<int half>
+inline void halve(Lanes* parts)
+{
+  for (int n = 0; n < half; ++n)
+  {
+    halve<half>(parts[n], parts[n + half], std::make_integer_sequence<int, vectorWidth>());
+  }
+}
+
+/// Number s is the sum of all lanes of part s. There are as many parts as lanes.
+inline void sumEach(Lanes* parts, float* sums)
+{
+  static_assert(vectorWidth == 16 && B == vectorWidth, "four halvings");
+  halve<8>(parts);
+  halve<4>(parts);
+  halve<2>(parts);
+  halve<1>(parts);
+  keep(parts[0], sums);
+}
 
 /// By point of a block.
 struct BlockOf
@@ -136,28 +179,33 @@ inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequenc
   }
 }
 
-/// What reaches a point from all elements.
-inline ComplexNumber arrives(const float* dRe, const float* dIm, const float* hRe, const float* hIm, int padded)
+/// What reaches a block's points from all elements that send.
+inline void arrive(const float* dRe, const float* dIm, const float* heardRe, const float* heardIm, int padded,
+                   BlockOf& outRe, BlockOf& outIm)
 {
-  float re[vectorWidth] = {};
-  float im[vectorWidth] = {};
-  for (int n = 0; n < padded; n += vectorWidth)
+  Lanes partRe[B];
+  Lanes partIm[B];
+  for (int s = 0; s < B; ++s)
   {
-    for (int i = 0; i < vectorWidth; ++i)
+    const float* hRe = heardRe + std::ptrdiff_t(s) * padded;
+    const float* hIm = heardIm + std::ptrdiff_t(s) * padded;
+    Lanes re{};
+    Lanes im{};
+    for (int n = 0; n < padded; n += vectorWidth)
     {
-      re[i] += dRe[n + i] * hRe[n + i] - dIm[n + i] * hIm[n + i];
-      im[i] += dRe[n + i] * hIm[n + i] + dIm[n + i] * hRe[n + i];
+      Lanes sentRe, sentIm, gRe, gIm;
+      load(dRe + n, sentRe);
+      load(dIm + n, sentIm);
+      load(hRe + n, gRe);
+      load(hIm + n, gIm);
+      re += sentRe * gRe - sentIm * gIm;
+      im += sentRe * gIm + sentIm * gRe;
     }
+    partRe[s] = re;
+    partIm[s] = im;
   }
-  for (int width = vectorWidth / 2; width > 0; width /= 2)
-  {
-    for (int i = 0; i < width; ++i)
-    {
-      re[i] += re[i + width];
-      im[i] += im[i + width];
-    }
-  }
-  return { re[0], im[0] };
+  sumEach(partRe, outRe.v);
+  sumEach(partIm, outIm.v);
 }
 
 /// The amplitudes of a block's points at a frequency, and what takes them to the next.
@@ -199,30 +247,19 @@ inline void addHeard(const BlockOf& echoRe, const BlockOf& echoIm, const float* 
 {
   for (int n = 0; n < padded; n += vectorWidth)
   {
-    float re[vectorWidth];
-    float im[vectorWidth];
-    for (int i = 0; i < vectorWidth; ++i)
-    {
-      re[i] = sumRe[n + i];
-      im[i] = sumIm[n + i];
-    }
+    Lanes re, im;
+    load(sumRe + n, re);
+    load(sumIm + n, im);
     for (int s = 0; s < B; ++s)
     {
-      const float* gRe = hRe + std::ptrdiff_t(s) * padded + n;
-      const float* gIm = hIm + std::ptrdiff_t(s) * padded + n;
-      const float eRe = echoRe.v[s];
-      const float eIm = echoIm.v[s];
-      for (int i = 0; i < vectorWidth; ++i)
-      {
-        re[i] += eRe * gRe[i] - eIm * gIm[i];
-        im[i] += eRe * gIm[i] + eIm * gRe[i];
-      }
+      Lanes gRe, gIm;
+      load(hRe + std::ptrdiff_t(s) * padded + n, gRe);
+      load(hIm + std::ptrdiff_t(s) * padded + n, gIm);
+      re += echoRe.v[s] * gRe - echoIm.v[s] * gIm;
+      im += echoRe.v[s] * gIm + echoIm.v[s] * gRe;
     }
-    for (int i = 0; i < vectorWidth; ++i)
-    {
-      sumRe[n + i] = re[i];
-      sumIm[n + i] = im[i];
-    }
+    keep(re, sumRe + n);
+    keep(im, sumIm + n);
   }
 }
 
@@ -270,12 +307,12 @@ SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, co
     {
       const std::ptrdiff_t row = (std::ptrdiff_t(bin) * c.transmits + t) * 2 * c.padded;
       BlockOf echoRe, echoIm;
+      arrive(c.drive + row, c.drive + row + c.padded, room.heardRe.data(), room.heardIm.data(), c.padded, echoRe,
+             echoIm);
       for (int s = 0; s < B; ++s)
       {
-        const std::ptrdiff_t of = std::ptrdiff_t(s) * c.padded;
-        const ComplexNumber echo = arrives(c.drive + row, c.drive + row + c.padded, room.heardRe.data() + of,
-                                           room.heardIm.data() + of, c.padded) *
-                                   ComplexNumber{ sizeRe.v[s], sizeIm.v[s] };
+        const ComplexNumber echo =
+          ComplexNumber{ echoRe.v[s], echoIm.v[s] } * ComplexNumber{ sizeRe.v[s], sizeIm.v[s] };
         echoRe.v[s] = echo.re;
         echoIm.v[s] = echo.im;
       }
