@@ -1,6 +1,7 @@
 // The filters' defaults are the simulation's. The stages of the image hold the settings themselves; the phantoms and
 // the pulse-echo field have defaults of their own, typed by hand. Their tests take the settings apart by name, which
 // compiles only while every member has one, so that a new member stops the build here.
+#include "Channels/ChannelSettings.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
