@@ -51,7 +51,9 @@ std::vector<double> readRows(const char* name, std::size_t count, vtkFieldData* 
 
 void announceChannels(const ChannelPlan& plan, vtkInformation* outInfo)
 {
-  const int extent[6] = { 0, plan.sampleCount - 1, 0, plan.pieces.elements - 1, 0, int(plan.transmits.each.size()) - 1 };
+  const int extent[6] = {
+    0, plan.sampleCount - 1, 0, plan.pieces.elements - 1, 0, int(plan.transmits.each.size()) - 1
+  };
   const double origin[3] = { 0.0, 0.0, 0.0 };
   const double spacing[3] = { 1.0 / plan.samplingMHz, 1.0, 1.0 };
   outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);

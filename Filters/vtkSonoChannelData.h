@@ -24,8 +24,8 @@ class vtkPointSet;
  * echo, points in world coordinates, LPS mm, with the point array "Amplitude"; in a scene that is the echo on the axis
  * of a beam, as in vtkSonoImageFormation, without one the root of a cross-section in mm.
  *
- * The output holds samples x elements x transmits, x the time in us, with the point array "RF". Its field data have, for
- * beamforming, "ElementPositionsMm" and "ElementAzimuthsRad", of each transmit "TransmitDelaysUs" and
+ * The output holds samples x elements x transmits, x the time in us, with the point array "RF". Its field data have,
+ * for beamforming, "ElementPositionsMm" and "ElementAzimuthsRad", of each transmit "TransmitDelaysUs" and
  * "TransmitWeights" (a component an element) and "TransmitAnglesRad", and the numbers "TransmitDistanceMm",
  * "TransmitKindNumber", "ChannelSamplingMHz" and "PassUs", when each wave passes the middle of the face. Data/docs/
  * physics.md section 15.

@@ -66,8 +66,7 @@ void vtkSonoLineWriter::AddStep(vtkImageData* image)
 {
   if (this->Channels)
   {
-    this->Channels->add(
-      sono::lineValues("RF", image->GetPointData(), std::size_t(image->GetNumberOfPoints())));
+    this->Channels->add(sono::lineValues("RF", image->GetPointData(), std::size_t(image->GetNumberOfPoints())));
   }
   else
   {

@@ -19,8 +19,8 @@ class LineCine;
  * Takes the lines of vtkSonoImageFormation, or those of vtkSonoUltrasound. "IQ" of each time step becomes a frame, of
  * which the writer holds one at a time, with the place of each sample, the probe, its elements and pose, sampling and
  * speed of sound. The name's ending chooses the format: .hdf5 or .h5 zea's, .uff USTB's. What is in them:
- * sono::zeaFile, sono::uffFile. Or takes the channels of vtkSonoChannelData: "RF" with elements, delays and sampling, see
- * sono::zeaChannels and sono::uffChannels.
+ * sono::zeaFile, sono::uffFile. Or takes the channels of vtkSonoChannelData: "RF" with elements, delays and sampling,
+ * see sono::zeaChannels and sono::uffChannels.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLineWriter : public vtkSonoFrameWriter
 {

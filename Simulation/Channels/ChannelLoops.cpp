@@ -30,7 +30,7 @@ template<int half, int... i>
 inline void halve(Lanes& a, const Lanes& b, std::integer_sequence<int, i...>)
 {
   a = __builtin_shufflevector(a, b, ((i & half) ? vectorWidth + i - half : i)...) +
-         __builtin_shufflevector(a, b, ((i & half) ? vectorWidth + i : i + half)...);
+      __builtin_shufflevector(a, b, ((i & half) ? vectorWidth + i : i + half)...);
 }
 
 template<int half>
@@ -141,8 +141,8 @@ inline void elevationAt(const ChannelChunk& c, const ChannelBlock& points, float
 }
 
 /// G of a point's elements at frequency number `bin`, and the waves on to the next.
-inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequencyMHz, const ComplexCurve& e,
-                 float* hRe, float* hIm)
+inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequencyMHz, const ComplexCurve& e, float* hRe,
+                 float* hIm)
 {
   const int padded = c.padded;
   const float k = 6.2831853f * frequencyMHz * c.shape.wavesPerMm;

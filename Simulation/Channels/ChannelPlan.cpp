@@ -159,10 +159,10 @@ ChannelData ChannelPlan::empty() const
 
 ChannelShells makeShells(const ChannelPlan& plan, const ChannelPoints& points)
 {
-  const Stretch sent{ *std::min_element(plan.transmits.delaysUs.begin(), plan.transmits.delaysUs.end()) +
-                        plan.spectrum.startUs(),
-                      *std::max_element(plan.transmits.delaysUs.begin(), plan.transmits.delaysUs.end()) +
-                        plan.spectrum.endUs() };
+  const Stretch sent{
+    *std::min_element(plan.transmits.delaysUs.begin(), plan.transmits.delaysUs.end()) + plan.spectrum.startUs(),
+    *std::max_element(plan.transmits.delaysUs.begin(), plan.transmits.delaysUs.end()) + plan.spectrum.endUs()
+  };
   const double endUs = plan.sampleCount / plan.samplingMHz;
   std::vector<Stretch> stretches(points.size());
   std::vector<std::size_t> order;

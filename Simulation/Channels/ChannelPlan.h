@@ -21,8 +21,8 @@ struct ChannelData
 
   const float* signal(int transmit, int element) const
   {
-    return rf.data() + (std::size_t(transmit) * std::size_t(elementCount) + std::size_t(element)) *
-                         std::size_t(sampleCount);
+    return rf.data() +
+           (std::size_t(transmit) * std::size_t(elementCount) + std::size_t(element)) * std::size_t(sampleCount);
   }
 };
 
@@ -51,9 +51,9 @@ struct ChannelPlan
   PulseSpectrum spectrum;
   ElementPieces pieces;
   ElementShape shape;
-  float shortestMm;      ///< half a wavelength
-  float npPerMmMHz;      ///< one-way attenuation of the amplitude
-  double centreMHz;      ///< of the pulse
+  float shortestMm; ///< half a wavelength
+  float npPerMmMHz; ///< one-way attenuation of the amplitude
+  double centreMHz; ///< of the pulse
   double samplingMHz;
   int sampleCount;
   double highMHz; ///< end of the band

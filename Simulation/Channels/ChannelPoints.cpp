@@ -2,8 +2,7 @@
 
 namespace sono {
 
-void ChannelPoints::push(const Vec3f& place, float amplitudeRe, float amplitudeIm, float lag, float sink,
-                         float rising)
+void ChannelPoints::push(const Vec3f& place, float amplitudeRe, float amplitudeIm, float lag, float sink, float rising)
 {
   x.push_back(place.x);
   y.push_back(place.y);

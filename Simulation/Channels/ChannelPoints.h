@@ -13,11 +13,11 @@ namespace sono {
 struct ChannelPoints
 {
   std::vector<float> x, y, z;
-  std::vector<float> re, im;    ///< amplitude at the centre frequency: the root of a cross-section, mm
-  std::vector<float> lagMm;     ///< by so much longer the sound takes each way than the distance says at 1540 m/s
-  std::vector<float> sinkNp;    ///< two-way exponent of the amplitude, Np per MHz above the centre frequency
-  std::vector<float> rise;      ///< the part of the amplitude that is in proportion to the frequency: 0 of scatterers, 1
-                                ///< of surfaces, whose sum falls as their zones of equal phase widen
+  std::vector<float> re, im; ///< amplitude at the centre frequency: the root of a cross-section, mm
+  std::vector<float> lagMm;  ///< by so much longer the sound takes each way than the distance says at 1540 m/s
+  std::vector<float> sinkNp; ///< two-way exponent of the amplitude, Np per MHz above the centre frequency
+  std::vector<float> rise;   ///< the part of the amplitude that is in proportion to the frequency: 0 of scatterers, 1
+                             ///< of surfaces, whose sum falls as their zones of equal phase widen
 
   std::size_t size() const { return x.size(); }
   void push(const Vec3f& place, float amplitudeRe, float amplitudeIm, float lag, float sink, float rising = 0.0f);

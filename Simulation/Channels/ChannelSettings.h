@@ -31,7 +31,7 @@ struct ChannelSettings
   double transmitSpanDeg = 30.0;
   double transmitDistanceMm = 0.0; ///< 0: half the aperture (diverging), the probe's transmit focus (focused)
   Apodization apodization = Apodization::Boxcar;
-  int elementCount = 64; ///< 0: as many as stand side by side
+  int elementCount = 64;           ///< 0: as many as stand side by side
   double channelSamplingMHz = 0.0; ///< 0: four times the centre frequency
   Baffle baffle = Baffle::Soft;
   bool flat = false;

@@ -19,8 +19,8 @@ public:
 
   struct Place
   {
-    int line;     ///< and the next one
-    float share;  ///< how far towards the next
+    int line;    ///< and the next one
+    float share; ///< how far towards the next
     float depthMm;
 
     int nearest() const { return share < 0.5f ? line : line + 1; }
@@ -31,7 +31,7 @@ public:
   struct Arrival
   {
     float intensity;
-    float lagMm;  ///< see ChannelPoints
+    float lagMm; ///< see ChannelPoints
     float sinkNp;
   };
   Arrival arrival(const Place& place) const;

@@ -66,8 +66,7 @@ PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
 
 std::complex<double> PulseSpectrum::at(double frequencyMHz) const
 {
-  const double risen =
-    std::clamp((frequencyMHz / strongestMHz_ - leastShare) / (wholeShare - leastShare), 0.0, 1.0);
+  const double risen = std::clamp((frequencyMHz / strongestMHz_ - leastShare) / (wholeShare - leastShare), 0.0, 1.0);
   const double taper = 0.5 - 0.5 * std::cos(pi * risen);
   if (!pulse_)
   {

@@ -178,15 +178,14 @@ void addTissues(const Walk& walk, const EchoSetup& setup, int perCell, const Pro
     const Vec3i size = glm::max(box.end - box.first, Vec3i(0));
     std::vector<ChannelPoints> slices(std::size_t(size.x > 0 && size.y > 0 ? size.z : 0));
     const double part = 1.0 / (view.coarsest - view.finest + 1);
-    parallelFor(int(slices.size()), partOf(progress, part * (level - view.finest), part * (level - view.finest + 1)),
-                [&](int k) {
-                  NestedScatterers::Row row;
-                  for (int j = 0; j < size.y; ++j)
-                  {
-                    addRow(walk, nested, view, level, { box.first + Vec3i(0, j, k), 0, size.x }, row,
-                           slices[std::size_t(k)]);
-                  }
-                });
+    parallelFor(
+      int(slices.size()), partOf(progress, part * (level - view.finest), part * (level - view.finest + 1)), [&](int k) {
+        NestedScatterers::Row row;
+        for (int j = 0; j < size.y; ++j)
+        {
+          addRow(walk, nested, view, level, { box.first + Vec3i(0, j, k), 0, size.x }, row, slices[std::size_t(k)]);
+        }
+      });
     for (const ChannelPoints& slice : slices)
     {
       out.append(slice);
@@ -213,8 +212,7 @@ ChannelPoints scenePoints(const EchoSources& sources, const ProbeSettings& probe
   const std::vector<ScanLine> lines = makeScanLines(probe.geometry, pose);
   const EchoSetup setup(sources, lines, echo);
   const FanPlaces fan(probe.geometry, sources.traced);
-  const double deepestMm =
-    sources.traced ? sources.traced->binCount * sources.traced->binMm : probe.geometry.rangeMm();
+  const double deepestMm = sources.traced ? sources.traced->binCount * sources.traced->binMm : probe.geometry.rangeMm();
   const Slab slab(setup.beams, deepestMm);
   const Walk walk{ *sources.scene, ProbeFrame(pose), fan, slab, probe.geometry, deepestMm };
   ChannelPoints out;

@@ -90,19 +90,16 @@ private:
   /// How much steeper a surface may be that is mirrored from some element to another.
   float apertureTangent(float depthMm) const { return halfApertureMm_ / larger(depthMm, halfApertureMm_); }
   /// A tangent that counts for a beam, and so much more as the aperture's ends see a surface from the side.
-  float widened(float reach, float depthMm) const
-  {
-    return reach < 0.0f ? reach : reach + apertureTangent(depthMm);
-  }
+  float widened(float reach, float depthMm) const { return reach < 0.0f ? reach : reach + apertureTangent(depthMm); }
   /// What its neighbours leave of a point's coherent echo, of a piece whose blobs are so wide (see SurfaceEcho.h): the
-  /// Gaussian's own, towards the direction in which an element comes nearest to a mirror. It fades the surface out where
-  /// it cancels, without an edge that would echo.
+  /// Gaussian's own, towards the direction in which an element comes nearest to a mirror. It fades the surface out
+  /// where it cancels, without an edge that would echo.
   float shareLeft(const Vec3f& normal, float blobMm, const FanPlaces::Place& at) const
   {
     const float along = glm::dot(normal, beams_[std::size_t(at.nearest())].axis);
     const float tangent = sqrtf(larger(0.0f, 1.0f - along * along)) / larger(fabsf(along), 1e-3f);
-    const float excess = float(2.0 * 6.283185307179586 / lambdaMm_) * blobMm *
-                         larger(0.0f, tangent - apertureTangent(at.depthMm));
+    const float excess =
+      float(2.0 * 6.283185307179586 / lambdaMm_) * blobMm * larger(0.0f, tangent - apertureTangent(at.depthMm));
     return expNegative(-0.5f * excess * excess);
   }
 
@@ -200,10 +197,9 @@ private:
     const int n = m.row->profile * table.nodes + before;
     const float logL = table.diffuseL[n] + share * (table.diffuseL[n + 1] - table.diffuseL[n]);
     const float logE = table.diffuseE[n] + share * (table.diffuseE[n + 1] - table.diffuseE[n]);
-    const float amplitude =
-      float(perEcho_) * heard.lit *
-      diffuseStrength(m.row->logDiffuse, logL, logE, glm::dot(point.normal, beam.lateral),
-                      glm::dot(point.normal, beam.elevation), point.areaMm2);
+    const float amplitude = float(perEcho_) * heard.lit *
+                            diffuseStrength(m.row->logDiffuse, logL, logE, glm::dot(point.normal, beam.lateral),
+                                            glm::dot(point.normal, beam.elevation), point.areaMm2);
     push(point.position, amplitude * point.phaseRe, amplitude * point.phaseIm, 0.0f, at, out);
   }
 

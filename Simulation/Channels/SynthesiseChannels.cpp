@@ -48,9 +48,8 @@ void synthesise(const ChannelPlan& plan, const ChannelShells& shells, const Chan
   for (std::size_t bin = 0; bin < bins; ++bin)
   {
     const double turns = (double(shells.firstBin) + double(bin)) * shell.firstSample / shells.samples;
-    const std::complex<double> weight =
-      2.0 * shells.stepMHz * plan.spectrum.at(shells.frequencyMHz(int(bin))) *
-      std::polar(1.0, -2.0 * pi * (turns - std::floor(turns)));
+    const std::complex<double> weight = 2.0 * shells.stepMHz * plan.spectrum.at(shells.frequencyMHz(int(bin))) *
+                                        std::polar(1.0, -2.0 * pi * (turns - std::floor(turns)));
     for (std::size_t t = 0; t < transmits; ++t)
     {
       const float* row = sums.data() + (bin * transmits + t) * 2 * padded;
@@ -88,8 +87,8 @@ void synthesise(const ChannelPlan& plan, const ChannelShells& shells, const Chan
     const int to = std::min({ tile, end - first });
     for (int signal = 0; signal < signals; ++signal)
     {
-      addTile(re.data() + std::size_t(signal) * bins, im.data() + std::size_t(signal) * bins, int(bins),
-              cosines.data(), sines.data(), added);
+      addTile(re.data() + std::size_t(signal) * bins, im.data() + std::size_t(signal) * bins, int(bins), cosines.data(),
+              sines.data(), added);
       float* out = data.rf.data() + std::size_t(signal) * std::size_t(plan.sampleCount);
       for (int m = from; m < to; ++m)
       {

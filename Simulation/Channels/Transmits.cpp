@@ -88,8 +88,7 @@ Transmits makeTransmits(const ChannelSettings& settings, const ProbeSettings& pr
     const double share = settings.transmitCount > 1 ? double(t) / (settings.transmitCount - 1) - 0.5 : 0.0;
     each.push_back({ settings.transmitKind, share * spanRad, distanceMm });
   }
-  return timeTransmits(std::move(each), settings.apodization, elements,
-                       1e-3 * probe.geometry.assumedSoundSpeedMPerS);
+  return timeTransmits(std::move(each), settings.apodization, elements, 1e-3 * probe.geometry.assumedSoundSpeedMPerS);
 }
 
 } // namespace sono

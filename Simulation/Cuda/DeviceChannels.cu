@@ -116,8 +116,8 @@ __device__ ComplexNumber heardBy(const ShellJob& job, int n, const TilePoint& po
   return job.isFlat ? sum : sum * point.elevation.at(point.span.at(1.0f / (range * perPiece)));
 }
 
-/// blockIdx: x the frequency, y the tile of elements that are heard, z the tile of transmits and the part of the points.
-/// `sums` are parts x bins x transmits x (re, im of padded elements).
+/// blockIdx: x the frequency, y the tile of elements that are heard, z the tile of transmits and the part of the
+/// points. `sums` are parts x bins x transmits x (re, im of padded elements).
 __global__ void __launch_bounds__(threads) sumShellKernel(ShellJob job, float* sums)
 {
   extern __shared__ float2 heard[]; // points of a tile x padded elements
@@ -330,7 +330,7 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   job.centreMHz = float(plan.centreMHz);
   job.transmits = int(plan.transmits.each.size());
   job.drive = on.drive.data();
-  job.points = { on.x.data(),  on.y.data(),     on.z.data(),     on.re.data(),
+  job.points = { on.x.data(),  on.y.data(),     on.z.data(),      on.re.data(),
                  on.im.data(), on.lagMm.data(), on.sinkNp.data(), on.rise.data() };
   const std::size_t bytes = std::size_t(tilePoints) * std::size_t(pieces.padded) * sizeof(float2);
   if (bytes > sharedMemoryFor(sumShellKernel))
@@ -355,7 +355,7 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
     sumShellKernel<<<grid, threads, bytes, stream>>>(job, on.parts.data());
     check(cudaGetLastError(), "summing channels");
     addParts<<<unsigned((drive.size() + threads - 1) / threads), threads, 0, stream>>>(on.parts.data(), job.parts,
-                                                                                        drive.size(), on.sums.data());
+                                                                                       drive.size(), on.sums.data());
     check(cudaGetLastError(), "summing channels");
     download(on.sums.data(), drive.size(), sums.data(), stream, traffic);
     check(await(stream), "summing channels");

@@ -26,8 +26,8 @@ struct ChannelCineInfo
   }
 };
 
-/// A file of channel data, RF. `rf` of a frame is transmits x elements x samples, sample s at time s / samplingMHz; time
-/// 0 is as in Transmits.
+/// A file of channel data, RF. `rf` of a frame is transmits x elements x samples, sample s at time s / samplingMHz;
+/// time 0 is as in Transmits.
 class ChannelCine
 {
 public:

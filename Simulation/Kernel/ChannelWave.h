@@ -33,8 +33,8 @@ SONO_HD inline ComplexNumber operator*(const ComplexNumber& a, const ComplexNumb
 /// exp(2 pi i turns), absolute error below 3e-7 and that of the turns.
 SONO_HD inline ComplexNumber turned(float turns)
 {
-  const float rest = turns - floorf(turns + 0.5f);            // [-1/2, 1/2]
-  const float quarter = floorf(4.0f * fabsf(rest) + 0.5f);    // 0, 1 or 2
+  const float rest = turns - floorf(turns + 0.5f);         // [-1/2, 1/2]
+  const float quarter = floorf(4.0f * fabsf(rest) + 0.5f); // 0, 1 or 2
   const float angle = 6.2831853f * (fabsf(rest) - 0.25f * quarter);
   const float c = cosSmall(angle);
   const float s = sinSmall(angle);
@@ -135,7 +135,8 @@ SONO_HD inline void curveThrough(float* v)
   v[4] = fourth;
 }
 
-/// The span of 1/r over an array's elements, over which E is a ComplexCurve: within 0.4 % (20 mm before a P4-2), mostly 0.1 %.
+/// The span of 1/r over an array's elements, over which E is a ComplexCurve: within 0.4 % (20 mm before a P4-2), mostly
+/// 0.1 %.
 struct InverseRange
 {
   float middle;

@@ -38,8 +38,8 @@ ChannelPoints cloud(int count)
   for (int n = 0; n < count; ++n)
   {
     points.push({ float(35.0 * std::sin(3.1 * n)), float(3.0 * std::cos(5.3 * n)), float(15.0 + 60.0 * n / count) },
-                float(std::sin(7.7 * n)), float(std::cos(9.1 * n)), float(0.4 * std::sin(0.3 * n)), 0.002f * float(n % 90),
-                float(n % 2));
+                float(std::sin(7.7 * n)), float(std::cos(9.1 * n)), float(0.4 * std::sin(0.3 * n)),
+                0.002f * float(n % 90), float(n % 2));
   }
   return points;
 }
@@ -50,9 +50,8 @@ TEST(GpuSmall, ChannelsAreThoseOfTheCpu)
   for (const bool flat : { false, true })
   {
     // Tiles of points, transmits and elements that are not full, elements of several pieces.
-    for (const auto& [transmits, elements, widthMm] :
-         { std::make_tuple(1, 17, 0.2), std::make_tuple(3, 64, 0.295), std::make_tuple(37, 100, 0.15),
-           std::make_tuple(2, 12, 1.5) })
+    for (const auto& [transmits, elements, widthMm] : { std::make_tuple(1, 17, 0.2), std::make_tuple(3, 64, 0.295),
+                                                        std::make_tuple(37, 100, 0.15), std::make_tuple(2, 12, 1.5) })
     {
       ChannelSettings settings;
       settings.transmitCount = transmits;

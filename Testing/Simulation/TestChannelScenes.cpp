@@ -76,8 +76,7 @@ TEST(ChannelScenes, CrossSectionsAreThoseOfTheVolume)
   const ProbeSettings probe = probeOf(60.0);
   for (const int perCell : { 15, 4 })
   {
-    const ChannelPoints points =
-      scenePoints(ofScene(*scene), probe, poseAt(50.0), echoOf(probe), perCell);
+    const ChannelPoints points = scenePoints(ofScene(*scene), probe, poseAt(50.0), echoOf(probe), perCell);
     // In a box within fan and slab.
     double sum = 0.0;
     int count = 0;
@@ -183,8 +182,7 @@ TEST(ChannelScenes, AMirrorShowsTheArray)
   settings.transmitCount = 1;
   settings.elementCount = 24;
   const ChannelPlan plan(settings, probe);
-  const ChannelData data =
-    formChannels(plan, scenePoints(ofScene(*scene), probe, poseAt(50.0), echoOf(probe), 15));
+  const ChannelData data = formChannels(plan, scenePoints(ofScene(*scene), probe, poseAt(50.0), echoOf(probe), 15));
   const std::size_t elements = plan.elements.centresMm.size();
   constexpr int strips = 24;
   const double r = (1.8 - 1.5) / (1.8 + 1.5);
@@ -215,8 +213,8 @@ TEST(ChannelScenes, AMirrorShowsTheArray)
             mean += std::polar(1.0 / way, k * (way - lens));
           }
         }
-        heard[n] += std::polar(1.0, 2.0 * pi * f * plan.transmits.delayUs(0, e)) * one * one * r * mean /
-                    double(strips * strips);
+        heard[n] +=
+          std::polar(1.0, 2.0 * pi * f * plan.transmits.delayUs(0, e)) * one * one * r * mean / double(strips * strips);
       }
     }
     for (std::size_t n = 0; n < elements; ++n)

@@ -107,8 +107,7 @@ double arrivalUs(const Transmits& transmits, std::size_t t, const Vec3d& place)
 
 TEST(Channels, APointIsHeardWhenItsWaveHasBeenThere)
 {
-  for (const TransmitKind kind :
-       { TransmitKind::PlaneWaves, TransmitKind::DivergingWaves, TransmitKind::FocusedWaves })
+  for (const TransmitKind kind : { TransmitKind::PlaneWaves, TransmitKind::DivergingWaves, TransmitKind::FocusedWaves })
   {
     ChannelSettings settings;
     settings.transmitKind = kind;
@@ -140,8 +139,7 @@ TEST(Channels, APointIsHeardWhenItsWaveHasBeenThere)
 
 TEST(Channels, DelaysBeginAtZeroAndAllWavesPassTheMiddleTogether)
 {
-  for (const TransmitKind kind :
-       { TransmitKind::PlaneWaves, TransmitKind::DivergingWaves, TransmitKind::FocusedWaves })
+  for (const TransmitKind kind : { TransmitKind::PlaneWaves, TransmitKind::DivergingWaves, TransmitKind::FocusedWaves })
   {
     ChannelSettings settings;
     settings.transmitKind = kind;
