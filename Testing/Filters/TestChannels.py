@@ -44,6 +44,23 @@ rf = [np.pad(signals, ((0, 0), (0, longest - signals.shape[1]))) for signals in 
 np.savez(sys.argv[2], rf=np.array(rf), t=1e6 * t, pulse=pulse / abs(pulse).max())
 """
 
+DASMTX = """
+import sys
+import numpy as np
+np.concat = getattr(np, "concat", np.concatenate)  # of NumPy 2
+import pymust
+given = np.load(sys.argv[1])
+param = pymust.utils.Param()
+param.fc, param.fs, param.pitch = float(given["fc"]), float(given["fs"]), float(given["pitch"])
+param.c, param.radius, param.fnumber = 1540, np.inf, 0
+param.Nelements = given["iq"].shape[2]
+x, z = 1e-3 * given["x"], 1e-3 * given["z"]
+summed = 0
+for iq, delays in zip(given["iq"], given["delays"]):
+    summed = summed + pymust.dasmtx(iq, x, z, 1e-6 * delays[None], param.copy()) @ iq.ravel(order="F")
+np.save(sys.argv[2], summed.reshape(x.shape, order="F"))
+"""
+
 READ_BY_ZEA = """
 import sys
 import numpy as np
@@ -178,13 +195,16 @@ class TestPyMust(FolderCase):
             self.assertLess(found, 0.02)
 
 
+def analytic_of(rf):
+    spectrum = np.fft.fft(rf, axis=-1)
+    spectrum[..., rf.shape[-1] // 2:] = 0
+    return 2 * np.fft.ifft(spectrum, axis=-1)
+
+
 def delay_and_sum(channels, x, z, carrier_mhz):
     """The analytic signals of plane waves and elements, each at the time of a place, summed."""
-    rf, fs = channels.rf, channels.sampling
-    count = rf.shape[-1]
-    spectrum = np.fft.fft(rf, axis=-1)
-    spectrum[..., count // 2:] = 0
-    analytic = 2 * np.fft.ifft(spectrum, axis=-1)
+    analytic, fs = analytic_of(channels.rf), channels.sampling
+    count = analytic.shape[-1]
     elements = channels.field("ElementPositionsMm")
     pass_us = channels.field("PassUs")[0]
     out = np.zeros(x.shape, dtype=complex)
@@ -343,24 +363,41 @@ class TestSpeckle(FolderCase):
         first, last = (int((self.DEPTH + side * self.SPAN / 2) / step) for side in (-1, 1))
         return (parts[:, first:last, 0] + 1j * parts[:, first:last, 1]), step
 
-    def beamformed(self):
+    def channels(self):
         algorithm = make(vtkSonoChannelData, TransmitCount=25, TransmitSpanDeg=18.0)
         algorithm.SetInputConnection(self.tracer.GetOutputPort())
         algorithm.SetInputDataObject(1, self.points)
-        channels = Channels(algorithm)
-        depths = np.arange(self.DEPTH - self.SPAN / 2, self.DEPTH + self.SPAN / 2, self.STEP)
-        x, z = np.sin(self.ANGLES)[:, None] * depths, np.cos(self.ANGLES)[:, None] * depths
-        summed = delay_and_sum(channels, x, z, self.carrier)
-        return summed * np.exp(-4j * np.pi * self.carrier / SPEED * depths)
+        return Channels(algorithm)
 
-    def test_beamformed_speckle_is_as_wide_as_the_picture_s(self):
+    def places(self):
+        depths = np.arange(self.DEPTH - self.SPAN / 2, self.DEPTH + self.SPAN / 2, self.STEP)
+        return np.sin(self.ANGLES)[:, None] * depths, np.cos(self.ANGLES)[:, None] * depths
+
+    def beamformed(self):
+        return delay_and_sum(self.channels(), *self.places(), self.carrier)
+
+    def check_widths(self, beamformed):
         lines, step = self.lines()
         turn = self.ANGLES[1] - self.ANGLES[0]
         ours = speckle_widths(lines, turn, step, self.DEPTH)
-        found = speckle_widths(self.beamformed(), turn, self.STEP, self.DEPTH)
+        found = speckle_widths(beamformed, turn, self.STEP, self.DEPTH)
         print(f"lateral {found[0]:.3f} and {ours[0]:.3f} mm, axial {found[1]:.4f} and {ours[1]:.4f} mm")
         self.assertLess(abs(found[0] / ours[0] - 1), 0.1)
         self.assertLess(abs(found[1] / ours[1] - 1), 0.1)
+
+    def test_beamformed_speckle_is_as_wide_as_the_picture_s(self):
+        self.check_widths(self.beamformed())
+
+    @unittest.skipUnless(installed("pymust"), "pymust is not installed")
+    def test_beamformed_by_pymust_it_is_as_wide(self):
+        channels = self.channels()
+        samples = np.arange(channels.rf.shape[-1]) / channels.sampling
+        iq = analytic_of(channels.rf) * np.exp(-2j * np.pi * self.carrier * samples)
+        x, z = self.places()
+        np.savez(self.folder / "given.npz", iq=np.swapaxes(iq, 1, 2), delays=channels.field("TransmitDelaysUs"), x=x,
+                 z=z, fc=1e6 * self.carrier, fs=1e6 * channels.sampling, pitch=1e-3 * PHASED["ApertureMm"] / 64)
+        run_alone(DASMTX, self.folder / "given.npz", self.folder / "made.npy")
+        self.check_widths(np.load(self.folder / "made.npy"))
 
     def test_beamformed_it_lies_where_the_picture_has_it(self):
         """Envelopes of the same points go up and down together, most where nothing is shifted."""
