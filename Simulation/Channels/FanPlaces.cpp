@@ -14,9 +14,10 @@ constexpr int depthIterations = 6; // offsets rise by at most a tenth of the dep
 
 } // namespace
 
-FanPlaces::FanPlaces(const ScanGeometry& geometry, const TracedLines* traced)
+FanPlaces::FanPlaces(const ScanGeometry& geometry, const TracedLines* traced, const std::optional<Downshift>& downshift)
   : geometry_(geometry)
   , traced_(traced)
+  , downshift_(downshift)
   , beams_(planeBeams(geometry))
 {
   if (geometry.lineCount < 2)
@@ -91,7 +92,7 @@ FanPlaces::Arrival FanPlaces::arrival(const Place& place) const
     return values.empty() ? 0.0f : between([&](int line) { return binAt(values, line, place.depthMm); });
   };
   return { bins(traced_->intensity), between([&](int line) { return lagMm(line, place.depthMm); }),
-           bins(traced_->attenuationNpPerMHz) };
+           downshift_ ? shiftingExponent(*downshift_, bins(traced_->attenuationNpPerMHz)) : 0.0f };
 }
 
 } // namespace sono

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/Downshift.h"
 #include "Probe/ScanGeometry.h"
 #include "Trace/Trace.h"
 
@@ -11,8 +12,9 @@ namespace sono {
 class FanPlaces
 {
 public:
-  /// `traced` may be null: intensity 1, sound at 1540 m/s. Both must outlive this.
-  FanPlaces(const ScanGeometry& geometry, const TracedLines* traced);
+  /// `traced` may be null: intensity 1, sound at 1540 m/s. Both must outlive this. Attenuation lowers the frequency as
+  /// far as `downshift` says, as it does in the picture; nothing: it stays.
+  FanPlaces(const ScanGeometry& geometry, const TracedLines* traced, const std::optional<Downshift>& downshift);
 
   /// Depth along the lines of a place of the image plane, whether inside of the fan or not.
   double depthMm(double lateralMm, double axialMm) const;
@@ -43,6 +45,7 @@ private:
 
   const ScanGeometry& geometry_;
   const TracedLines* traced_;
+  std::optional<Downshift> downshift_;
   PlaneBeams beams_;
 };
 

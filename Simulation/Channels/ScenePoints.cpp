@@ -211,7 +211,7 @@ ChannelPoints scenePoints(const EchoSources& sources, const ProbeSettings& probe
   }
   const std::vector<ScanLine> lines = makeScanLines(probe.geometry, pose);
   const EchoSetup setup(sources, lines, echo);
-  const FanPlaces fan(probe.geometry, sources.traced);
+  const FanPlaces fan(probe.geometry, sources.traced, pulseDownshift(echo));
   const double deepestMm = sources.traced ? sources.traced->binCount * sources.traced->binMm : probe.geometry.rangeMm();
   const Slab slab(setup.beams, deepestMm);
   const Walk walk{ *sources.scene, ProbeFrame(pose), fan, slab, probe.geometry, deepestMm };

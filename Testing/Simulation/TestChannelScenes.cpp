@@ -118,6 +118,36 @@ TEST(ChannelScenes, ScatterersStayInTheBodyWhenTheProbeMoves)
   EXPECT_GT(double(same), 0.97 * double(second.size())); // the rest came in at rims, and where the density steps
 }
 
+/// Behind lung and bone the exponent is so large that the pulse would sink to nothing, and be endlessly strong there.
+TEST(ChannelScenes, ThePulseDoesNotSinkBelowItsBand)
+{
+  const auto scene = block();
+  const ProbeSettings probe = probeOf(60.0);
+  TracedLines traced;
+  traced.lineCount = 64;
+  traced.binCount = 60;
+  traced.binMm = 1.0;
+  traced.intensity.assign(64 * 60, 1e-9f);
+  traced.standardError.assign(64 * 60, 0.0f);
+  traced.attenuationNpPerMHz.assign(64 * 60, 300.0f);
+  const ChannelPoints points = scenePoints(ofScene(*scene, &traced), probe, poseAt(50.0), echoOf(probe), 1);
+  const double spread = 2.5 * 0.6 / (2.0 * std::sqrt(0.6 * std::log(10.0))); // s_f of a -6 dB bandwidth
+  const double most = (2.5 - spread) / (spread * spread);                    // section 12.4
+  ASSERT_GT(points.size(), 1000u);
+  for (const float sink : points.sinkNp)
+  {
+    ASSERT_NEAR(double(sink), most, 1e-3);
+  }
+  ChannelSettings settings;
+  settings.transmitCount = 1;
+  settings.elementCount = 4;
+  const ChannelData data = formChannels(ChannelPlan(settings, probe), points);
+  for (const float value : data.rf)
+  {
+    ASSERT_TRUE(std::isfinite(value));
+  }
+}
+
 TEST(ChannelScenes, WhatIsTracedWeighs)
 {
   const auto scene = block();
