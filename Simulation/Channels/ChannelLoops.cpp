@@ -140,6 +140,30 @@ inline void elevationAt(const ChannelChunk& c, const ChannelBlock& points, float
   }
 }
 
+/// Values at the nodes of a block's frequencies become factors of their powers.
+inline void alongFrequency(ElevationOf* nodes)
+{
+  for (int n = 0; n < ComplexCurve::nodes; ++n)
+  {
+    for (BlockOf(ElevationOf::*part)[ComplexCurve::nodes] : { &ElevationOf::re, &ElevationOf::im })
+    {
+      for (int s = 0; s < B; ++s)
+      {
+        float v[ComplexCurve::nodes];
+        for (int node = 0; node < ComplexCurve::nodes; ++node)
+        {
+          v[node] = (nodes[node].*part)[n].v[s];
+        }
+        curveThrough(v);
+        for (int node = 0; node < ComplexCurve::nodes; ++node)
+        {
+          (nodes[node].*part)[n].v[s] = v[node];
+        }
+      }
+    }
+  }
+}
+
 /// G of a point's elements at frequency number `bin`, and the waves on to the next.
 inline void hear(const ChannelChunk& c, ChannelRoom& room, int s, float frequencyMHz, const ComplexCurve& e, float* hRe,
                  float* hIm)
@@ -271,11 +295,16 @@ SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, co
   begin(c, block, room, middle, half);
   Amplitudes amplitudes;
   beginAmplitudes(c, block, amplitudes);
-  ElevationOf nodes[3];
+  ElevationOf elevation[ComplexCurve::nodes]; // by power of the frequency
   const float centre = 0.5f * (channelBins - 1);
-  for (int node = 0; node < 3 && !c.isFlat; ++node)
+  for (int node = 0; node < ComplexCurve::nodes && !c.isFlat; ++node)
   {
-    elevationAt(c, block, c.firstMHz + float(node) * centre * c.stepMHz, middle, half, nodes[node]);
+    elevationAt(c, block, c.firstMHz + (1.0f + ComplexCurve::place(node)) * centre * c.stepMHz, middle, half,
+                elevation[node]);
+  }
+  if (!c.isFlat)
+  {
+    alongFrequency(elevation);
   }
   for (int bin = 0; bin < c.bins; ++bin)
   {
@@ -286,12 +315,11 @@ SONO_SIMD_CLONES __attribute__((flatten)) void add(const ChannelChunk& chunk, co
       ComplexCurve e{};
       for (int n = 0; n < ComplexCurve::nodes && !c.isFlat; ++n)
       {
-        const auto between = [&](const BlockOf& first, const BlockOf& second, const BlockOf& third) {
-          const float low = first.v[s], mid = second.v[s], high = third.v[s];
-          return mid + at * (0.5f * (high - low) + at * (0.5f * (high + low) - mid));
-        };
-        e.c[n] = { between(nodes[0].re[n], nodes[1].re[n], nodes[2].re[n]),
-                   between(nodes[0].im[n], nodes[1].im[n], nodes[2].im[n]) };
+        e.c[n] = { elevation[4].re[n].v[s], elevation[4].im[n].v[s] };
+        for (int power = 3; power >= 0; --power)
+        {
+          e.c[n] = { elevation[power].re[n].v[s] + at * e.c[n].re, elevation[power].im[n].v[s] + at * e.c[n].im };
+        }
       }
       const std::ptrdiff_t row = std::ptrdiff_t(s) * c.padded;
       hear(c, room, s, frequencyMHz, e, room.heardRe.data() + row, room.heardIm.data() + row);

@@ -8,7 +8,7 @@ namespace sono {
 
 /// So many points go through the loop together, a vector of them.
 constexpr int channelBlock = 16;
-/// So many frequencies, over which E is a parabola.
+/// So many frequencies, over which E is a ComplexCurve.
 constexpr int channelBins = 16;
 
 /// What the loop over a block of points needs; nothing is owned. Arrays of elements are padded to whole vectors.

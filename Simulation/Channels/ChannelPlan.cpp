@@ -17,7 +17,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double dbPerNp = 8.685889638065035;
 constexpr double mostSamples = 1e9;
 constexpr double leastShellUs = 8.0;
-/// A block's frequencies span at most this share of the centre frequency: E is a parabola over them.
+/// A block's frequencies span at most this share of the centre frequency, over which E is a ComplexCurve.
 constexpr double mostSpan = 0.12;
 constexpr double shellShare = 0.25; // of the longest stretch that a single point takes
 
