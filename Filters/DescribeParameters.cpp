@@ -6,6 +6,7 @@
 // `only` and `except` choose among them, `simple` are those that a panel always shows, `where` is a switch (0 off,
 // 1 on, 2 automatic) without which it shows none of them. `method` takes the name and the value, in place of one method
 // a property.
+#include "Channels/ChannelSettings.h"
 #include "ChestDefaults.h"
 #include "Echo/EchoSettings.h"
 #include "Image/BModeSettings.h"
@@ -78,6 +79,7 @@ std::vector<Described> parametersOf(const std::string& settings)
   static const std::map<std::string, std::function<std::vector<Described>()>> all{
     { "BModeSettings", describeWithChest<sono::BModeSettings> },
     { "BodyFillSettings", describe<sono::BodyFillSettings> },
+    { "ChannelSettings", describe<sono::ChannelSettings> },
     { "DisplaySettings", describe<sono::DisplaySettings> },
     { "EchoSettings", describe<sono::EchoSettings> },
     { "EchoSampling",

@@ -18,8 +18,10 @@ inline const std::map<std::string, SliderRange>& sliderRanges()
 {
   static const std::map<std::string, SliderRange> ranges{
     { "ApertureMm", { 0, 100 } },
+    { "AttenuationDbPerCmMHz", { 0, 5 } },
     { "AxialSmoothingMm", { 0, 5 } },
     { "CentreFrequencyMHz", { 1, 20 } },
+    { "ChannelSamplingMHz", { 0, 100 } },
     { "ClosingMm", { 0, 100 } },
     { "CoherenceMm", { 0, 200 } },
     { "DepthMm", { 20, 300 } },
@@ -53,6 +55,8 @@ inline const std::map<std::string, SliderRange>& sliderRanges()
     { "TargetErrorDb", { 0, 3 } },
     { "TgcDbPerCm", { 0, 10 } },
     { "TimeBudgetS", { 0, 60 } },
+    { "TransmitCount", { 1, 128 } },
+    { "TransmitDistanceMm", { 0, 300 } },
     { "TransmitFocusMm", { 0, 300 } },
     { "WallMm", { 0, 50 } },
     { "WidthMm", { 10, 100 } },

@@ -1,7 +1,9 @@
 #include "vtkSonoLineWriter.h"
 
 #include "Core/Error.h"
+#include "Files/ChannelCine.h"
 #include "Files/LineCine.h"
+#include "SonoChannelImage.h"
 #include "SonoLineImage.h"
 #include "SonoProbeField.h"
 
@@ -23,7 +25,28 @@ std::string vtkSonoLineWriter::NamelessRefusal() const
   return "No file is named; set FileName to one that ends in .hdf5 or .uff.";
 }
 
-void vtkSonoLineWriter::Open(vtkImageData* lines)
+void vtkSonoLineWriter::Open(vtkImageData* image)
+{
+  sono::holdsChannels(image) ? this->OpenChannels(image) : this->OpenLines(image);
+}
+
+void vtkSonoLineWriter::OpenChannels(vtkImageData* channels)
+{
+  const sono::ProbeField probe = sono::readProbe(channels->GetFieldData());
+  const sono::ChannelLayout layout = sono::channelLayout(channels);
+  sono::ChannelCineInfo info;
+  info.probe = probe;
+  info.pose = probe.pose;
+  info.elements = layout.elements;
+  info.transmits = layout.transmits;
+  info.sampleCount = layout.sampleCount;
+  info.samplingMHz = layout.samplingMHz;
+  info.timesS = this->TimesS(1);
+  sono::lineValues("RF", channels->GetPointData(), info.valueCount());
+  this->Channels = sono::channelFile(this->GetFileName(), info);
+}
+
+void vtkSonoLineWriter::OpenLines(vtkImageData* lines)
 {
   const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
   const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
@@ -39,18 +62,26 @@ void vtkSonoLineWriter::Open(vtkImageData* lines)
   this->Cine = sono::lineFile(this->GetFileName(), info);
 }
 
-void vtkSonoLineWriter::AddStep(vtkImageData* lines)
+void vtkSonoLineWriter::AddStep(vtkImageData* image)
 {
-  this->Cine->add(sono::complexLineValues("IQ", lines->GetPointData()));
+  if (this->Channels)
+  {
+    this->Channels->add(sono::lineValues("RF", image->GetPointData(), std::size_t(image->GetNumberOfPoints())));
+  }
+  else
+  {
+    this->Cine->add(sono::complexLineValues("IQ", image->GetPointData()));
+  }
   this->Tell(1.0);
 }
 
 void vtkSonoLineWriter::Finish()
 {
-  this->Cine->finish();
+  this->Channels ? this->Channels->finish() : this->Cine->finish();
 }
 
 void vtkSonoLineWriter::Close()
 {
   this->Cine.reset();
+  this->Channels.reset();
 }

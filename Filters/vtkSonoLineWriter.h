@@ -8,17 +8,19 @@
 #include <string>
 
 namespace sono {
+class ChannelCine;
 class LineCine;
 }
 
 /**
  * @class vtkSonoLineWriter
- * @brief Writes RF lines to an HDF5 file for beamforming and learning: zea or UFF
+ * @brief Writes RF lines or channel data to an HDF5 file for beamforming and learning: zea or UFF
  *
  * Takes the lines of vtkSonoImageFormation, or those of vtkSonoUltrasound. "IQ" of each time step becomes a frame, of
  * which the writer holds one at a time, with the place of each sample, the probe, its elements and pose, sampling and
  * speed of sound. The name's ending chooses the format: .hdf5 or .h5 zea's, .uff USTB's. What is in them:
- * sono::zeaFile, sono::uffFile.
+ * sono::zeaFile, sono::uffFile. Or takes the channels of vtkSonoChannelData: "RF" with elements, delays and sampling,
+ * see sono::zeaChannels and sono::uffChannels.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLineWriter : public vtkSonoFrameWriter
 {
@@ -40,7 +42,12 @@ private:
   vtkSonoLineWriter(const vtkSonoLineWriter&) = delete;
   void operator=(const vtkSonoLineWriter&) = delete;
 
-  std::unique_ptr<sono::LineCine> Cine; // while it is being written
+  void OpenLines(vtkImageData* lines);
+  void OpenChannels(vtkImageData* channels);
+
+  // One of them while it is being written.
+  std::unique_ptr<sono::LineCine> Cine;
+  std::unique_ptr<sono::ChannelCine> Channels;
 };
 
 #endif

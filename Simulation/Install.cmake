@@ -2,6 +2,7 @@
 
 # The stages' headers; those that they include are installed with them, and no others. None may need anything but GLM.
 set(public_headers
+  Channels/ScenePoints.h
   Core/ParallelFor.h
   Core/Version.h
   DataSets/WriteDataSet.h
@@ -35,6 +36,7 @@ set(public_headers
   Probe/PulseFile.h
   Probe/StandardViews.h
   Scene/SceneFile.h
+  SimulateChannels.h
   Simulator.h
   Trace/CollisionLimit.h
   Trace/ProbeContact.h

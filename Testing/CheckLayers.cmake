@@ -51,7 +51,7 @@ endif()
 
 # Inside Simulation, from the lowest up: a file includes from its own folder or one before it in this list. The dot is
 # Simulation itself, the facade.
-set(simulation_folders Core Kernel Labels Scene Probe Trace Echo Image Files Link Cuda Phantoms . DataSets)
+set(simulation_folders Core Kernel Labels Scene Probe Trace Echo Channels Image Files Link Cuda Phantoms . DataSets)
 
 function(check_simulation)
   foreach(file IN LISTS simulation_files)

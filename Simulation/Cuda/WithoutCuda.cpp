@@ -1,5 +1,6 @@
 #include "Cuda/DeviceImager.h"
 
+#include "Cuda/DeviceChannels.h"
 #include "Cuda/OwnImager.h"
 
 // Stands in for the GPU where SonoVDB was built without nvcc: there is no imager, so nobody can ask it for anything.
@@ -105,6 +106,11 @@ PictureCopy DeviceImager::wait(const std::shared_ptr<Download>&)
 int DeviceImager::imagesThatFit(double)
 {
   return 1;
+}
+
+ChannelData formChannelsOnDevice(const ChannelPlan&, const ChannelPoints&, const Progress&)
+{
+  throw Error("the GPU cannot be used: " + cudaStatus().what + "; choose the CPU");
 }
 
 DeviceTimes DeviceImager::lastTimes()

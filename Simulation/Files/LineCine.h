@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Files/FrameOrder.h"
 #include "Probe/ScanGeometry.h"
 
 #include <complex>
@@ -46,10 +47,7 @@ private:
   virtual void write(std::size_t frame, const std::vector<std::complex<float>>& iq) = 0;
   virtual void close() = 0;
 
-  std::string path_;
-  std::size_t valueCount_;
-  std::size_t frameCount_;
-  std::size_t added_ = 0;
+  FrameOrder frames_;
 };
 
 /// The places of a frame's numbers, in the same order, in m: x lateral, y elevation, z into the body, from the middle

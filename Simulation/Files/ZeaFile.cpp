@@ -1,7 +1,5 @@
-#include "Core/Version.h"
-#include "Files/Hdf5File.h"
 #include "Files/LineCine.h"
-#include "Probe/ArrayElements.h"
+#include "Files/ZeaParts.h"
 
 #include <cmath>
 #include <limits>
@@ -17,30 +15,6 @@ constexpr double sPerUs = 1e-6;
 // Where the parts lie; a file has one track or several.
 const std::string dataGroup = "tracks/track_0/data/beamformed_data/";
 const std::string scanGroup = "tracks/track_0/scan/";
-
-const char* probeType(LineOrigin origin)
-{
-  switch (origin)
-  {
-    case LineOrigin::Aperture:
-      return "linear";
-    case LineOrigin::Apex:
-      return "phased";
-    default:
-      return "curved";
-  }
-}
-
-std::vector<float> flat(const std::vector<Vec3d>& vectors, double factor)
-{
-  std::vector<float> values;
-  values.reserve(3 * vectors.size());
-  for (const Vec3d& vector : vectors)
-  {
-    values.insert(values.end(), { float(factor * vector.x), float(factor * vector.y), float(factor * vector.z) });
-  }
-  return values;
-}
 
 /// Of lines x samples, or elevations x lines x samples, what zea has as samples x lines (x elevations).
 class Order
@@ -79,38 +53,6 @@ private:
   std::size_t lines_;
 };
 
-/// (w, x, y, z) of the rotation from the probe's axes (lateral, elevation, axial) to the world's (Shepperd 1978).
-std::vector<float> quaternionOf(const ProbePose& pose)
-{
-  Mat3d m;
-  m[0] = pose.lateral;
-  m[1] = glm::cross(pose.axial, pose.lateral);
-  m[2] = pose.axial;
-  const double squares[4] = { 1.0 + m[0][0] + m[1][1] + m[2][2], 1.0 + m[0][0] - m[1][1] - m[2][2],
-                              1.0 - m[0][0] + m[1][1] - m[2][2], 1.0 - m[0][0] - m[1][1] + m[2][2] };
-  int largest = 0;
-  for (int n = 1; n < 4; ++n)
-  {
-    largest = squares[n] > squares[largest] ? n : largest;
-  }
-  // Products of two parts, times four: m[column][row].
-  const double wx = m[1][2] - m[2][1];
-  const double wy = m[2][0] - m[0][2];
-  const double wz = m[0][1] - m[1][0];
-  const double xy = m[0][1] + m[1][0];
-  const double xz = m[2][0] + m[0][2];
-  const double yz = m[1][2] + m[2][1];
-  const double products[4][4] = {
-    { squares[0], wx, wy, wz }, { wx, squares[1], xy, xz }, { wy, xy, squares[2], yz }, { wz, xz, yz, squares[3] }
-  };
-  std::vector<float> parts;
-  for (const double product : products[largest])
-  {
-    parts.push_back(float(product / (2.0 * std::sqrt(squares[largest]))));
-  }
-  return parts;
-}
-
 class ZeaFile : public LineCine
 {
 public:
@@ -119,15 +61,12 @@ public:
     , order_(info)
     , file_(path, info.floatCount(arrayElements(info.probe).centresMm.size()))
   {
-    file_.attribute("/", "zea_version", "0.1.0");
-    file_.attribute("/", "us_machine", "SonoVDB (Simulated)");
-    file_.attribute("/", "description",
-                    std::string("Simulated by SonoVDB ") + version() + " from labelled anatomy; nobody was scanned.");
+    writeZeaHeader(file_);
     writeData(info);
     const ArrayElements elements = arrayElements(info.probe);
-    writeProbe(info.probe, elements);
+    writeZeaProbe(info.probe, elements, file_);
     writeScan(info, elements);
-    writePose(info.pose);
+    writeZeaPose(info.pose, file_);
   }
 
 private:
@@ -139,36 +78,13 @@ private:
     std::vector<Vec3d> ordered;
     ordered.reserve(all.size());
     order_.forEach([&](std::size_t index) { ordered.push_back(all[index]); });
-    file_.floats(dataGroup + "coordinates", places, flat(ordered, 1.0));
+    file_.floats(dataGroup + "coordinates", places, zeaCoordinates(ordered, 1.0));
     file_.texts(dataGroup + "labels", { "I", "Q" });
     Hdf5File::Shape values = order_.shape();
     values.insert(values.begin(), info.timesS.size());
     values.push_back(2);
     file_.announce(dataGroup + "values", values);
-    if (info.timesS.size() > 1)
-    {
-      std::vector<float> times;
-      for (const double timeS : info.timesS)
-      {
-        times.push_back(float(timeS - info.timesS.front()));
-      }
-      file_.floats(dataGroup + "timestamps", { times.size() }, times);
-      file_.number(dataGroup + "start_time_offset", 0.0);
-    }
-  }
-
-  void writeProbe(const ProbeSettings& probe, const ArrayElements& elements)
-  {
-    file_.text("probe/name", std::string("SonoVDB ") + traitsOf(probe.geometry.kind).label);
-    file_.text("probe/type", probeType(probe.geometry.lineOrigin()));
-    file_.number("probe/probe_center_frequency", hzPerMHz * probe.centreFrequencyMHz);
-    file_.number("probe/probe_bandwidth_percent", 100.0 * probe.fractionalBandwidth);
-    file_.floats("probe/probe_geometry", { elements.centresMm.size(), 3 }, flat(elements.centresMm, mPerMm));
-    file_.number("probe/element_width", mPerMm * elements.widthMm);
-    if (elements.heightMm > 0.0)
-    {
-      file_.number("probe/element_height", mPerMm * elements.heightMm);
-    }
+    writeZeaTimes(info.timesS, dataGroup, file_);
   }
 
   void writeScan(const LineCineInfo& info, const ArrayElements& elements)
@@ -206,19 +122,9 @@ private:
     file_.floats(scanGroup + "t0_delays", { count, elements.centresMm.size() }, delays);
     file_.floats(scanGroup + "tx_apodizations", { count, elements.centresMm.size() }, weights);
     file_.floats(scanGroup + "focus_distances", { count }, std::vector<float>(count, focusM));
-    file_.floats(scanGroup + "transmit_origins", { count, 3 }, flat(origins, mPerMm));
+    file_.floats(scanGroup + "transmit_origins", { count, 3 }, zeaCoordinates(origins, mPerMm));
     file_.floats(scanGroup + "polar_angles", { count }, polar);
     file_.floats(scanGroup + "azimuth_angles", { count }, azimuth);
-  }
-
-  void writePose(const ProbePose& pose)
-  {
-    const std::string group = "metadata/probe_pose/";
-    file_.floats(group + "translation", { 1, 3 }, flat({ pose.positionMm }, mPerMm));
-    file_.floats(group + "rotation", { 1, 4 }, quaternionOf(pose));
-    file_.text(group + "rotation_representation", "quaternion_wxyz");
-    file_.number(group + "start_time_offset", 0.0);
-    file_.floats(group + "timestamps", { 1 }, { 0.0f });
   }
 
   void write(std::size_t frame, const std::vector<std::complex<float>>& iq) override

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace sono {
 
@@ -36,28 +37,29 @@ double faceWidthMm(const ProbeSettings& probe, double elementMm)
   return linesMm + elementMm;
 }
 
-} // namespace
-
-ArrayElements arrayElements(const ProbeSettings& probe)
+/// As the array is built; or, where columns are named, so many, evenly over the face.
+ArrayElements elementsOf(const ProbeSettings& probe, int named)
 {
   const ScanGeometry& geometry = probe.geometry;
   ArrayElements elements;
   elements.widthMm =
     probe.elementWidthMm > 0.0 ? probe.elementWidthMm : 0.5 * mmPerUs(probe) / probe.centreFrequencyMHz;
-  const double pitchMm = elements.widthMm + probe.kerfMm;
+  const double builtPitchMm = elements.widthMm + probe.kerfMm;
+  const double widthMm = faceWidthMm(probe, elements.widthMm);
+  const double pitchMm = named > 0 ? widthMm / double(named) : builtPitchMm;
   const bool isGrid = geometry.isVolume();
   const long built = isGrid ? std::lround(std::sqrt(double(probe.elementCount))) : long(probe.elementCount);
-  const auto countOver = [&](double widthMm) {
-    return std::max({ 1l, built, std::lround((widthMm + probe.kerfMm) / pitchMm) });
+  const auto countOver = [&](double mm) {
+    return std::max({ 1l, built, std::lround((mm + probe.kerfMm) / builtPitchMm) });
   };
   const double radiusMm = geometry.faceRadiusMm();
-  const long around = radiusMm > 0.0 ? std::max(1l, long(fullTurn * radiusMm / pitchMm)) : maxCount;
-  const long columns = std::min(countOver(faceWidthMm(probe, elements.widthMm)), around);
+  const long around = radiusMm > 0.0 ? std::max(1l, long(fullTurn * radiusMm / builtPitchMm)) : maxCount;
+  const long columns = named > 0 ? long(named) : std::min(countOver(widthMm), around);
   const long rows = isGrid ? countOver(probe.elevationApertureMm) : 1;
   elements.heightMm = isGrid ? elements.widthMm : probe.elevationApertureMm;
   for (long row = 0; row < rows; ++row)
   {
-    const double acrossMm = (double(row) - 0.5 * double(rows - 1)) * pitchMm;
+    const double acrossMm = (double(row) - 0.5 * double(rows - 1)) * builtPitchMm;
     for (long column = 0; column < columns; ++column)
     {
       const double alongMm = (double(column) - 0.5 * double(columns - 1)) * pitchMm;
@@ -67,6 +69,37 @@ ArrayElements arrayElements(const ProbeSettings& probe)
                                                           radiusMm * std::cos(angle) + geometry.fanCentreAxialMm())
                                                   : Vec3d(alongMm, acrossMm, 0.0));
     }
+  }
+  return elements;
+}
+
+} // namespace
+
+ArrayElements arrayElements(const ProbeSettings& probe)
+{
+  return elementsOf(probe, 0);
+}
+
+ArrayElements arrayElements(const ProbeSettings& probe, int count)
+{
+  const ScanGeometry& geometry = probe.geometry;
+  if (geometry.isVolume() || geometry.lineOrigin() == LineOrigin::Catheter)
+  {
+    throw Error(std::string("the probe is a ") + traitsOf(geometry.kind).label +
+                ": channels are made of arrays with one row of elements; choose a linear, phased or curvilinear one");
+  }
+  if (probe.apertureMm <= 0.0 && !hasStarts(geometry))
+  {
+    throw Error("the probe does not name its aperture: set apertureMm, the width of its elements together");
+  }
+  const ArrayElements elements = elementsOf(probe, count);
+  const double widthMm = faceWidthMm(probe, elements.widthMm);
+  if (count > 0 && elements.widthMm > 1.01 * widthMm / double(count))
+  {
+    std::ostringstream sentence;
+    sentence << count << " elements of " << elements.widthMm << " mm do not fit on a face of " << widthMm
+             << " mm: set a smaller elementCount or elementWidthMm";
+    throw Error(sentence.str());
   }
   return elements;
 }

@@ -19,6 +19,9 @@ struct ArrayElements
 };
 
 ArrayElements arrayElements(const ProbeSettings& probe);
+/// So many, evenly spaced over the face; 0: as the array is built. Throws Error where they do not fit,
+/// and for a matrix or a catheter, whose elements do not lie in a row before the body.
+ArrayElements arrayElements(const ProbeSettings& probe, int count);
 
 /// When and whether elements send a line (the time of the first is 0), and when it leaves the line's start.
 struct LineFiring

@@ -1,6 +1,7 @@
 // The filters' defaults are the simulation's. The stages of the image hold the settings themselves; the phantoms and
 // the pulse-echo field have defaults of their own, typed by hand. Their tests take the settings apart by name, which
 // compiles only while every member has one, so that a new member stops the build here.
+#include "Channels/ChannelSettings.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "Image/BMode.h"
@@ -17,6 +18,7 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkSonoBMode.h"
+#include "vtkSonoChannelData.h"
 #include "vtkSonoImageFormation.h"
 #include "vtkSonoPhantomSource.h"
 #include "vtkSonoProbeSource.h"
@@ -53,6 +55,7 @@ TEST(FilterDefaults, StagesHaveTheSettingsOfSimulation)
 {
   expectPrinted<sono::TraceSettings>(vtkNew<vtkSonoRayTracer>().Get());
   expectPrinted<sono::EchoSettings>(vtkNew<vtkSonoImageFormation>().Get());
+  expectPrinted<sono::ChannelSettings>(vtkNew<vtkSonoChannelData>().Get());
   expectPrinted<sono::BModeSettings>(vtkNew<vtkSonoBMode>().Get());
   expectPrinted<sono::DisplaySettings>(vtkNew<vtkSonoScanConverter>().Get());
   expectPrinted<sono::ProbeSettings>(vtkNew<vtkSonoProbeSource>().Get());

@@ -1,0 +1,368 @@
+#include "Cuda/DeviceChannels.h"
+
+#include "Core/Progress.h"
+#include "Cuda/DeviceImager.h"
+#include "Cuda/DeviceMemory.cuh"
+#include "Kernel/ChannelWave.h"
+
+#include <algorithm>
+
+// A block of threads sums a frequency of a shell for up to `tileTransmits` transmits: points go through shared memory
+// by tiles, first what each element hears of each point (G), then what arrives at each point from each transmit, then
+// both into the sums of transmits and elements, which the threads keep in registers.
+
+namespace sono {
+
+namespace {
+
+constexpr int threads = 256;
+constexpr int tilePoints = 16;
+constexpr int tileTransmits = 16;
+constexpr int tileElements = 64;
+constexpr int sumsPerThread = tileTransmits * tileElements / threads;
+
+struct DevicePoints
+{
+  const float *x, *y, *z, *re, *im, *lagMm, *sinkNp, *rise;
+};
+
+struct ShellJob
+{
+  const float *pieceX, *pieceZ, *pieceNormalX, *pieceNormalZ;
+  int elements;
+  int padded;
+  int perElement;
+  float halfWidthMm;
+  bool isSoft;
+  bool isFlat;
+  float shortestMm;
+  float npPerMmMHz;
+  ElementShape shape;
+  double stepMHz;
+  int firstBin;
+  float centreMHz;
+  int transmits;
+  const float* drive; ///< bins x transmits x (re, im of padded elements)
+  DevicePoints points;
+  int firstPoint;
+  int endPoint;
+  int parts; ///< blocks that share the points of a frequency
+};
+
+/// A tile's points, and E over 1/r of each.
+struct TilePoint
+{
+  float x, y, z;
+  ComplexNumber amplitude;
+  InverseRange span;
+  ComplexCurve elevation;
+};
+
+__device__ float meanRange(const ShellJob& job, int n, float x, float y, float z)
+{
+  float sum = 0.0f;
+  for (int p = 0; p < job.perElement; ++p)
+  {
+    const int at = p * job.padded + n;
+    sum += pieceSees({ job.pieceX[at], job.pieceZ[at], job.pieceNormalX[at], job.pieceNormalZ[at] }, job.halfWidthMm,
+                     job.isSoft, job.isFlat, job.shortestMm, x, y, z)
+             .rangeMm;
+  }
+  return sum / float(job.perElement);
+}
+
+/// A point whose nearest and furthest elements are so far away.
+__device__ TilePoint pointAt(const ShellJob& job, int i, float frequencyMHz, float low, float high)
+{
+  TilePoint out;
+  out.x = job.points.x[i];
+  out.y = job.points.y[i];
+  out.z = job.points.z[i];
+  const ComplexNumber turn = turned(2.0f * job.points.lagMm[i] * job.shape.wavesPerMm * frequencyMHz);
+  const float size = expf(-job.points.sinkNp[i] * (frequencyMHz - job.centreMHz)) *
+                     (1.0f + job.points.rise[i] * (frequencyMHz / job.centreMHz - 1.0f));
+  const ComplexNumber amplitude = turn * ComplexNumber{ job.points.re[i], job.points.im[i] };
+  out.amplitude = { size * amplitude.re, size * amplitude.im };
+  out.span = { 0.5f * (1.0f / low + 1.0f / high), larger(1e-7f, 0.5f * (1.0f / low - 1.0f / high)) };
+  if (!job.isFlat)
+  {
+    out.elevation = elevationCurve(job.shape, frequencyMHz * job.shape.wavesPerMm, out.y, out.span);
+  }
+  return out;
+}
+
+/// G of an element and a point.
+__device__ ComplexNumber heardBy(const ShellJob& job, int n, const TilePoint& point, float frequencyMHz)
+{
+  const float waves = frequencyMHz * job.shape.wavesPerMm;
+  const float k = 6.2831853f * waves;
+  ComplexNumber sum{ 0.0f, 0.0f };
+  float range = 0.0f;
+  for (int p = 0; p < job.perElement; ++p)
+  {
+    const int at = p * job.padded + n;
+    const PieceSight sight =
+      pieceSees({ job.pieceX[at], job.pieceZ[at], job.pieceNormalX[at], job.pieceNormalZ[at] }, job.halfWidthMm,
+                job.isSoft, job.isFlat, job.shortestMm, point.x, point.y, point.z);
+    const ComplexNumber turn = turned(sight.rangeMm * waves);
+    const float size = sight.size * sincOfSquare(k * k * sight.halfAcross2) *
+                       expNegative(-frequencyMHz * job.npPerMmMHz * sight.rangeMm);
+    sum.re += size * turn.re;
+    sum.im += size * turn.im;
+    range += sight.rangeMm;
+  }
+  const float perPiece = 1.0f / float(job.perElement);
+  sum = { sum.re * perPiece, sum.im * perPiece };
+  return job.isFlat ? sum : sum * point.elevation.at(point.span.at(1.0f / (range * perPiece)));
+}
+
+/// blockIdx: x the frequency, y the tile of elements that are heard, z the tile of transmits and the part of the
+/// points. `sums` are parts x bins x transmits x (re, im of padded elements).
+__global__ void __launch_bounds__(threads) sumShellKernel(ShellJob job, float* sums)
+{
+  extern __shared__ float2 heard[]; // points of a tile x padded elements
+  __shared__ TilePoint points[tilePoints];
+  __shared__ float2 arriving[tilePoints][tileTransmits];
+  __shared__ float nearest[tilePoints];
+  __shared__ float furthest[tilePoints];
+  const int bin = int(blockIdx.x);
+  const int part = int(blockIdx.z) % job.parts;
+  const int firstTransmit = int(blockIdx.z) / job.parts * tileTransmits;
+  const int transmits = min(tileTransmits, job.transmits - firstTransmit);
+  const int firstElement = int(blockIdx.y) * tileElements;
+  const float frequencyMHz = float((job.firstBin + bin) * job.stepMHz);
+  const float* drive = job.drive + (size_t(bin) * job.transmits + firstTransmit) * 2 * job.padded;
+  const int element = firstElement + int(threadIdx.x) % tileElements;
+  const int ownTransmit = int(threadIdx.x) / tileElements;
+  constexpr int transmitStep = threads / tileElements;
+  float2 own[sumsPerThread];
+  for (int n = 0; n < sumsPerThread; ++n)
+  {
+    own[n] = { 0.0f, 0.0f };
+  }
+  const int all = job.endPoint - job.firstPoint;
+  const int perPart = (all + job.parts - 1) / job.parts;
+  const int begin = job.firstPoint + part * perPart;
+  const int end = min(begin + perPart, job.endPoint);
+  for (int first = begin; first < end; first += tilePoints)
+  {
+    const int count = min(tilePoints, end - first);
+    {
+      // Sixteen lanes look for a point's nearest and furthest element.
+      const int s = int(threadIdx.x) / 16;
+      const int i = first + min(s, count - 1);
+      float low = 3e38f;
+      float high = 0.0f;
+      for (int n = int(threadIdx.x) % 16; n < job.elements; n += 16)
+      {
+        const float range = meanRange(job, n, job.points.x[i], job.points.y[i], job.points.z[i]);
+        low = fminf(low, range);
+        high = fmaxf(high, range);
+      }
+      for (int width = 8; width > 0; width /= 2)
+      {
+        low = fminf(low, __shfl_xor_sync(0xffffffffu, low, width));
+        high = fmaxf(high, __shfl_xor_sync(0xffffffffu, high, width));
+      }
+      if (threadIdx.x % 16 == 0)
+      {
+        nearest[s] = low;
+        furthest[s] = high;
+      }
+    }
+    __syncthreads();
+    if (threadIdx.x < tilePoints)
+    {
+      const int s = int(threadIdx.x);
+      points[s] = pointAt(job, first + min(s, count - 1), frequencyMHz, nearest[s], furthest[s]);
+      if (s >= count)
+      {
+        points[s].amplitude = { 0.0f, 0.0f };
+      }
+    }
+    __syncthreads();
+    for (int at = int(threadIdx.x); at < tilePoints * job.padded; at += threads)
+    {
+      const int s = at / job.padded;
+      const ComplexNumber g = heardBy(job, at - s * job.padded, points[s], frequencyMHz);
+      heard[at] = { g.re, g.im };
+    }
+    __syncthreads();
+    {
+      // Sixteen lanes sum what arrives at a point.
+      const int s = int(threadIdx.x) / 16;
+      const int lane = int(threadIdx.x) % 16;
+      for (int t = 0; t < transmits; ++t)
+      {
+        const float* re = drive + size_t(t) * 2 * job.padded;
+        ComplexNumber sum{ 0.0f, 0.0f };
+        for (int n = lane; n < job.padded; n += 16)
+        {
+          const float2 g = heard[s * job.padded + n];
+          sum.re += re[n] * g.x - re[job.padded + n] * g.y;
+          sum.im += re[n] * g.y + re[job.padded + n] * g.x;
+        }
+        for (int width = 8; width > 0; width /= 2)
+        {
+          sum.re += __shfl_xor_sync(0xffffffffu, sum.re, width);
+          sum.im += __shfl_xor_sync(0xffffffffu, sum.im, width);
+        }
+        if (lane == 0)
+        {
+          const ComplexNumber echo = sum * points[s].amplitude;
+          arriving[s][t] = { echo.re, echo.im };
+        }
+      }
+    }
+    __syncthreads();
+    if (element < job.padded)
+    {
+      for (int s = 0; s < tilePoints; ++s)
+      {
+        const float2 g = heard[s * job.padded + element];
+        for (int n = 0; n < sumsPerThread; ++n)
+        {
+          const int t = ownTransmit + n * transmitStep;
+          if (t < transmits)
+          {
+            const float2 a = arriving[s][t];
+            own[n].x += a.x * g.x - a.y * g.y;
+            own[n].y += a.x * g.y + a.y * g.x;
+          }
+        }
+      }
+    }
+    __syncthreads();
+  }
+  if (element >= job.padded)
+  {
+    return;
+  }
+  for (int n = 0; n < sumsPerThread; ++n)
+  {
+    const int t = ownTransmit + n * transmitStep;
+    if (t < transmits)
+    {
+      float* out =
+        sums + ((size_t(part) * gridDim.x + bin) * job.transmits + firstTransmit + t) * 2 * size_t(job.padded);
+      out[element] = own[n].x;
+      out[job.padded + element] = own[n].y;
+    }
+  }
+}
+
+/// The parts' sums, in their order.
+__global__ void addParts(const float* parts, int count, size_t values, float* sums)
+{
+  const size_t i = size_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < values)
+  {
+    float sum = 0.0f;
+    for (int part = 0; part < count; ++part)
+    {
+      sum += parts[size_t(part) * values + i];
+    }
+    sums[i] = sum;
+  }
+}
+
+/// What stays on the device for all shells.
+struct OnDevice
+{
+  DeviceArray<float> pieceX, pieceZ, pieceNormalX, pieceNormalZ;
+  DeviceArray<float> x, y, z, re, im, lagMm, sinkNp, rise;
+  DeviceArray<float> drive, parts, sums;
+};
+
+} // namespace
+
+ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& points, const Progress& progress)
+{
+  if (!cudaStatus().usable)
+  {
+    throw Error("the GPU cannot be used: " + cudaStatus().what + "; choose the CPU");
+  }
+  // A lane of its own, so that nobody else's work is waited for; it lives as long as the process.
+  static DeviceLane* const lane = openLane(cudaStatus().devices.front(), Waiting::Asleep);
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const OnLane onLane(lane);
+  const cudaStream_t stream = deviceStream();
+  ChannelData data = plan.empty();
+  const ChannelShells shells = makeShells(plan, points);
+  if (shells.bins == 0 || shells.shells.empty())
+  {
+    return data;
+  }
+  const std::vector<float> drive = driveTable(plan, shells);
+  Traffic traffic;
+  OnDevice on;
+  const ElementPieces& pieces = plan.pieces;
+  on.pieceX.upload(pieces.x, stream, traffic);
+  on.pieceZ.upload(pieces.z, stream, traffic);
+  on.pieceNormalX.upload(pieces.normalX, stream, traffic);
+  on.pieceNormalZ.upload(pieces.normalZ, stream, traffic);
+  on.x.upload(shells.points.x, stream, traffic);
+  on.y.upload(shells.points.y, stream, traffic);
+  on.z.upload(shells.points.z, stream, traffic);
+  on.re.upload(shells.points.re, stream, traffic);
+  on.im.upload(shells.points.im, stream, traffic);
+  on.lagMm.upload(shells.points.lagMm, stream, traffic);
+  on.sinkNp.upload(shells.points.sinkNp, stream, traffic);
+  on.rise.upload(shells.points.rise, stream, traffic);
+  on.drive.upload(drive, stream, traffic);
+  ShellJob job{};
+  job.pieceX = on.pieceX.data();
+  job.pieceZ = on.pieceZ.data();
+  job.pieceNormalX = on.pieceNormalX.data();
+  job.pieceNormalZ = on.pieceNormalZ.data();
+  job.elements = pieces.elements;
+  job.padded = pieces.padded;
+  job.perElement = pieces.perElement;
+  job.halfWidthMm = pieces.halfWidthMm;
+  job.isSoft = plan.settings.baffle == Baffle::Soft;
+  job.isFlat = plan.settings.flat;
+  job.shortestMm = plan.shortestMm;
+  job.npPerMmMHz = plan.npPerMmMHz;
+  job.shape = plan.shape;
+  job.stepMHz = shells.stepMHz;
+  job.firstBin = shells.firstBin;
+  job.centreMHz = float(plan.centreMHz);
+  job.transmits = int(plan.transmits.each.size());
+  job.drive = on.drive.data();
+  job.points = { on.x.data(),  on.y.data(),     on.z.data(),      on.re.data(),
+                 on.im.data(), on.lagMm.data(), on.sinkNp.data(), on.rise.data() };
+  const std::size_t bytes = std::size_t(tilePoints) * std::size_t(pieces.padded) * sizeof(float2);
+  if (bytes > sharedMemoryFor(sumShellKernel))
+  {
+    throw Error("elementCount is " + std::to_string(pieces.elements) +
+                ": the GPU's blocks do not hold so many; use fewer elements or choose the CPU");
+  }
+  const int transmitTiles = (job.transmits + tileTransmits - 1) / tileTransmits;
+  const int elementTiles = (pieces.padded + tileElements - 1) / tileElements;
+  // A few thousand blocks keep a large GPU busy.
+  const int blocks = shells.bins * transmitTiles * elementTiles;
+  job.parts = std::clamp(4096 / blocks, 1, 16);
+  on.parts.resize(drive.size() * std::size_t(job.parts));
+  on.sums.resize(drive.size());
+  std::vector<float> sums(drive.size());
+  for (const ChannelShell& shell : shells.shells)
+  {
+    report(progress, double(shell.first) / double(shells.points.size()));
+    job.firstPoint = int(shell.first);
+    job.endPoint = int(shell.end);
+    const dim3 grid(unsigned(shells.bins), unsigned(elementTiles), unsigned(transmitTiles * job.parts));
+    sumShellKernel<<<grid, threads, bytes, stream>>>(job, on.parts.data());
+    check(cudaGetLastError(), "summing channels");
+    addParts<<<unsigned((drive.size() + threads - 1) / threads), threads, 0, stream>>>(on.parts.data(), job.parts,
+                                                                                       drive.size(), on.sums.data());
+    check(cudaGetLastError(), "summing channels");
+    download(on.sums.data(), drive.size(), sums.data(), stream, traffic);
+    check(await(stream), "summing channels");
+    synthesise(plan, shells, shell, sums, data);
+  }
+  report(progress, 1.0);
+  return data;
+}
+
+} // namespace sono
