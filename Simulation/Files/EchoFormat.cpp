@@ -1,17 +1,9 @@
 #include "Files/EchoFormat.h"
 
+#include "Core/EndsWith.h"
 #include "Core/Error.h"
 
 namespace sono {
-
-namespace {
-
-bool endsWith(const std::string& path, const std::string& ending)
-{
-  return path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
-
-} // namespace
 
 EchoFormat echoFormatOf(const std::string& path)
 {
