@@ -158,7 +158,9 @@ double RefinedTrace::errorOf(const TracedLines& traced, int paths)
   std::vector<float> envelope = formRf(scene_, lines_, linesOf(traced, indices_), shown_).envelope();
   if (paths_ > 0 && paths >= leastGrowth * paths_)
   {
-    errorDb_ = changeDb(envelope_, envelope) * std::sqrt(double(paths_) / (paths - paths_));
+    const double seen = changeDb(envelope_, envelope) * std::sqrt(double(paths_) / (paths - paths_));
+    const double expected = errorDb_ * std::sqrt(double(paths_) / paths);
+    errorDb_ = errorDb_ > 0.0 ? std::sqrt(0.5 * (seen * seen + expected * expected)) : seen;
   }
   else if (paths_ > 0)
   {

@@ -16,6 +16,9 @@ namespace sono {
 ///
 ///     e = D sqrt(n1 / (n2 - n1))                                                                               (9.1)
 ///
+/// One change may by chance be small where few paths tell much: e^2 is the mean of this and of what the rounds before
+/// make expect, their e^2 times n1 / n2.
+///
 /// With a target error alone the result depends on the arguments alone, not on the threads. For one thread at a time.
 class RefinedTrace
 {

@@ -71,7 +71,7 @@ def register_phases(files, folder, reference=0, moving=None, say=print):
                 now = labels[phase][box]
                 near = _distance(~np.isin(now, list(moving)), image.GetSpacing()) <= NEAR_VOXELS * max(image.GetSpacing())
                 found = _register(_Edges(now, followed, image.GetSpacing()), rest, image, box,
-                                  *(os.path.join(transforms, str(of)) for of in (phase, nearer)))
+                                  *(os.path.join(transforms, f"{of}.txt") for of in (phase, nearer)))
                 field[box] = found * near[..., None]
                 say(f"Phase {phase}: " + _judge(field[box], now, labels[reference][box], moving, image))
             _write(image, field, moving, paths[phase])

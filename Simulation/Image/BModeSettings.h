@@ -90,7 +90,7 @@ struct BModeSettings
     visitor(self.lateralSmoothingLines,
             Parameter{ "lateralSmoothingLines", "Lateral Smoothing (lines)", between(0, 50),
                        "Width at half height of the Gaussian that smooths the envelope across the lines of a plane, in "
-                       "lines, 0 to 50: a sector's speckle gets the wider the deeper it lies. 0: none." });
+                       "lines (no unit), 0 to 50: a sector's speckle gets the wider the deeper it lies. 0: none." });
     visitSliders(self.tgcDb, visitor,
                  { "tgc1Db", "tgc2Db", "tgc3Db", "tgc4Db", "tgc5Db", "tgc6Db", "tgc7Db", "tgc8Db" },
                  { "TGC 1 (dB)", "TGC 2 (dB)", "TGC 3 (dB)", "TGC 4 (dB)", "TGC 5 (dB)", "TGC 6 (dB)", "TGC 7 (dB)",
