@@ -5,7 +5,7 @@
 #include "DataSets/DataSetInfo.h"
 #include "DataSets/HoldProbe.h"
 #include "DataSets/ImageChannels.h"
-#include "DataSets/MitralLine.h"
+#include "DataSets/MaskGroups.h"
 #include "Labels/PrepareBody.h"
 #include "Labels/ReadLabelMap.h"
 #include "Phantoms/DrawThorax.h"
@@ -29,60 +29,6 @@ namespace {
 
 constexpr int mostAttempts = 32;
 constexpr const char* fallbackTissue = "soft_tissue";
-
-/// The mask's value of each label id.
-std::vector<std::uint8_t> groupsOf(const std::vector<LabelInfo>& labels, const std::vector<MaskGroup>& masks)
-{
-  LabelTissueMap patterns; // whose "tissues" are the groups
-  for (std::size_t group = 0; group < masks.size(); ++group)
-  {
-    for (const std::string& pattern : masks[group].labels)
-    {
-      patterns.add({ pattern, std::to_string(group + 1) });
-    }
-  }
-  std::vector<std::uint8_t> values(65536, 0);
-  for (const LabelInfo& label : labels)
-  {
-    if (const LabelTissueRule* rule = patterns.matchName(label.name))
-    {
-      values[std::size_t(label.id)] = std::uint8_t(std::stoi(rule->tissue));
-    }
-  }
-  return values;
-}
-
-/// The labels of the mitral valve, by id.
-std::vector<bool> valvesOf(const std::vector<LabelInfo>& labels, const std::vector<std::string>& valve)
-{
-  const std::vector<std::uint8_t> values = groupsOf(labels, { MaskGroup{ {}, valve } });
-  return { values.begin(), values.end() };
-}
-
-/// The mask's value of the group of a name.
-std::uint8_t valueOf(const std::vector<MaskGroup>& masks, const std::string& name)
-{
-  const auto group = std::find_if(masks.begin(), masks.end(), [&](const MaskGroup& each) { return each.name == name; });
-  return std::uint8_t(group - masks.begin() + 1);
-}
-
-/// Divides ventricle and atrium where the image shows both of the mitral annulus' hinges.
-void divideAtAnnulus(const DataSet& set, const std::vector<bool>& isValve, const std::vector<ImageLandmark>& landmarks,
-                     const std::uint16_t* labels, int width, std::vector<std::uint8_t>& mask)
-{
-  const auto named = [&](const char* name) {
-    return std::find_if(landmarks.begin(), landmarks.end(), [&](const ImageLandmark& l) { return l.name == name; });
-  };
-  const auto annulus = named("mitralAnnulus");
-  const auto apex = named("apex");
-  if (annulus != landmarks.end() && annulus->hinges.size() == 2 && apex != landmarks.end())
-  {
-    divideAtHinges(
-      annulus->hinges[0], annulus->hinges[1], apex->point,
-      { valueOf(set.masks, set.mitralLine->ventricle), valueOf(set.masks, set.mitralLine->atrium), &isValve }, labels,
-      width, mask);
-  }
-}
 
 /// One of a patient's views.
 struct BodyView
@@ -304,7 +250,7 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   body->groups = groupsOf(volume.labels, set.masks); // fat may be new
   if (set.mitralLine)
   {
-    body->isMitralValve = valvesOf(volume.labels, set.mitralLine->valve);
+    body->isMitralValve = labelsOf(volume.labels, set.mitralLine->valve);
   }
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
