@@ -38,7 +38,7 @@ def is_there():
     return bool(shutil.which("elastix") and shutil.which("transformix"))
 
 
-def displacement(pairs, smooth, placement, grid_mm, smoothed_mm, bending, samples, transform, start=None):
+def displacement(pairs, smooth, placement, grid_mm, smoothed_mm, bending, samples):
     """t in mm, world axes, at the voxels of a grid: what is at x in the fixed images is at x + t(x) in the moving ones.
 
     pairs        (fixed, moving, mask, weight) of each: arrays indexed [z, y, x], the mask of where to look
@@ -47,8 +47,6 @@ def displacement(pairs, smooth, placement, grid_mm, smoothed_mm, bending, sample
     grid_mm      between the last control points of the B-spline; twice as wide in each resolution before
     smoothed_mm  standard deviation of the smoothing, one a resolution
     bending      weight of the bending energy against the pairs' mean squared difference, one a resolution
-    transform    path that the transform is written to
-    start        path of one that was written before: what is found is a correction of it, and smooth as such; None: of nothing
     """
     origin, spacing, direction = placement
     header = {"Offset": origin, "ElementSpacing": spacing, "TransformMatrix": np.transpose(direction).ravel()}
@@ -76,9 +74,8 @@ def displacement(pairs, smooth, placement, grid_mm, smoothed_mm, bending, sample
         parameters = os.path.join(folder, "parameters.txt")
         with open(parameters, "w", encoding="ascii") as file:
             file.write(text)
-        _run("elastix", *arguments, *(["-t0", start] if start else []), "-p", parameters, "-out", folder)
-        shutil.move(os.path.join(folder, "TransformParameters.0.txt"), transform)
-        _run("transformix", "-def", "all", "-tp", transform, "-out", folder)
+        _run("elastix", *arguments, "-p", parameters, "-out", folder)
+        _run("transformix", "-def", "all", "-tp", os.path.join(folder, "TransformParameters.0.txt"), "-out", folder)
         return _read(os.path.join(folder, "deformationField.mha"))
 
 

@@ -1,7 +1,6 @@
 """What moves between the phases of a motion, from their label maps alone: displacement fields by elastix, with which speckle rides
 on the tissue (see Data/docs/motion.md)."""
 import os
-import tempfile
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -61,30 +60,17 @@ def register_phases(files, folder, reference=0, moving=None, say=print):
     box = _box(labels, followed, images[0].GetSpacing())
     os.makedirs(folder, exist_ok=True)
     rest = _Edges(labels[reference][box], followed, images[0].GetSpacing())
-    digits = max(2, len(str(len(images) - 1)))
-    paths = [os.path.join(folder, f"phase_{phase:0{digits}d}.vti") for phase in range(len(images))]
-    with tempfile.TemporaryDirectory() as transforms:
-        for phase, nearer in _outwards(reference, len(images)):
-            image = images[phase]
-            field = np.zeros(labels[0].shape + (3,), np.float32)
-            if phase != reference:
-                now = labels[phase][box]
-                near = _distance(~np.isin(now, list(moving)), image.GetSpacing()) <= NEAR_VOXELS * max(image.GetSpacing())
-                found = _register(_Edges(now, followed, image.GetSpacing()), rest, image, box,
-                                  *(os.path.join(transforms, f"{of}.txt") for of in (phase, nearer)))
-                field[box] = found * near[..., None]
-                say(f"Phase {phase}: " + _judge(field[box], now, labels[reference][box], moving, image))
-            _write(image, field, moving, paths[phase])
+    paths, digits = [], max(2, len(str(len(images) - 1)))
+    for phase, image in enumerate(images):
+        field = np.zeros(labels[0].shape + (3,), np.float32)
+        if phase != reference:
+            now = labels[phase][box]
+            near = _distance(~np.isin(now, list(moving)), image.GetSpacing()) <= NEAR_VOXELS * max(image.GetSpacing())
+            field[box] = _register(_Edges(now, followed, image.GetSpacing()), rest, image, box) * near[..., None]
+            say(f"Phase {phase}: " + _judge(field[box], now, labels[reference][box], moving, image))
+        paths.append(os.path.join(folder, f"phase_{phase:0{digits}d}.vti"))
+        _write(image, field, moving, paths[-1])
     return paths
-
-
-def _outwards(reference, count):
-    """Phases, each with its neighbour on the side of the reference, which comes before it."""
-    yield reference, reference
-    for phase in range(reference + 1, count):
-        yield phase, phase - 1
-    for phase in range(reference - 1, -1, -1):
-        yield phase, phase + 1
 
 
 def _hear(algorithm):
@@ -211,8 +197,8 @@ class _Edges:
         return edge[::self.steps[2], ::self.steps[1], ::self.steps[0]]
 
 
-def _register(now, rest, image, box, transform, start):
-    """u in mm at the voxels of the box. What labels leave open goes on as in the phase before, where `start` has its transform."""
+def _register(now, rest, image, box):
+    """u in mm at the voxels of the box."""
     both = [label for label in now.label if label in rest.label]
     edge = REACH_MM * np.tanh(BAND_MM / REACH_MM)
     bands = {label: (np.abs(now.label[label]) < edge).astype(np.uint8) for label in both}
@@ -222,7 +208,7 @@ def _register(now, rest, image, box, transform, start):
     direction = _direction(image)
     origin = np.array(image.GetOrigin()) + direction @ (spacing * [part.start for part in box[::-1]])
     way = elastix.displacement(pairs, np.maximum.reduce(list(bands.values())), (origin, spacing * now.steps, direction),
-                               GRID_MM, SMOOTHED_MM, BENDING, SAMPLES, transform, start if os.path.exists(start) else None)
+                               GRID_MM, SMOOTHED_MM, BENDING, SAMPLES)
     for axis, step in zip(range(3), now.steps[::-1]):
         way = _refined(way, axis, step, box[axis].stop - box[axis].start)
     return -way
