@@ -32,7 +32,7 @@ struct ChannelChunk
   const float* drive; ///< bins x transmits x (re, im of padded elements)
 };
 
-/// A block of points; those beyond `count` have amplitude 0.
+/// A block of points; those that only fill it up have amplitude 0.
 struct ChannelBlock
 {
   float x[channelBlock], y[channelBlock], z[channelBlock];
