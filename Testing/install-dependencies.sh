@@ -33,7 +33,7 @@ if [[ ${1:-} == tests ]]; then
   )
 fi
 # As the tests know them.
-peers=(highdicom==0.28.2 pyigtl==0.3.4 PyMUST==0.1.9 zea==0.1.8 "jax[cpu]==0.10.2" pyuff_ustb h5py)
+peers=(highdicom==0.28.2 dcmqi==1.5.7 SimpleITK==2.5.7 pyigtl==0.3.4 PyMUST==0.1.9 zea==0.1.8 "jax[cpu]==0.10.2" pyuff_ustb h5py)
 
 fail()
 {

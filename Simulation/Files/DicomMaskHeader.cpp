@@ -145,6 +145,27 @@ void putPosition(DcmItem& groups, const CineInfo& cine, const ProbePose& pose)
   putNumbers(addItem(groups, DCM_PlanePositionSequence), DCM_ImagePositionPatient, { first.x, first.y, first.z });
 }
 
+/// What lies between parallel pictures of a sweep that goes across them, mm, where it is the same between all; else 0.
+double stepAcrossMm(const std::vector<ProbePose>& poses)
+{
+  if (poses.size() < 2)
+  {
+    return 0.0;
+  }
+  const Vec3d across = glm::cross(poses.front().lateral, poses.front().axial);
+  const double stepMm = glm::dot(poses[1].positionMm - poses[0].positionMm, across);
+  for (std::size_t n = 1; n < poses.size(); ++n)
+  {
+    const Vec3d from = poses[n].positionMm - poses[n - 1].positionMm;
+    constexpr double exactMm = 1e-3;
+    if (glm::distance(from, stepMm * across) > exactMm)
+    {
+      return 0.0;
+    }
+  }
+  return std::abs(stepMm);
+}
+
 void putSource(DcmItem& groups, const CineInfo& cine, std::size_t picture)
 {
   DcmItem& derivation = addItem(groups, DCM_DerivationImageSequence);
@@ -188,10 +209,19 @@ void writeMaskHeader(const CineInfo& cine, const std::vector<ProbePose>& poses, 
   DcmItem& shared = addItem(data, DCM_SharedFunctionalGroupsSequence);
   DcmItem& measures = addItem(shared, DCM_PixelMeasuresSequence);
   putNumbers(measures, DCM_PixelSpacing, { cine.pixelMm[1], cine.pixelMm[0] }); // between rows first
-  putNumbers(measures, DCM_SliceThickness, { cine.pixelMm[0] }); // a plane has none; what is not 0 can be shown
   const bool isParallel = std::all_of(poses.begin(), poses.end(), [&](const ProbePose& pose) {
     return orientationOf(pose) == orientationOf(poses.front());
   });
+  const double stepMm = isParallel ? stepAcrossMm(poses) : 0.0;
+  if (stepMm > 0.0)
+  {
+    putNumbers(measures, DCM_SliceThickness, { stepMm });
+    putNumbers(measures, DCM_SpacingBetweenSlices, { stepMm });
+  }
+  else
+  {
+    putNumbers(measures, DCM_SliceThickness, { cine.pixelMm[0] }); // a plane has none; what is not 0 can be shown
+  }
   if (isParallel)
   {
     putOrientation(shared, poses.front());

@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 import numpy as np
+import peers
 import pydicom
 from chain import Chain, listen, make
 from sonovdb.vtkSonoFilters import (vtkSonoDicomWriter, vtkSonoSweep, vtkSonoThoraxSource,
@@ -14,6 +15,15 @@ from sonovdb.vtkSonoFilters import (vtkSonoDicomWriter, vtkSonoSweep, vtkSonoTho
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkTable
+
+
+READ_BY_ITK = """
+import sys
+import numpy as np
+import SimpleITK
+image = SimpleITK.ReadImage(sys.argv[1])
+np.savez(sys.argv[2], greys=SimpleITK.GetArrayFromImage(image), spacing=image.GetSpacing())
+"""
 
 
 def greys_of(image):
@@ -141,6 +151,18 @@ class TestContent(DicomCase):
         dump = subprocess.run(["dcmdump", str(path)], check=True, capture_output=True, text=True).stdout
         self.assertRegex(dump, r"\(0018,1063\) DS \[50\]")
         self.assertRegex(dump, r"\(0028,0008\) IS \[3\]")
+
+
+    @peers.needs("SimpleITK")
+    def test_itk_finds_the_frames_and_their_size(self):
+        """By GDCM, as 3D Slicer opens pictures."""
+        sweep = sweep_of(self.chain, 3)
+        sweep.SetPixelMm(0.4)
+        path = self.written(sweep.GetOutputPort())
+        peers.run(READ_BY_ITK, path, self.folder / "read.npz")
+        read = np.load(self.folder / "read.npz")
+        np.testing.assert_array_equal(read["greys"], greys_of(sweep.GetOutput()))
+        np.testing.assert_allclose(read["spacing"][:2], sweep.GetOutput().GetSpacing()[:2], atol=1e-5)
 
 
 class TestCine(DicomCase):

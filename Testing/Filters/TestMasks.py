@@ -1,4 +1,6 @@
 """Foreign readers, and our own, find in a DICOM Segmentation the labels that the pictures beside it show."""
+import shutil
+import subprocess
 import unittest
 
 import numpy as np
@@ -22,6 +24,26 @@ pixels = segmentation.get_pixels_by_source_frame(source_sop_instance_uid=instanc
                                                  combine_segments=True, assert_missing_frames_are_empty=True)
 names = [segmentation.get_segment_description(n).segment_label for n in segmentation.segment_numbers]
 np.savez(sys.argv[2], pixels=pixels, names=names, uids=[study, series, instance])
+"""
+
+
+# What dcmqi's segimage2itkimage, by which 3D Slicer opens segmentations, has made: places and names of its masks.
+READ_BY_ITK = """
+import json
+import pathlib
+import sys
+import numpy as np
+import SimpleITK
+folder = pathlib.Path(sys.argv[1])
+said = json.loads((folder / "read-meta.json").read_text())["segmentAttributes"]
+masks, names = [], []
+for segment in said:
+    image = SimpleITK.ReadImage(str(folder / f"read-{segment[0]['labelID']}.nrrd"))
+    masks.append(SimpleITK.GetArrayFromImage(image) != 0)
+    names.append(segment[0]["SegmentLabel"])
+corner = [n - 1 for n in image.GetSize()]
+np.savez(folder / "read.npz", masks=masks, names=names, first=image.TransformIndexToPhysicalPoint((0, 0, 0)),
+         last=image.TransformIndexToPhysicalPoint(corner))
 """
 
 
@@ -117,6 +139,35 @@ class TestContent(MaskCase):
         np.testing.assert_array_equal(names[read["pixels"]], wanted)
         beside = pydicom.dcmread(picture)
         self.assertEqual(list(read["uids"]), [beside.StudyInstanceUID, beside.SeriesInstanceUID, beside.SOPInstanceUID])
+
+
+    @peers.needs("dcmqi", "SimpleITK")
+    def test_slicers_reader_finds_masks_and_places(self):
+        """A picture, and a sweep across its plane, whose pictures it takes as slices."""
+        across = np.cross(self.chain.probe.GetLateral(), self.chain.probe.GetAxial())
+        sweep = sweep_of(self.chain, 3, across / np.linalg.norm(across))
+        for algorithm in (self.chain.converter, sweep):
+            path, picture = self.masks(algorithm.GetOutputPort())
+            read = self.folder / "read"
+            read.mkdir()
+            subprocess.run([peers.FOLDER / "bin/segimage2itkimage", "--inputDICOM", path, "--outputDirectory", read,
+                            "--prefix", "read", "--outputType", "nrrd"], check=True, capture_output=True)
+            peers.run(READ_BY_ITK, read)
+            found = np.load(read / "read.npz")
+            image = algorithm.GetOutput()
+            known, planes = names_of(image), labels_of(image)
+            self.assertEqual(sorted(found["names"]), sorted(known[n] for n in np.unique(planes) if n != 0))
+            for mask, name in zip(found["masks"], found["names"]):
+                label, = (n for n, each in known.items() if each == name)
+                np.testing.assert_array_equal(mask, planes == label)
+            width, height, slices = image.GetDimensions()
+            for place, index, n in ((found["first"], (0, 0, 0), 0), (found["last"], (width - 1, height - 1, 0), slices - 1)):
+                wanted = [0, 0, 0]
+                self.chain.converter.GetOutput().TransformIndexToPhysicalPoint(index, wanted)
+                np.testing.assert_allclose(place, wanted + n * across / np.linalg.norm(across), atol=0.01)
+            shutil.rmtree(read)
+            for item in (path, picture):
+                item.unlink()
 
 
 class TestThereAndBack(MaskCase):
