@@ -1,13 +1,11 @@
 """Channel data: PyMUST computes the same signals; files are read back, and beamformed they give our picture's speckle."""
-import importlib.util
 import pathlib
-import subprocess
-import sys
 import tempfile
 import unittest
 
 import h5py
 import numpy as np
+import peers
 from chain import Chain, listen, make, write_labels
 from sonovdb.vtkSonoFilters import (vtkSonoChannelData, vtkSonoImageFormation, vtkSonoLabelMapReader, vtkSonoLineWriter,
                                     vtkSonoProbeSource, vtkSonoRayTracer, vtkSonoSceneBuilder)
@@ -17,7 +15,6 @@ from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 
 SPEED = 1.54  # mm/us
 
-# Programs with the other tool alone, whose libraries would be loaded twice beside ParaView's.
 SIMUS = """
 import sys
 import numpy as np
@@ -72,14 +69,14 @@ with File(sys.argv[1]) as file:
 """
 
 
-def installed(name):
-    return importlib.util.find_spec(name) is not None
-
-
-def run_alone(program, *arguments):
-    result = subprocess.run([sys.executable, "-c", program, *map(str, arguments)], capture_output=True, text=True)
-    if result.returncode != 0:
-        raise AssertionError(result.stderr)
+READ_BY_PYUFF = """
+import sys
+import numpy as np
+import pyuff_ustb
+data = pyuff_ustb.Uff(sys.argv[1]).read("channel_data")
+np.savez(sys.argv[2], rf=data.data[..., 0], counts=[data.N_waves, data.N_elements], source=data.sequence[1].source.z,
+         time=data.initial_time)
+"""
 
 
 def cloud(places, amplitude):
@@ -133,7 +130,7 @@ class FolderCase(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
 
-@unittest.skipUnless(installed("pymust"), "pymust is not installed")
+@peers.needs("pymust")
 class TestPyMust(FolderCase):
     def compare(self, array, places, amplitude, flat=True, step=1.0, **settings):
         """The rms difference of ours and simus's, of simus's, but for a factor of each transmit: simus's scale goes with
@@ -150,7 +147,7 @@ class TestPyMust(FolderCase):
                  height=1e-3 * array["ElevationApertureMm"], focus=1e-3 * array["ElevationFocusMm"], elements=elements,
                  step=step, delays=delays, flat=flat, x=places[:, 0], y=places[:, 1], z=places[:, 2],
                  amplitude=amplitude)
-        run_alone(SIMUS, self.folder / "given.npz", self.folder / "made.npz")
+        peers.run(SIMUS, self.folder / "given.npz", self.folder / "made.npz")
         made = np.load(self.folder / "made.npz")
         pulse = self.folder / "pulse.csv"
         np.savetxt(pulse, np.stack([made["t"], made["pulse"]], axis=1), delimiter=",", header="time_us,amplitude",
@@ -287,24 +284,23 @@ class TestScene(FolderCase):
                 angle = np.radians(10) + (np.pi if sign == -1 else 0)
                 self.assertAlmostEqual(source["azimuth"][0, 0], angle, places=6)
 
-    @unittest.skipUnless(installed("zea"), "zea is not installed")
+    @peers.needs("zea")
     def test_zea_reads_them(self):
         algorithm = self.channels_of(TransmitCount=2, ElementCount=8)
-        run_alone(READ_BY_ZEA, self.written("a.hdf5", algorithm), self.folder / "read.npz")
+        peers.run(READ_BY_ZEA, self.written("a.hdf5", algorithm), self.folder / "read.npz")
         read = np.load(self.folder / "read.npz")
         np.testing.assert_array_equal(read["rf"], np.swapaxes(Channels(algorithm).rf, 1, 2))
 
-    @unittest.skipUnless(installed("pyuff_ustb"), "pyuff_ustb is not installed")
+    @peers.needs("pyuff_ustb")
     def test_pyuff_reads_them(self):
-        import pyuff_ustb
         algorithm = self.channels_of(TransmitCount=2, TransmitKind=vtkSonoChannelData.DIVERGING_WAVES, ElementCount=8)
         channels = Channels(algorithm)
-        data = pyuff_ustb.Uff(str(self.written("a.uff", algorithm))).read("channel_data")
-        np.testing.assert_array_equal(data.data[..., 0], np.transpose(channels.rf, (2, 1, 0)))
-        self.assertEqual((data.N_waves, data.N_elements), (2, 8))
-        wave = data.sequence[1]
-        self.assertLess(wave.source.z, 0)
-        self.assertAlmostEqual(float(data.initial_time), -1e-6 * channels.field("PassUs")[0], delta=1e-12)
+        peers.run(READ_BY_PYUFF, self.written("a.uff", algorithm), self.folder / "read.npz")
+        with np.load(self.folder / "read.npz") as read:
+            np.testing.assert_array_equal(read["rf"], np.transpose(channels.rf, (2, 1, 0)))
+            self.assertEqual(list(read["counts"]), [2, 8])
+            self.assertLess(read["source"], 0)
+            self.assertAlmostEqual(float(read["time"]), -1e-6 * channels.field("PassUs")[0], delta=1e-12)
 
     def test_bad_input_gets_one_sentence(self):
         def sentence(algorithm):
@@ -388,7 +384,7 @@ class TestSpeckle(FolderCase):
     def test_beamformed_speckle_is_as_wide_as_the_picture_s(self):
         self.check_widths(self.beamformed())
 
-    @unittest.skipUnless(installed("pymust"), "pymust is not installed")
+    @peers.needs("pymust")
     def test_beamformed_by_pymust_it_is_as_wide(self):
         channels = self.channels()
         samples = np.arange(channels.rf.shape[-1]) / channels.sampling
@@ -396,7 +392,7 @@ class TestSpeckle(FolderCase):
         x, z = self.places()
         np.savez(self.folder / "given.npz", iq=np.swapaxes(iq, 1, 2), delays=channels.field("TransmitDelaysUs"), x=x,
                  z=z, fc=1e6 * self.carrier, fs=1e6 * channels.sampling, pitch=1e-3 * PHASED["ApertureMm"] / 64)
-        run_alone(DASMTX, self.folder / "given.npz", self.folder / "made.npy")
+        peers.run(DASMTX, self.folder / "given.npz", self.folder / "made.npy")
         self.check_widths(np.load(self.folder / "made.npy"))
 
     def test_beamformed_it_lies_where_the_picture_has_it(self):
