@@ -183,6 +183,14 @@ private:
     showTable("phantom_anechoic.csv", "phantom_anechoic");
     paragraph("Other settings, each the same for all lesions.");
     showTable("phantom_settings.csv", "phantom_settings");
+    heading("The phantom under a real linear probe");
+    paragraph(
+      "H 10 MHz, 40 mm, 60 dB, focus 25 mm, as the screen of a real scanner says; what is real was measured in its "
+      "two pictures. Bandwidth and the smoothing of the picture were chosen by the speckle of plain gel, nothing for "
+      "a target: a mass has the level that its maker states. Where masses have that level and gel's SD is the real "
+      "one, gCNR is 0.83, 0.50 and 0.50 (normal levels in dB), 0.07 off the real ones on average.");
+    showTable("phantom_real.csv", "phantom_real");
+    picture("phantom_real.png", "Anechoic cylinders and masses; wires. Above as the beam has it, below smoothed.");
   }
 
   /// gCNR over the size of the contrast: theory, the seed's real and simulated lesions, and ours.
