@@ -198,6 +198,17 @@ std::string UltrasoundStages::playedKey(const Inputs& inputs)
   return describe(settings_, key) ? key.text() : std::string();
 }
 
+/// Whether an output that nobody uses stays empty: the phase's picture is there, and nothing is to be traced for it.
+bool UltrasoundStages::leavesPlayed(const std::string& key, int port)
+{
+  if (key.empty() || !findPlayed(key) || isOutputWanted(owner_, port))
+  {
+    return false;
+  }
+  left_.insert(port);
+  return true;
+}
+
 bool UltrasoundStages::takePlayed(const std::string& key, vtkInformationVector* output)
 {
   const auto played = key.empty() ? nullptr : std::static_pointer_cast<const PlayedPicture>(findPlayed(key));

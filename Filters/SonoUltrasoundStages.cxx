@@ -364,8 +364,8 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     return;
   }
   simulator_.setScene(vtkSonoSceneHandle::Get(blocks));
-  const std::string played = isImage ? playedKey(inputs) : std::string();
-  if (takePlayed(played, output))
+  const std::string played = playedKey(inputs);
+  if (isImage ? takePlayed(played, output) : leavesPlayed(played, port))
   {
     return;
   }

@@ -110,6 +110,7 @@ private:
   bool takeKept(vtkInformationVector* output);
   void givePicture(vtkPointData* arrays, vtkFieldData* fields, vtkInformationVector* output);
   std::string playedKey(const Inputs& inputs);
+  bool leavesPlayed(const std::string& key, int port);
   bool takePlayed(const std::string& key, vtkInformationVector* output);
   void keepPlayed(const std::string& key, vtkFieldData* fields);
   void keep(vtkFieldData* fields);

@@ -69,7 +69,7 @@ void vtkSonoSceneBuilder::Warn(const std::string& sentence)
   sono::warn(this, sentence);
 }
 
-void vtkSonoSceneBuilder::SetKeptPhasesMegabytes(double megabytes)
+void vtkSonoSceneBuilder::LimitKeptPhasesMegabytes(double megabytes)
 {
   sono::setPlayedLimitBytes(std::size_t(std::max(0.0, megabytes) * 1e6));
 }

@@ -138,7 +138,7 @@ public:
    * first, and so it does while the machine has less than a tenth of its memory left. Default: a quarter of the
    * machine's memory, 4295 at most. 0 keeps none.
    */
-  static void SetKeptPhasesMegabytes(double megabytes);
+  static void LimitKeptPhasesMegabytes(double megabytes);
   static double GetKeptPhasesMegabytes();
   ///@}
 

@@ -90,7 +90,7 @@ class Heart:
 class TestPlayed(unittest.TestCase):
     def setUp(self):
         self.limit = vtkSonoSceneBuilder.GetKeptPhasesMegabytes()
-        self.addCleanup(vtkSonoSceneBuilder.SetKeptPhasesMegabytes, self.limit)
+        self.addCleanup(vtkSonoSceneBuilder.LimitKeptPhasesMegabytes, self.limit)
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
@@ -135,7 +135,7 @@ class TestPlayed(unittest.TestCase):
         self.assertFalse(np.array_equal(moved[1][0][0], first[1][0][0]))
 
     def test_nothing_is_kept_where_nothing_may_be(self):
-        vtkSonoSceneBuilder.SetKeptPhasesMegabytes(0.0)
+        vtkSonoSceneBuilder.LimitKeptPhasesMegabytes(0.0)
         heart = self.heart()
         first = heart.play()
         self.assert_same(heart.play(), first)
@@ -148,7 +148,7 @@ class TestPlayed(unittest.TestCase):
         one = vtkSonoSceneBuilder.GetPhasesMegabytesNow()
         self.assertGreater(one, 0.0)
         bound = 2.6 * one
-        vtkSonoSceneBuilder.SetKeptPhasesMegabytes(bound)
+        vtkSonoSceneBuilder.LimitKeptPhasesMegabytes(bound)
         for time in TIMES:
             heart.at(time)
             self.assertLessEqual(vtkSonoSceneBuilder.GetPhasesMegabytesNow(), bound)
@@ -167,7 +167,7 @@ class TestPlayed(unittest.TestCase):
         full, said = resident_mb(), vtkSonoSceneBuilder.GetPhasesMegabytesNow() - said_before
         self.assertGreater(said, 50.0)
         self.assertLess(full - before, 1.15 * said)  # what is said is no less than what is taken
-        vtkSonoSceneBuilder.SetKeptPhasesMegabytes(0.0)
+        vtkSonoSceneBuilder.LimitKeptPhasesMegabytes(0.0)
         self.assertEqual(vtkSonoSceneBuilder.GetPhasesMegabytesNow(), 0.0)
         self.assertLess(resident_mb(), full - 0.5 * (full - before))
 
