@@ -5,11 +5,13 @@
 #include "SonoImagePlacement.h"
 #include "SonoKeptArrays.h"
 #include "SonoOutputs.h"
+#include "SonoPlayed.h"
 #include "SonoSettings.h"
 #include "SonoStage.h"
 #include "SonoUltrasoundStages.h"
 #include "Trace/TraceDevice.h"
 #include "vtkSonoImageFormation.h"
+#include "vtkSonoRayTracer.h"
 #include "vtkSonoScanConverter.h"
 #include "vtkSonoSceneBuilder.h"
 #include "vtkSonoUltrasound.h"
@@ -34,6 +36,14 @@ namespace {
 using Filter = vtkSonoUltrasound; // of the ports
 
 constexpr const char* keptPicture = "picture";
+
+/// A phase's picture and the fields that it has besides the acquisition.
+struct PlayedPicture
+{
+  vtkSmartPointer<vtkPointData> arrays;
+  vtkSmartPointer<vtkFieldData> fields;
+  std::vector<std::string> warnings;
+};
 
 } // namespace
 
@@ -109,14 +119,8 @@ bool UltrasoundStages::isLeftWanted() const
   return std::any_of(left_.begin(), left_.end(), [this](int port) { return isOutputWanted(owner_, port); });
 }
 
-bool UltrasoundStages::takeKept(vtkInformationVector* output)
+void UltrasoundStages::givePicture(vtkPointData* arrays, vtkFieldData* fields, vtkInformationVector* output)
 {
-  vtkNew<vtkPointData> arrays;
-  vtkNew<vtkFieldData> fields;
-  if (kept_.size() != 3 || !addPackedArrays(kept_[0], arrays) || !addPackedArrays(kept_[1], fields))
-  {
-    return false;
-  }
   arrays->SetActiveScalars("BMode");
   vtkImageData* world = vtkImageData::GetData(output, Filter::IMAGE);
   vtkImageData* flat = vtkImageData::GetData(output, Filter::FLAT_IMAGE);
@@ -128,6 +132,17 @@ bool UltrasoundStages::takeKept(vtkInformationVector* output)
   placement.place(world);
   flat->ShallowCopy(world);
   placement.flat(field_.pose).place(flat);
+}
+
+bool UltrasoundStages::takeKept(vtkInformationVector* output)
+{
+  vtkNew<vtkPointData> arrays;
+  vtkNew<vtkFieldData> fields;
+  if (kept_.size() != 3 || !addPackedArrays(kept_[0], arrays) || !addPackedArrays(kept_[1], fields))
+  {
+    return false;
+  }
+  givePicture(arrays, fields, output);
   for (const std::string& sentence : unpackedSentences(kept_[2]))
   {
     say(sentence);
@@ -158,6 +173,68 @@ void UltrasoundStages::keep(vtkFieldData* fields)
                [](const std::string& sentence) { return !sentence.empty(); });
   sono::keep(keptFolder(scene->GetCacheFolder()), keptPicture, key_,
              { packedArrays(pictureArrays_), packedArrays(fields), packedSentences(warnings) });
+}
+
+/// All that the picture of a phase depends on in this process; empty where it is none, or one of many.
+std::string UltrasoundStages::playedKey(const Inputs& inputs)
+{
+  const DisplaySettings display = converter->DisplaySettings();
+  if (!timeOf(inputs[Filter::LABELS_OR_SCENE]) || field_.preview || owner_->GetErrorMap() ||
+      display.persistence > 0.0 || settings_.tracing.timeBudgetS > 0.0)
+  {
+    return {};
+  }
+  KeyText key;
+  key.add("played picture").add(double(simulator_.scene()->id())).add(double(formation->GetMTime()));
+  for (std::size_t port = 1; port < inputs.size(); ++port)
+  {
+    const std::vector<double> content = inputs[port] ? contentOf(inputs[port]) : std::vector<double>();
+    key.add(double(content.size()));
+    std::for_each(content.begin(), content.end(), [&key](double number) { key.add(number); });
+  }
+  key.add(tracer->GetTargetTissue());
+  describe(field_.pose, key);
+  addParameters(display, key);
+  return describe(settings_, key) ? key.text() : std::string();
+}
+
+/// Whether an output that nobody uses stays empty: the phase's picture is there, and nothing is to be traced for it.
+bool UltrasoundStages::leavesPlayed(const std::string& key, int port)
+{
+  if (key.empty() || !findPlayed(key) || isOutputWanted(owner_, port))
+  {
+    return false;
+  }
+  left_.insert(port);
+  return true;
+}
+
+bool UltrasoundStages::takePlayed(const std::string& key, vtkInformationVector* output)
+{
+  const auto played = key.empty() ? nullptr : std::static_pointer_cast<const PlayedPicture>(findPlayed(key));
+  if (played)
+  {
+    givePicture(played->arrays, played->fields, output);
+    std::for_each(played->warnings.begin(), played->warnings.end(),
+                  [this](const std::string& sentence) { say(sentence); });
+  }
+  return played != nullptr;
+}
+
+void UltrasoundStages::keepPlayed(const std::string& key, vtkFieldData* fields)
+{
+  if (key.empty() || isRefining() || hasBetter())
+  {
+    return;
+  }
+  const auto played = std::make_shared<PlayedPicture>();
+  played->arrays = vtkSmartPointer<vtkPointData>::New();
+  played->arrays->ShallowCopy(pictureArrays_);
+  played->fields = vtkSmartPointer<vtkFieldData>::New();
+  played->fields->ShallowCopy(fields);
+  std::copy_if(traceWarnings_.begin(), traceWarnings_.end(), std::back_inserter(played->warnings),
+               [](const std::string& sentence) { return !sentence.empty(); });
+  sono::keepPlayed(owner_, key, played, 1024 * std::size_t(pictureArrays_->GetActualMemorySize()));
 }
 
 } // namespace sono

@@ -8,6 +8,7 @@
 #include "SonoLineImage.h"
 #include "SonoOutputs.h"
 #include "SonoPaths.h"
+#include "SonoPlayed.h"
 #include "SonoScatterers.h"
 #include "SonoStage.h"
 #include "SonoTargets.h"
@@ -75,7 +76,10 @@ UltrasoundStages::UltrasoundStages(vtkSonoUltrasound* owner)
   listenToBuilder();
 }
 
-UltrasoundStages::~UltrasoundStages() = default;
+UltrasoundStages::~UltrasoundStages()
+{
+  dropPlayed(owner_);
+}
 
 void UltrasoundStages::listenToBuilder()
 {
@@ -360,6 +364,11 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     return;
   }
   simulator_.setScene(vtkSonoSceneHandle::Get(blocks));
+  const std::string played = playedKey(inputs);
+  if (isImage ? takePlayed(played, output) : leavesPlayed(played, port))
+  {
+    return;
+  }
   simulator_.setProgressive(owner_->GetProgressive());
   isImproved_ = simulator_.improve();
   ImageInput image{ field_.pose, settings_, targets(inputs[Filter::TARGETS], blocks), nullptr };
@@ -418,6 +427,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   kept->ShallowCopy(blocks->GetFieldData());
   writeReached(traced.layout(), kept);
   keep(kept);
+  keepPlayed(played, kept);
 }
 
 } // namespace sono

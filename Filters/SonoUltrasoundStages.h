@@ -108,6 +108,11 @@ private:
   std::string keptKey();
   void say(const std::string& sentence);
   bool takeKept(vtkInformationVector* output);
+  void givePicture(vtkPointData* arrays, vtkFieldData* fields, vtkInformationVector* output);
+  std::string playedKey(const Inputs& inputs);
+  bool leavesPlayed(const std::string& key, int port);
+  bool takePlayed(const std::string& key, vtkInformationVector* output);
+  void keepPlayed(const std::string& key, vtkFieldData* fields);
   void keep(vtkFieldData* fields);
   void makeErrorMap(const ImageInput& image, const TracedResult& traced);
 

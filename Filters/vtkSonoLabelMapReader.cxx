@@ -10,6 +10,7 @@
 #include "SonoContentKey.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
+#include "SonoPlayed.h"
 #include "SonoStage.h"
 #include "SonoVtkImageFile.h"
 
@@ -126,7 +127,10 @@ vtkSonoLabelMapReader::vtkSonoLabelMapReader()
   this->SetProgressText("Reading the label map");
 }
 
-vtkSonoLabelMapReader::~vtkSonoLabelMapReader() = default;
+vtkSonoLabelMapReader::~vtkSonoLabelMapReader()
+{
+  sono::dropPlayed(this);
+}
 
 void vtkSonoLabelMapReader::PrintSelf(ostream& os, vtkIndent indent)
 {
@@ -263,6 +267,7 @@ int vtkSonoLabelMapReader::CanReadFile(const char* fileName)
 int vtkSonoLabelMapReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
+    sono::dropPlayed(this); // other files, or they are to be read again
     this->Times = timesOf(this->FileNames);
     vtkInformation* outInfo = output->GetInformationObject(0);
     const std::string& first = this->FileNames[0];
@@ -294,9 +299,14 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
     const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time + 1e-9);
     const int phase = std::max(0, static_cast<int>(after - this->Times.begin()) - 1);
 
+    vtkImageData* image = vtkImageData::GetData(output);
+    if (this->Times.size() > 1 && sono::takePlayedPhase(this, phase, image))
+    {
+      image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[std::size_t(phase)]);
+      return;
+    }
     vtkNew<vtkImageData> vti;
     sono::LabelVolume volume = this->ReadPhase(phase, vti);
-    vtkImageData* image = vtkImageData::GetData(output);
     int announced[6];
     outInfo->Get(Pipeline::WHOLE_EXTENT(), announced);
     sono::imageFromLabelVolume(std::move(volume), image);
@@ -311,6 +321,7 @@ int vtkSonoLabelMapReader::RequestData(vtkInformation*, vtkInformationVector**, 
     if (this->Times.size() > 1)
     {
       image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[std::size_t(phase)]);
+      sono::keepPlayedPhase(this, phase, image);
     }
   });
 }

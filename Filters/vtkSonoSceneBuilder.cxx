@@ -12,6 +12,7 @@
 #include "SonoContentKey.h"
 #include "SonoDataFile.h"
 #include "SonoLabelImage.h"
+#include "SonoPlayed.h"
 #include "SonoSceneBlocks.h"
 #include "SonoSettings.h"
 #include "SonoSharedAnatomy.h"
@@ -41,7 +42,10 @@ vtkSonoSceneBuilder::vtkSonoSceneBuilder()
   this->SetProgressText("Building the anatomy");
 }
 
-vtkSonoSceneBuilder::~vtkSonoSceneBuilder() = default;
+vtkSonoSceneBuilder::~vtkSonoSceneBuilder()
+{
+  sono::dropPlayed(this);
+}
 
 void vtkSonoSceneBuilder::PrintSelf(ostream& os, vtkIndent indent)
 {
@@ -63,6 +67,21 @@ void vtkSonoSceneBuilder::Warn(const std::string& sentence)
 {
   this->Warnings.push_back(sentence);
   sono::warn(this, sentence);
+}
+
+void vtkSonoSceneBuilder::LimitKeptPhasesMegabytes(double megabytes)
+{
+  sono::setPlayedLimitBytes(std::size_t(std::max(0.0, megabytes) * 1e6));
+}
+
+double vtkSonoSceneBuilder::GetKeptPhasesMegabytes()
+{
+  return 1e-6 * double(sono::playedLimitBytes());
+}
+
+double vtkSonoSceneBuilder::GetPhasesMegabytesNow()
+{
+  return 1e-6 * double(sono::playedBytes());
 }
 
 void vtkSonoSceneBuilder::ClearCache()
@@ -185,10 +204,15 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     else
     {
       anatomy = this->Build(input, cached);
-      sono::shareAnatomy(vtkImageData::GetData(input[0]), labels, key, *anatomy);
+      ++this->BuiltAnatomies;
+      sono::shareAnatomy(vtkImageData::GetData(input[0]), labels, key, *anatomy, this);
     }
     const std::shared_ptr<const sono::Scene>& scene = anatomy->scene;
     vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
+    if (sono::takePlayedBlocks(*scene, this->BuildSurfaces, blocks))
+    {
+      return;
+    }
     if (this->BuildSurfaces)
     {
       // Several labels at a time; the blocks are then made one by one.
@@ -201,5 +225,6 @@ int vtkSonoSceneBuilder::RequestData(vtkInformation*, vtkInformationVector** inp
     }
     sono::writeLabelTable(scene->volume().labels, blocks->GetFieldData());
     vtkSonoSceneHandle::Attach(scene, anatomy->tissues, blocks);
+    sono::keepPlayedBlocks(vtkImageData::GetData(input[0]), *scene, this->BuildSurfaces, blocks, this);
   });
 }

@@ -131,6 +131,27 @@ public:
    */
   void ClearCache();
 
+  ///@{
+  /**
+   * What phases of a motion that were played may take in this process, in megabytes: their label maps, anatomies,
+   * surfaces and pictures are kept for the next play while their filters live. What was not used for longest goes
+   * first, and so it does while the machine has less than a tenth of its memory left. Default: a quarter of the
+   * machine's memory, 4295 at most. 0 keeps none.
+   */
+  static void LimitKeptPhasesMegabytes(double megabytes);
+  static double GetKeptPhasesMegabytes();
+  ///@}
+
+  /**
+   * What they take now, megabytes.
+   */
+  static double GetPhasesMegabytesNow();
+
+  /**
+   * How many anatomies this filter has built, others' and kept ones not among them.
+   */
+  vtkGetMacro(BuiltAnatomies, int);
+
   /**
    * Of all settings that the anatomy depends on, and of the tables that they name. Empty where one cannot be read.
    */
@@ -175,6 +196,7 @@ private:
   int FillBody = FILL_AUTO;
   std::string CacheFolder = "auto";
   bool BuildSurfaces = true;
+  int BuiltAnatomies = 0;
   std::vector<std::string> Warnings; // of the anatomy that is being built
 };
 

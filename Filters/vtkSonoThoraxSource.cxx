@@ -2,6 +2,7 @@
 
 #include "Phantoms/ThoraxPhantom.h"
 #include "SonoLabelImage.h"
+#include "SonoPlayed.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 
@@ -42,7 +43,10 @@ vtkSonoThoraxSource::vtkSonoThoraxSource()
   this->SetProgressText("Making the thorax");
 }
 
-vtkSonoThoraxSource::~vtkSonoThoraxSource() = default;
+vtkSonoThoraxSource::~vtkSonoThoraxSource()
+{
+  sono::dropPlayed(this);
+}
 
 void vtkSonoThoraxSource::PrintSelf(ostream& os, vtkIndent indent)
 {
@@ -55,6 +59,7 @@ int vtkSonoThoraxSource::RequestInformation(vtkInformation*, vtkInformationVecto
 {
   return sono::announceStage(this, [&] {
     vtkInformation* outInfo = output->GetInformationObject(0);
+    sono::dropPlayed(this); // they are of other settings
     this->Volume = makeVolume(this->SpacingMm, 0.0);
     sono::announceLabelImage(this->Volume->placement, outInfo);
     outInfo->Remove(Pipeline::TIME_STEPS());
@@ -80,20 +85,29 @@ int vtkSonoThoraxSource::RequestData(vtkInformation*, vtkInformationVector**, vt
     const double asked =
       this->Phases > 1 && outInfo->Has(Pipeline::UPDATE_TIME_STEP()) ? outInfo->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
     // The last phase that has begun.
-    const double begun = std::floor(asked * this->Phases + 1e-9) / this->Phases;
-    const double phase = std::clamp(begun, 0.0, double(this->Phases - 1) / this->Phases);
-    const auto volume = this->Volume && phase == 0.0 ? std::move(this->Volume) : makeVolume(this->SpacingMm, phase);
-    this->Volume = nullptr;
+    const int phase = std::clamp(int(std::floor(asked * this->Phases + 1e-9)), 0, this->Phases - 1);
+    const double time = double(phase) / this->Phases;
     vtkImageData* image = vtkImageData::GetData(output);
+    if (this->Phases > 1 && sono::takePlayedPhase(this, phase, image))
+    {
+      image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+      return;
+    }
+    const auto volume = this->Volume && phase == 0 ? std::move(this->Volume) : makeVolume(this->SpacingMm, time);
+    this->Volume = nullptr;
     sono::imageFromLabelVolume(*volume, image);
     if (this->Phases > 1)
     {
-      sono::addMotion(sono::thoraxDisplacementMm(volume->placement, atPhase(phase)), sono::thoraxMovingLabels(), image);
-      image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), phase);
+      sono::addMotion(sono::thoraxDisplacementMm(volume->placement, atPhase(time)), sono::thoraxMovingLabels(), image);
+      image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
     }
     const sono::ProbePose pose = sono::thoraxPhantomA4C();
     sono::writeVector("A4CPositionMm", pose.positionMm, image->GetFieldData());
     sono::writeVector("A4CAxial", pose.axial, image->GetFieldData());
     sono::writeVector("A4CLateral", pose.lateral, image->GetFieldData());
+    if (this->Phases > 1)
+    {
+      sono::keepPlayedPhase(this, phase, image);
+    }
   });
 }

@@ -4,6 +4,8 @@
 #include "Labels/HeartByShape.h"
 #include "Labels/LabelCode.h"
 
+#include <utility>
+
 namespace sono {
 
 namespace {
@@ -32,6 +34,17 @@ std::string warningOfGuesses(const std::vector<LabelInfo>& labels)
             : "");
 }
 
+/// With what to say of a heart that is solid muscle.
+std::vector<std::string> withHeart(const LabelVolume& volume, std::vector<std::string> sentences)
+{
+  if (hasHeartWithoutChambers(volume))
+  {
+    sentences.emplace_back("The heart is one label without blood in it: its chambers are missing and will look like "
+                           "muscle; take a segmentation that has chambers.");
+  }
+  return sentences;
+}
+
 } // namespace
 
 std::vector<std::string> prepareBody(LabelVolume& volume, const LabelTissueMap& map, const TissueTable& table,
@@ -46,7 +59,13 @@ std::vector<std::string> prepareBody(LabelVolume& volume, const LabelTissueMap& 
   {
     sentences.push_back(heart + (heart.empty() ? "" : " ") + guesses);
   }
-  const BodyEnd end = fill == BodyFillMode::Auto ? bodyEnd(volume, unmapped) : BodyEnd::Skin;
+  const BodyEnd end = fill == BodyFillMode::On ? BodyEnd::Skin : bodyEnd(volume, unmapped);
+  if (fill == BodyFillMode::Off && end != BodyEnd::Skin)
+  {
+    sentences.emplace_back("The label map has no skin and Fill Body is Off: the probe stands on bare organs or on the "
+                           "cut; set Fill Body to Auto or On, and press Find Window if the probe was moved.");
+    return withHeart(volume, std::move(sentences));
+  }
   if (end == BodyEnd::NoSkin)
   {
     fillBody(volume, settings);
@@ -65,12 +84,7 @@ std::vector<std::string> prepareBody(LabelVolume& volume, const LabelTissueMap& 
   {
     assignTissues(volume, map, table, fallbackTissue); // of what was added
   }
-  if (hasHeartWithoutChambers(volume))
-  {
-    sentences.emplace_back("The heart is one label without blood in it: its chambers are missing and will look like "
-                           "muscle; take a segmentation that has chambers.");
-  }
-  return sentences;
+  return withHeart(volume, std::move(sentences));
 }
 
 } // namespace sono

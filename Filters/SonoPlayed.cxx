@@ -1,0 +1,174 @@
+#include "SonoPlayed.h"
+
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+
+#include <vtksys/SystemInformation.hxx>
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <list>
+#include <malloc.h>
+#include <utility>
+
+namespace sono {
+namespace {
+
+constexpr std::size_t mostBytes = std::size_t(4) << 30;
+constexpr double shareOfMemory = 0.25;
+constexpr double leastFree = 0.1; // of the machine's memory
+
+struct Played
+{
+  const void* owner;
+  std::string key;
+  std::shared_ptr<const void> thing;
+  std::size_t bytes;
+};
+
+class Machine
+{
+public:
+  Machine() { system_.RunMemoryCheck(); }
+  double totalBytes() { return 1024.0 * double(system_.GetHostMemoryTotal()); }
+  double freeShare() { return 1.0 - double(system_.GetHostMemoryUsed()) / double(system_.GetHostMemoryTotal()); }
+
+private:
+  vtksys::SystemInformation system_;
+};
+
+struct Store
+{
+  std::list<Played> things; // last used first
+  std::size_t bytes = 0;
+  std::size_t limit = std::min(mostBytes, std::size_t(shareOfMemory* Machine().totalBytes()));
+
+  void remove(std::list<Played>::iterator thing)
+  {
+    bytes -= thing->bytes;
+    things.erase(thing);
+  }
+  void removeLast() { remove(std::prev(things.end())); }
+  void trim()
+  {
+    const std::size_t before = bytes;
+    while (!things.empty() && bytes > limit)
+    {
+      removeLast();
+    }
+    Machine machine;
+    while (things.size() > 1 && machine.freeShare() < leastFree)
+    {
+      removeLast();
+    }
+    giveBack(before);
+  }
+  /// The C library keeps what was freed for its own next use, unless it is asked.
+  void giveBack(std::size_t before)
+  {
+#ifdef __GLIBC__
+    if (bytes < before)
+    {
+      malloc_trim(0);
+    }
+#endif
+  }
+  std::list<Played>::iterator find(const std::string& key)
+  {
+    return std::find_if(things.begin(), things.end(), [&](const Played& played) { return played.key == key; });
+  }
+};
+
+/// Never destroyed: filters that outlive the program's globals still drop what they kept.
+Store& store()
+{
+  static Store& all = *new Store;
+  return all;
+}
+
+std::string phaseKey(const void* source, int phase)
+{
+  return "phase " + std::to_string(reinterpret_cast<std::uintptr_t>(source)) + " " + std::to_string(phase);
+}
+
+} // namespace
+
+std::size_t playedLimitBytes()
+{
+  return store().limit;
+}
+
+void setPlayedLimitBytes(std::size_t bytes)
+{
+  store().limit = bytes;
+  store().trim();
+}
+
+std::size_t playedBytes()
+{
+  return store().bytes;
+}
+
+std::shared_ptr<const void> findPlayed(const std::string& key)
+{
+  std::list<Played>& things = store().things;
+  const auto found = store().find(key);
+  if (found == things.end())
+  {
+    return nullptr;
+  }
+  things.splice(things.begin(), things, found);
+  return found->thing;
+}
+
+void keepPlayed(const void* owner, const std::string& key, std::shared_ptr<const void> thing, std::size_t bytes)
+{
+  const auto before = store().find(key);
+  if (before != store().things.end())
+  {
+    store().remove(before);
+  }
+  if (bytes <= store().limit)
+  {
+    store().things.push_front({ owner, key, std::move(thing), bytes });
+    store().bytes += bytes;
+    store().trim();
+  }
+}
+
+void dropPlayed(const void* owner)
+{
+  std::list<Played>& things = store().things;
+  const std::size_t before = store().bytes;
+  for (auto thing = things.begin(); thing != things.end();)
+  {
+    const auto next = std::next(thing);
+    if (thing->owner == owner)
+    {
+      store().remove(thing);
+    }
+    thing = next;
+  }
+  store().giveBack(before);
+}
+
+bool takePlayedPhase(const void* source, int phase, vtkImageData* image)
+{
+  const auto kept = std::static_pointer_cast<const vtkSmartPointer<vtkImageData>>(findPlayed(phaseKey(source, phase)));
+  if (kept)
+  {
+    image->ShallowCopy(*kept);
+  }
+  return kept != nullptr;
+}
+
+void keepPlayedPhase(const void* source, int phase, vtkImageData* image)
+{
+  // A copy: the pipeline empties its own.
+  const auto copy = std::make_shared<vtkSmartPointer<vtkImageData>>(vtkSmartPointer<vtkImageData>::New());
+  (*copy)->ShallowCopy(image);
+  keepPlayed(source, phaseKey(source, phase), copy, 1024 * std::size_t((*copy)->GetActualMemorySize()));
+}
+
+} // namespace sono
