@@ -1,5 +1,6 @@
 #include "SonoScannerSettings.h"
 
+#include "pqDoubleLineEdit.h"
 #include "pqPropertyWidget.h"
 #include "pqPropertyWidgetDecorator.h"
 #include "pqProxyWidget.h"
@@ -15,6 +16,8 @@
 #include <cstring>
 
 namespace {
+
+constexpr int numberWidth = 64;
 
 /// A property, by the name that it has on a scanner.
 struct Knob
@@ -92,6 +95,10 @@ void SonoScannerSettings::addRow(QGridLayout* grid, vtkSMProxy* ultrasound, cons
   auto* label = new QLabel(QCoreApplication::translate("SonoScannerSettings", text), this);
   label->setToolTip(QString("<p>%1: %2</p>").arg(property->GetXMLLabel(), pqPropertyWidget::getTooltip(property)));
   widget->setToolTip(label->toolTip());
+  for (auto* number : widget->findChildren<pqDoubleLineEdit*>())
+  {
+    number->setMaximumWidth(numberWidth); // the room is the slider's
+  }
   const int row = grid->rowCount();
   grid->addWidget(label, row, 0);
   grid->addWidget(widget, row, 1);

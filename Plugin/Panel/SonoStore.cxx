@@ -1,5 +1,6 @@
 #include "SonoStore.h"
 
+#include "pqUndoStack.h"
 #include "vtkPVDataInformation.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSessionProxyManager.h"
@@ -24,6 +25,7 @@ QString sonoStorePicture(vtkSMSourceProxy* ultrasound, const QString& file)
     return QCoreApplication::translate(
       "SonoStore", "A matrix probe makes a volume, which is no picture; save it by File > Save Data.");
   }
+  SCOPED_UNDO_EXCLUDE(); // a writer comes and goes
   const auto writer = vtkSmartPointer<vtkSMWriterProxy>::Take(
     vtkSMWriterProxy::SafeDownCast(ultrasound->GetSessionProxyManager()->NewProxy("writers", "EchoPictureWriter")));
   SM_SCOPED_TRACE(SaveData)

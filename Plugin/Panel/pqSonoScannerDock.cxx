@@ -75,7 +75,8 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
                                    tr("Write the flat picture as PNG, the transducer on top, into the folder that is "
                                       "asked for at the first time."));
   QObject::connect(storeAct, &QAction::triggered, this, [this] { store(); });
-  QAction* folderAct = new QAction(tr("..."), this);
+  QAction* folderAct = new QAction(tr("Store in..."), this);
+  folderAct->setIconText("...");
   folderAct->setToolTip(tr("Choose another folder for stored pictures."));
   QObject::connect(folderAct, &QAction::triggered, this, [this] { chooseFolder(); });
   QAction* flipAct = this->addAct("Flip", tr("Flip"), Qt::Key_F8,
