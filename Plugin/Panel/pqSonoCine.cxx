@@ -57,9 +57,6 @@ pqSonoCine::pqSonoCine(QWidget* parent)
   grid->addWidget(rate_, 1, 1, 1, 2);
   grid->setColumnStretch(1, 1);
   clock_.start();
-  look_.setSingleShot(true);
-  look_.setInterval(0);
-  QObject::connect(&look_, &QTimer::timeout, this, [this] { look(); });
   QObject::connect(scrubber_, &QSlider::valueChanged, this, [this](int at) {
     this->showState();
     if (frozen_ && static_cast<std::size_t>(at) < poses_.size())
@@ -74,14 +71,15 @@ void pqSonoCine::follow(pqPipelineSource* source)
 {
   if (source_)
   {
-    source_->disconnect(&look_);
+    source_->disconnect(this);
   }
   source_ = source;
   poses_.clear();
   times_.clear();
   if (source_)
   {
-    QObject::connect(source_, SIGNAL(dataUpdated(pqPipelineSource*)), &look_, SLOT(start()));
+    QObject::connect(source_, QOverload<pqPipelineSource*>::of(&pqPipelineSource::dataUpdated), this,
+                     [this] { look(); });
   }
   this->showState();
 }
@@ -92,6 +90,7 @@ void pqSonoCine::setFrozen(bool frozen)
   this->showState();
 }
 
+/// Several times for a picture that several views show.
 void pqSonoCine::look()
 {
   if (!source_ || frozen_ || vtkSMPropertyHelper(source_->getProxy(), "Preview").GetAsInt() != 1)

@@ -4,7 +4,6 @@
 
 #include <QElapsedTimer>
 #include <QPointer>
-#include <QTimer>
 #include <QWidget>
 
 #include <deque>
@@ -39,7 +38,6 @@ private:
   std::deque<SonoWindow> poses_;
   std::deque<qint64> times_; // of the last pictures, ms
   QElapsedTimer clock_;
-  QTimer look_; // once for all that a picture updates
   QSlider* scrubber_;
   QLabel* place_;
   QLabel* rate_;

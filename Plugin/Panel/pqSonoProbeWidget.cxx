@@ -21,7 +21,6 @@
 #include "pqView.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
-#include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
@@ -34,6 +33,7 @@
 #include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QGridLayout>
+#include <QGuiApplication>
 #include <QLabel>
 #include <QPushButton>
 #include <QToolButton>
@@ -47,7 +47,7 @@ constexpr int restMs = 300;
 constexpr int idleMs = 200;
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
 
-/// Which has an anatomy to look at.
+/// Which has an anatomy.
 bool isUltrasound(vtkSMProxy* proxy)
 {
   return proxy->GetXMLName() == std::string("SonoUltrasound");
@@ -62,8 +62,7 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   vtkSMPropertyHelper(smproxy, "PrepareInteraction", true).Set(1);
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
-  grid->setHorizontalSpacing(4);
-  grid->setVerticalSpacing(4);
+  grid->setSpacing(4);
   for (const char* function : poseFunctions)
   {
     this->addRow(grid, function);
@@ -407,7 +406,8 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
-  if (this->proxy()->GetSession()->GetPendingProgress())
+  const bool isScrubbed = this->Asked && QGuiApplication::mouseButtons() != Qt::NoButton; // a slider is held
+  if (isScrubbed || this->proxy()->GetSession()->GetPendingProgress())
   {
     this->Rest.start();
     return;

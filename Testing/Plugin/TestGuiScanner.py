@@ -51,7 +51,7 @@ class TestGuiScanner(GuiCase):
 
     def assert_step(self, drawn, setting, at_first, then):
         """Pictures with another value of a setting lie between two with the first, which are the same. The first of them."""
-        values = [line[setting] for line in drawn]
+        values = [round(line[setting], 6) if isinstance(line[setting], float) else line[setting] for line in drawn]
         changed = values.index(then)
         self.assertIn(at_first, values[changed:], f"{setting} was not undone")
         before, after = drawn[changed - 1], drawn[values.index(at_first, changed)]
@@ -123,9 +123,11 @@ class TestGuiScanner(GuiCase):
         # The scrubber at its third and second place shows the third and the second picture of the drag as they were.
         self.assertEqual([line["picture"] for line in scrubbed], [dragged[2]["picture"], dragged[1]["picture"]])
         self.assertEqual(scrubbed[1]["Lateral"], dragged[1]["Lateral"])
-        resting = drawn[drawn.index(scrubbed[1]) + 1:]
+        resting = drawn[len(drawn) - drawn[::-1].index(scrubbed[1]):]
         self.assertEqual(resting[0]["Preview"], 0)
         self.assertEqual(resting[0]["Lateral"], scrubbed[1]["Lateral"])
+        self.assertEqual(resting[1]["Lateral"], scrubbed[0]["Lateral"])  # undone
+        resting = resting[1:]
         self.assertEqual(resting[1]["Lateral"], dragged[5]["Lateral"])  # undone
         # Frozen: the probe turned and the depth was changed; only the gain is seen.
         self.assertEqual(resting[2]["Lateral"], dragged[5]["Lateral"])
@@ -188,7 +190,7 @@ class TestGuiScanner(GuiCase):
             self.assertGreater(sum(a * b for a, b in zip(one, other)), 0.999)
 
     def test_grey_without_a_filter(self):
-        """With one sentence; and again when the filter is deleted."""
+        """With one sentence, when it is deleted."""
         with tempfile.TemporaryDirectory() as folder:
             self.play_panel("scanner_grey.xml", folder)
 
@@ -196,7 +198,8 @@ class TestGuiScanner(GuiCase):
         """Gain, depth, flip and freeze by keys while the panel is open, wherever the focus is; not while it is shut."""
         def act(person):
             person.await_file("begun.pvsm")
-            person.move(600, 450)  # where the keys go
+            person.click(1000, 227)  # a label of the panel: the window has the keys then
+            person.move(600, 450)
             for keys in (("F8",), ("Alt_L", "Prior"), ("Alt_L", "Prior"), ("Alt_L", "Shift_L", "Next"), ("F6",),
                          ("Alt_L", "Shift_L", "Next"), ("Alt_L", "Next")):
                 time.sleep(2.5)
