@@ -20,7 +20,7 @@ LoadState(sys.argv[1])
 (name,) = [name for name, _ in GetSources() if name.startswith("ultrasound")]
 found = FindSource(name)
 found.UpdatePipeline()
-picture = servermanager.Fetch(OutputPort(found, 7))
+picture = found.SMProxy.GetClientSideObject().GetOutputDataObject(7)
 grey = picture.GetPointData().GetArray("BMode")
 with open(sys.argv[2], "w", encoding="utf-8") as file:
     json.dump({"Tgc8Db": found.Tgc8Db, "bounds": picture.GetBounds(),
