@@ -42,7 +42,8 @@ def watch(*_):
         if source.SMProxy.GetXMLName() == "SonoUltrasound" and source not in turned:
             turned.append(source)
             source.SMProxy.GetProperty("GainDb").AddObserver(
-                "UncheckedPropertyModifiedEvent", lambda *_: print(time.perf_counter(), "gain", -1, file=drawn))
+                "UncheckedPropertyModifiedEvent",
+                lambda gain, _: print(time.perf_counter(), "gain", gain.GetUncheckedElement(0), file=drawn))
 servermanager.ProxyManager().SMProxyManager.AddObserver("RegisterEvent", watch)
 """
 
@@ -91,7 +92,11 @@ for name, mode in (("flat", "2D"), ("body", "3D")):
     print(f"drawn_{name}_median_frame_s {between[len(between) // 2]:.4g} s")
     print(f"drawn_{name}_worst_frame_s {between[-1]:.4g} s")
 print(f"drawn_first_frame_s {min(moving) - press[0]:.4g} s")  # from the button's press on
-gains = [float(time) for time, what, _ in drawn if what == "gain"]
+gains = {}  # when each was first asked for; at rest the last one is set again
+for time, what, gain in drawn:
+    if what == "gain" and float(gain) != 0.0:
+        gains.setdefault(gain, float(time))
+gains = sorted(gains.values())
 rest = max(time for time in (float(t) for t, of, preview in drawn if (of, preview) == ("2D", "0")) if time < gains[0])
 print(f"drawn_rest_s {rest - moving[-1]:.4g} s")  # until the full picture of the last pose lies in the flat view
 # Each step until the flat view has been drawn after it; a step that the next one overtook counts until then as well.
