@@ -2,7 +2,6 @@
 
 #include "SonoMovingViews.h"
 #include "SonoWaiting.h"
-#include "pqSonoPresetWidget.h"
 #include "pqSonoStop.h"
 
 #include "pqApplicationCore.h"
@@ -29,6 +28,12 @@ namespace {
 
 constexpr int settledMs = 300;
 
+/// Of a probe, what no scan line stands by: how it is scanned while it moves.
+bool isOfMoving(const std::string& name)
+{
+  return name == "Preview" || name == "PrepareInteraction";
+}
+
 bool isText(vtkSMProxy* proxy, const std::string& name)
 {
   return vtkSMStringVectorProperty::SafeDownCast(proxy->GetProperty(name.c_str())) != nullptr;
@@ -36,11 +41,12 @@ bool isText(vtkSMProxy* proxy, const std::string& name)
 
 } // namespace
 
-pqSonoLiveSettings::pqSonoLiveSettings(vtkSMProxy* proxy, std::function<bool()> isLive,
+pqSonoLiveSettings::pqSonoLiveSettings(vtkSMProxy* proxy, std::function<bool()> isLive, std::function<bool()> mayScan,
                                        std::function<void()> beforePicture, QObject* parentObject)
   : QObject(parentObject)
   , Proxy(proxy)
   , IsLive(std::move(isLive))
+  , MayScan(std::move(mayScan))
   , BeforePicture(std::move(beforePicture))
 {
   const auto all = vtkSmartPointer<vtkSMPropertyIterator>::Take(proxy->NewPropertyIterator());
@@ -60,12 +66,13 @@ pqSonoLiveSettings::pqSonoLiveSettings(vtkSMProxy* proxy, std::function<bool()> 
         pqCoreUtilities::connect(setting, event, this, SLOT(displayChanged()));
       }
     }
-    else if (stage == "Probe" || stage == "SonoProbeSource")
+    else if (((stage == "Probe" || stage == "SonoProbeSource") && !isOfMoving(all->GetKey())) ||
+             all->GetKey() == std::string("TargetErrorDb"))
     {
-      this->Probe[all->GetKey()];
+      this->Scan[all->GetKey()];
+      pqCoreUtilities::connect(setting, vtkCommand::UncheckedPropertyModifiedEvent, this, SLOT(scanChanged()));
     }
   }
-  pqCoreUtilities::connect(proxy, pqSonoPresetWidget::ChosenEvent, this, SLOT(presetChosen()));
   this->Frame.setSingleShot(true);
   this->Frame.setInterval(0);
   QObject::connect(&this->Frame, &QTimer::timeout, this, [this] { showStep(); });
@@ -139,12 +146,11 @@ void pqSonoLiveSettings::displayChanged()
   }
 }
 
-void pqSonoLiveSettings::presetChosen()
+void pqSonoLiveSettings::scanChanged()
 {
-  if (this->isLive())
+  if (!this->IsSetting && this->isLive() && this->MayScan())
   {
     this->begin();
-    this->IsPreset = true;
     this->Rest.start();
   }
 }
@@ -191,11 +197,14 @@ void pqSonoLiveSettings::rest()
     return;
   }
   Settings after = this->applied(this->Before);
-  if (this->IsPreset)
+  if (this->MayScan())
   {
-    after.merge(this->waiting(this->Probe));
+    after.merge(this->waiting(this->Scan));
   }
-  this->IsPreset = false;
+  if (after.empty())
+  {
+    return; // as when the probe's widget has set its depth itself
+  }
   if (shown)
   {
     shown->drawInFull();

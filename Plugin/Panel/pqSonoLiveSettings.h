@@ -15,22 +15,24 @@ class vtkSMProxy;
 /**
  * What "Live" does with a probe's settings beside its pose: those of the display (gain, dynamic range, TGC, grey map
  * and all else behind the RF lines) are shown with each step of a slider, and when they have rested for a moment, they
- * are set once more as one step of undo and of the trace. A preset that is chosen is scanned at once. What else waits
- * for Apply goes on waiting.
+ * are set once more as one step of undo and of the trace. What is scanned anew (depth, sector, frequency, focus, lines,
+ * a preset, the target error) is scanned when it has rested and no mouse button is held, one step as well. What else
+ * waits for Apply goes on waiting.
  */
 class pqSonoLiveSettings : public QObject
 {
   Q_OBJECT
 
 public:
-  /// `isLive`: whether nothing waits. `beforePicture` is called before a picture in full is made.
-  pqSonoLiveSettings(vtkSMProxy* proxy, std::function<bool()> isLive, std::function<void()> beforePicture,
-                     QObject* parent);
+  /// `isLive`: whether nothing waits. `mayScan`: whether lines are scanned meanwhile, as by a probe that rests and is
+  /// not frozen. `beforePicture` is called before a picture in full is made.
+  pqSonoLiveSettings(vtkSMProxy* proxy, std::function<bool()> isLive, std::function<bool()> mayScan,
+                     std::function<void()> beforePicture, QObject* parent);
   ~pqSonoLiveSettings() override;
 
 private Q_SLOTS:
   void displayChanged();
-  void presetChosen();
+  void scanChanged();
 
 private:
   Q_DISABLE_COPY(pqSonoLiveSettings)
@@ -53,13 +55,13 @@ private:
 
   vtkSMProxy* Proxy;
   std::function<bool()> IsLive;
+  std::function<bool()> MayScan;
   std::function<void()> BeforePicture;
   Settings Display; // its values do not count
-  Settings Probe;
+  Settings Scan;    // nor do these
   QTimer Frame;
   QTimer Rest;
   bool NothingWaits = false; // beside
-  bool IsPreset = false;
   bool IsSetting = false;
   Settings Before;                        // of what was changed since it last rested
   std::unique_ptr<SonoMovingViews> Shown; // from the first step until it rests

@@ -6,6 +6,7 @@
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 #include "pqServerManagerModel.h"
+#include "vtkCommand.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -170,7 +171,6 @@ void pqSonoPresetWidget::fill(const QStringList& preset)
   {
     vtkSMUncheckedPropertyHelper(this->proxy(), this->Columns[i].toUtf8().data()).Set(preset[i].toDouble());
   }
-  this->proxy()->InvokeEvent(ChosenEvent);
   Q_EMIT this->changeAvailable();
   Q_EMIT this->changeFinished();
 }

@@ -2,7 +2,6 @@
 #define pqSonoPresetWidget_h
 
 #include "pqPropertyWidget.h"
-#include "vtkCommand.h"
 
 #include <QStringList>
 #include <QVector>
@@ -17,9 +16,6 @@ class pqSonoPresetWidget : public pqPropertyWidget
   using Superclass = pqPropertyWidget;
 
 public:
-  /// Invoked on the proxy when a preset has filled in its numbers, before they wait for Apply.
-  static constexpr unsigned long ChosenEvent = vtkCommand::UserEvent + 1;
-
   pqSonoPresetWidget(vtkSMProxy* proxy, vtkSMProperty* property, QWidget* parent = nullptr);
 
   void apply() override;

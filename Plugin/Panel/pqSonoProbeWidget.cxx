@@ -1,7 +1,9 @@
 #include "pqSonoProbeWidget.h"
 
 #include "SonoFlatView.h"
+#include "SonoFreeze.h"
 #include "SonoMovingViews.h"
+#include "SonoProbeGroup.h"
 #include "SonoWaiting.h"
 #include "SonoWindows.h"
 #include "pqSonoLiveSettings.h"
@@ -19,9 +21,7 @@
 #include "pqView.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
-#include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMPropertyIterator.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
@@ -33,6 +33,7 @@
 #include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QGridLayout>
+#include <QGuiApplication>
 #include <QLabel>
 #include <QPushButton>
 #include <QToolButton>
@@ -45,31 +46,8 @@ namespace {
 constexpr int restMs = 300;
 constexpr int idleMs = 200;
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
-/// The group and, so that the widget follows them, the properties that lay out the scan lines.
-vtkSmartPointer<vtkSMPropertyGroup> withLayout(vtkSMProxy* proxy, vtkSMPropertyGroup* group)
-{
-  auto all = vtkSmartPointer<vtkSMPropertyGroup>::New();
-  for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
-  {
-    vtkSMProperty* property = group->GetProperty(i);
-    all->AddProperty(group->GetFunction(property), property, group->GetPropertyName(i));
-  }
-  vtkSMProxy* drawn =
-    proxy->GetSessionProxyManager()->GetPrototypeProxy("representations", "SonoProbeWidgetRepresentation");
-  const auto names = vtkSmartPointer<vtkSMPropertyIterator>::Take(drawn->NewPropertyIterator());
-  for (names->Begin(); !names->IsAtEnd(); names->Next())
-  {
-    const char* name = names->GetKey();
-    vtkSMProperty* property = proxy->GetProperty(name);
-    if (property && !all->GetProperty(name))
-    {
-      all->AddProperty(name, property, name);
-    }
-  }
-  return all;
-}
 
-/// Which has an anatomy to look at.
+/// Which has an anatomy.
 bool isUltrasound(vtkSMProxy* proxy)
 {
   return proxy->GetXMLName() == std::string("SonoUltrasound");
@@ -77,15 +55,14 @@ bool isUltrasound(vtkSMProxy* proxy)
 } // namespace
 
 pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
-  : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, withLayout(smproxy, group), parentObject)
+  : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, sonoLayout(smproxy, group), parentObject)
   , Refining(smproxy)
 {
   // Somebody may drag this probe. It is no change of an image and waits for no Apply.
   vtkSMPropertyHelper(smproxy, "PrepareInteraction", true).Set(1);
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
-  grid->setHorizontalSpacing(4);
-  grid->setVerticalSpacing(4);
+  grid->setSpacing(4);
   for (const char* function : poseFunctions)
   {
     this->addRow(grid, function);
@@ -134,10 +111,11 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Live->setObjectName("Live");
   this->Live->setChecked(true);
   this->Live->setToolTip(tr("Scans while the probe moves, in full when it rests; shows the display's settings, as the "
-                            "gain, with each step; and "
-                            "scans with a preset once it is chosen. Off: as it stands on Apply."));
+                            "gain, with each step; and scans when depth, sector, frequency, focus, lines or a preset "
+                            "were changed. Off: as it stands on Apply."));
   new pqSonoLiveSettings(
-    smproxy, [this] { return this->isLive(); }, [this] { this->Refining.begin(); }, this);
+    smproxy, [this] { return this->isLive(); }, [this] { return this->mayScan() && !this->Moving; },
+    [this] { this->Refining.begin(); }, this);
   grid->addWidget(show, row + 5, 0, 1, 2);
   grid->addWidget(this->Live, row + 5, 2, 1, 2);
   if (isUltrasound(smproxy))
@@ -231,6 +209,26 @@ bool pqSonoProbeWidget::isLive() const
   return this->Live->isChecked() && source && source->modifiedState() != pqProxy::UNINITIALIZED;
 }
 
+/// While it is frozen, only what the scanner's panel asks for.
+bool pqSonoProbeWidget::mayScan() const
+{
+  return this->isLive() && (this->Asked || !sonoIsFrozen(this->proxy()));
+}
+
+void pqSonoProbeWidget::turn(double degrees)
+{
+  this->Asked = true;
+  this->start();
+  this->probe()->Rotate(degrees);
+  this->takePose();
+}
+
+void pqSonoProbeWidget::goTo(const SonoWindow& place)
+{
+  this->Asked = true;
+  this->stand(place);
+}
+
 void pqSonoProbeWidget::start()
 {
   this->Refining.pause();
@@ -256,7 +254,7 @@ void pqSonoProbeWidget::start()
 void pqSonoProbeWidget::move()
 {
   this->showMessage();
-  if (this->isLive() && !this->Frame.isActive())
+  if (this->mayScan() && !this->Frame.isActive())
   {
     this->Frame.start();
   }
@@ -382,7 +380,7 @@ void pqSonoProbeWidget::push(const QList<QPair<QString, QVector<double>>>& value
 
 void pqSonoProbeWidget::showMoving()
 {
-  if (!this->isLive() || !this->Moving)
+  if (!this->mayScan() || !this->Moving)
   {
     return;
   }
@@ -408,7 +406,8 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
-  if (this->proxy()->GetSession()->GetPendingProgress())
+  const bool isScrubbed = this->Asked && QGuiApplication::mouseButtons() != Qt::NoButton; // a slider is held
+  if (isScrubbed || this->proxy()->GetSession()->GetPendingProgress())
   {
     this->Rest.start();
     return;
@@ -416,7 +415,9 @@ void pqSonoProbeWidget::rest()
   this->Frame.stop();
   this->Moving = false;
   std::unique_ptr<SonoMovingViews> shown = std::move(this->Shown);
-  if (!this->isLive())
+  const bool wanted = this->mayScan();
+  this->Asked = false;
+  if (!wanted)
   {
     return;
   }

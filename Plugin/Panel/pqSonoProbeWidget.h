@@ -47,6 +47,12 @@ public:
 
   void setView(pqView* view) override;
 
+  ///@{
+  /// Turns the probe about its axis, or has it stand elsewhere, as by hand; "Live" shows it even where it is frozen.
+  void turn(double degrees);
+  void goTo(const SonoWindow& place);
+  ///@}
+
 protected Q_SLOTS:
   void placeWidget() override {}
 
@@ -72,6 +78,7 @@ private:
   void findSkin();
   vtkSonoProbeRepresentation* probe() const;
   bool isLive() const;
+  bool mayScan() const;
   QList<QPair<QString, QVector<double>>> pose() const;
   void push(const QList<QPair<QString, QVector<double>>>& pose, bool preview);
   void showMessage();
@@ -84,6 +91,7 @@ private:
   QTimer Rest;
   QTimer Prepare; // fires when the view has not been drawn for a moment
   bool Moving = false;
+  bool Asked = false; // by turn or goTo, until it rests
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests

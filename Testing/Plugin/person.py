@@ -94,11 +94,17 @@ class Person:
                 break
         raise TimeoutError(f"nothing coloured at ({x}, {y})")
 
-    def press_quit(self):
-        control, q = (self.display.keysym_to_keycode(XK.string_to_keysym(name)) for name in ("Control_L", "q"))
-        for kind, key in ((X.KeyPress, control), (X.KeyPress, q), (X.KeyRelease, q), (X.KeyRelease, control)):
-            xtest.fake_input(self.display, kind, key)
+    def press(self, *names):
+        """Keys together, by their names in X, the last one last."""
+        keys = [self.display.keysym_to_keycode(XK.string_to_keysym(name)) for name in names]
+        for key in keys:
+            xtest.fake_input(self.display, X.KeyPress, key)
+        for key in reversed(keys):
+            xtest.fake_input(self.display, X.KeyRelease, key)
         self.display.sync()
+
+    def press_quit(self):
+        self.press("Control_L", "q")
 
     def close_window(self):
         """As the cross in a window's frame does."""

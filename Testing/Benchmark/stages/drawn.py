@@ -1,5 +1,6 @@
 # The drag of the one filter as a person makes it: in ParaView's window on a screen without a GPU, the layout with the translucent
-# thorax at 1 mm, each picture drawn. Counts what the flat view and the one with the body show. Needs Xvfb.
+# thorax at 1 mm, each picture drawn. Counts what the flat view and the one with the body show; then steps of the gain's slider in the
+# scanner's panel until they are in the flat view. Needs Xvfb.
 import os
 import pathlib
 import sys
@@ -9,11 +10,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Plugin"))
 from guicase import GuiCase
 
 MOVES = 40
+GAINS = range(52, 72)  # places of the slider, in hundredths of its length
 FROM, TO = (0.5625, 0.6426), (0.47, 0.60)  # in the view with the body: where the probe lies at first, and up the chest
 BODY = ("pqClientMainWindow/centralwidget/MultiViewWidget/CoreWidget/qt_tabwidget_stackedwidget/MultiViewWidget2/"
         "Container/Frame.1/CentralWidgetFrame/Viewport")
+PANEL = "pqClientMainWindow/pqSonoScannerDock/SonoScannerContents/SonoScannerScroll/qt_scrollarea_viewport/SonoScannerControls/"
 
-# Inside ParaView: the thorax, and the time at which each view of the layout has been drawn.
+# Inside ParaView: the thorax, the time at which each view of the layout has been drawn, and when a hand moved what.
 SCRIPT = """
 from paraview import servermanager, simple
 import os, time
@@ -21,6 +24,7 @@ thorax = simple.ThoraxPhantom(Spacingmm=1)
 simple.SetActiveSource(thorax)
 drawn = open(os.environ["SONOVDB_DRAWN"], "w", buffering=1)
 watched = set()
+turned = []
 def watch(*_):
     for view in simple.GetRenderViews():
         if view.SMProxy.GetGlobalIDAsString() not in watched:
@@ -32,6 +36,14 @@ def watch(*_):
                     if source.SMProxy.GetXMLName() == "SonoUltrasound":
                         print(time.perf_counter(), view.InteractionMode, source.Preview, file=drawn)
             view.SMProxy.AddObserver("EndEvent", note)
+            view.SMProxy.GetInteractor().AddObserver(
+                "LeftButtonPressEvent", lambda *_: print(time.perf_counter(), "press", -1, file=drawn), 1000.0)
+    for source in simple.GetSources().values():
+        if source.SMProxy.GetXMLName() == "SonoUltrasound" and source not in turned:
+            turned.append(source)
+            source.SMProxy.GetProperty("GainDb").AddObserver(
+                "UncheckedPropertyModifiedEvent",
+                lambda gain, _: print(time.perf_counter(), "gain", gain.GetUncheckedElement(0), file=drawn))
 servermanager.ProxyManager().SMProxyManager.AddObserver("RegisterEvent", watch)
 """
 
@@ -48,8 +60,10 @@ def playback():
     pause = event("pqClientMainWindow", "pause", "8000")
     simulate = event("pqClientMainWindow/SonoToolBar/actionSonoSimulate", "activate")
     hover = move[0].replace(",0,1,0)", ",0,0,0)")
-    return "<pqevents>\n" + "".join([simulate, pause, pause, hover, press[0], *move[1:], release[-1], pause]) + \
-        "</pqevents>\n"
+    panel = event("pqClientMainWindow/SonoToolBar/SonoScannerButton", "activate")
+    gains = [event(PANEL + "SonoScannerSettings/GainDb/DoubleRangeWidget/Slider", "set_int", place) for place in GAINS]
+    return "<pqevents>\n" + "".join([simulate, pause, pause, hover, press[0], *move[1:], release[-1], pause, panel, pause,
+                                    *gains, pause]) + "</pqevents>\n"
 
 
 GuiCase.setUpClass()
@@ -67,6 +81,8 @@ finally:
     GuiCase.tearDownClass()
 
 moving = [float(time) for time, _, preview in drawn if preview == "1"]
+press = [float(time) for time, what, _ in drawn if what == "press"]
+flat = [float(time) for time, of, _ in drawn if of == "2D"]
 for name, mode in (("flat", "2D"), ("body", "3D")):
     times = [float(time) for time, of, preview in drawn if (of, preview) == (mode, "1")]
     if len(times) < MOVES / 4:
@@ -75,5 +91,15 @@ for name, mode in (("flat", "2D"), ("body", "3D")):
     print(f"drawn_{name}_frames_per_s {(len(times) - 1) / (times[-1] - times[0]):.4g} 1/s")
     print(f"drawn_{name}_median_frame_s {between[len(between) // 2]:.4g} s")
     print(f"drawn_{name}_worst_frame_s {between[-1]:.4g} s")
-rest = max(float(time) for time, of, preview in drawn if (of, preview) == ("2D", "0"))
+print(f"drawn_first_frame_s {min(moving) - press[0]:.4g} s")  # from the button's press on
+gains = {}  # when each was first asked for; at rest the last one is set again
+for time, what, gain in drawn:
+    if what == "gain" and float(gain) != 0.0:
+        gains.setdefault(gain, float(time))
+gains = sorted(gains.values())
+rest = max(time for time in (float(t) for t, of, preview in drawn if (of, preview) == ("2D", "0")) if time < gains[0])
 print(f"drawn_rest_s {rest - moving[-1]:.4g} s")  # until the full picture of the last pose lies in the flat view
+# Each step until the flat view has been drawn after it; a step that the next one overtook counts until then as well.
+steps = sorted(1e3 * (min(at for at in flat if at > step) - step) for step in gains if any(at > step for at in flat))
+print(f"drawn_gain_step_ms {steps[len(steps) // 2]:.4g} ms")
+print(f"drawn_gain_worst_ms {steps[-1]:.4g} ms")

@@ -1,0 +1,338 @@
+#include "pqSonoScannerDock.h"
+
+#include "SonoFreeze.h"
+#include "SonoScannerSettings.h"
+#include "SonoStore.h"
+#include "pqSonoCine.h"
+#include "pqSonoProbeWidget.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqFileDialog.h"
+#include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
+#include "pqServerManagerModel.h"
+#include "vtkCommand.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMUncheckedPropertyHelper.h"
+
+#include <QAction>
+#include <QDateTime>
+#include <QGridLayout>
+#include <QLabel>
+#include <QMainWindow>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QTimer>
+#include <QToolBar>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace {
+
+constexpr double gainStepDb = 1.0;
+constexpr double depthStepMm = 10.0;
+
+double dot(const std::vector<double>& a, const std::vector<double>& b)
+{
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+std::vector<double> numbersOf(pqPipelineSource* source, const char* property)
+{
+  return vtkSMPropertyHelper(source->getProxy(), property).GetDoubleArray();
+}
+
+bool isVolumeProbe(pqPipelineSource* source)
+{
+  constexpr int matrix = 3;
+  return vtkSMPropertyHelper(source->getProxy(), "ScanKind").GetAsInt() == matrix;
+}
+
+} // namespace
+
+pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
+  : QDockWidget(tr("Ultrasound Scanner"), parent)
+  , message_(new QLabel)
+  , scroll_(new QScrollArea)
+  , controls_(new QWidget)
+  , rows_(new QVBoxLayout(controls_))
+  , cine_(new pqSonoCine)
+{
+  freezeAct_ = this->addAct("Freeze", tr("Freeze"), Qt::Key_F6,
+                            tr("The picture stays while the probe moves and scan settings change; gain and grey still "
+                               "act on it. Again: what was changed meanwhile is applied."));
+  freezeAct_->setCheckable(true);
+  QObject::connect(freezeAct_, &QAction::toggled, this, [this](bool frozen) { freeze(frozen); });
+  QAction* storeAct = this->addAct("Store", tr("Store"), Qt::Key_F7,
+                                   tr("Write the flat picture as PNG, the transducer on top, into the folder that is "
+                                      "asked for at the first time."));
+  QObject::connect(storeAct, &QAction::triggered, this, [this] { store(); });
+  QAction* folderAct = new QAction(tr("Store in..."), this);
+  folderAct->setIconText("...");
+  folderAct->setToolTip(tr("Choose another folder for stored pictures."));
+  QObject::connect(folderAct, &QAction::triggered, this, [this] { chooseFolder(); });
+  QAction* flipAct = this->addAct("Flip", tr("Flip"), Qt::Key_F8,
+                                  tr("Left to right: turns the probe by 180 degrees about its axis, and its marker "
+                                     "with it."));
+  QObject::connect(flipAct, &QAction::triggered, this, [this] {
+    if (pqSonoProbeWidget* widget = probeWidget())
+    {
+      widget->turn(180.0);
+    }
+  });
+  planeAct_ = this->addAct("Plane", tr("Plane"), Qt::Key_F9,
+                           tr("Of a matrix probe: turns it by 90 degrees to the second of its two planes; again: "
+                              "back."));
+  planeAct_->setCheckable(true);
+  QObject::connect(planeAct_, &QAction::triggered, this, [this] { turnPlane(); });
+  this->addNudge("GainUp", tr("More Gain"), Qt::ALT + Qt::Key_PageUp, "GainDb", gainStepDb);
+  this->addNudge("GainDown", tr("Less Gain"), Qt::ALT + Qt::Key_PageDown, "GainDb", -gainStepDb);
+  this->addNudge("Shallower", tr("Less Depth"), Qt::ALT + Qt::SHIFT + Qt::Key_PageUp, "DepthMm", -depthStepMm);
+  this->addNudge("Deeper", tr("More Depth"), Qt::ALT + Qt::SHIFT + Qt::Key_PageDown, "DepthMm", depthStepMm);
+
+  controls_->setObjectName("SonoScannerControls");
+  rows_->setContentsMargins(4, 0, 4, 0);
+  auto* buttons = new QGridLayout;
+  int place = 0;
+  for (QAction* act : { freezeAct_, storeAct, folderAct, flipAct, planeAct_ })
+  {
+    auto* button = new QToolButton;
+    button->setDefaultAction(act);
+    button->setObjectName(act == folderAct ? QString("Folder") : act->objectName().mid(int(strlen("actionSono"))));
+    button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    buttons->addWidget(button, 0, place);
+    ++place;
+  }
+  rows_->addLayout(buttons);
+  rows_->addWidget(cine_);
+  QObject::connect(cine_, &pqSonoCine::scrubbed, this, [this](const SonoWindow& at) {
+    if (pqSonoProbeWidget* widget = probeWidget())
+    {
+      widget->goTo(at);
+    }
+  });
+  rows_->addStretch();
+
+  message_->setObjectName("SonoScannerMessage");
+  message_->setWordWrap(true);
+  auto* contents = new QWidget;
+  contents->setObjectName("SonoScannerContents");
+  auto* all = new QVBoxLayout(contents);
+  all->setContentsMargins(4, 4, 0, 4);
+  all->addWidget(message_);
+  scroll_->setObjectName("SonoScannerScroll");
+  scroll_->setWidgetResizable(true);
+  scroll_->setFrameShape(QFrame::NoFrame);
+  scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll_->setWidget(controls_);
+  all->addWidget(scroll_);
+  this->setWidget(contents);
+
+  auto* active = &pqActiveObjects::instance();
+  QObject::connect(active, &pqActiveObjects::sourceChanged, this, [this](pqPipelineSource* source) { follow(source); });
+  QObject::connect(pqApplicationCore::instance()->getServerManagerModel(), &pqServerManagerModel::preSourceRemoved,
+                   this, [this](pqPipelineSource* source) {
+                     if (source == source_)
+                     {
+                       source_ = nullptr;
+                       fill();
+                     }
+                   });
+  QObject::connect(this, &QDockWidget::visibilityChanged, this, [this] { enable(); });
+  this->toggleViewAction()->setObjectName("actionSonoScanner");
+  this->toggleViewAction()->setIcon(QIcon(":/sono/scanner.svg"));
+  this->toggleViewAction()->setToolTip(tr("The scanner's panel: depth, gain, freeze and the like"));
+  // The tool bar may come later than this.
+  QTimer::singleShot(0, this, [this] {
+    if (auto* bar = pqCoreUtilities::mainWidget()->findChild<QToolBar*>("SonoToolBar"))
+    {
+      bar->addAction(this->toggleViewAction());
+      bar->widgetForAction(this->toggleViewAction())->setObjectName("SonoScannerButton");
+    }
+  });
+  this->hide(); // until it is asked for
+  source_ = nullptr;
+  this->fill();
+  this->follow(active->activeSource());
+}
+
+QAction* pqSonoScannerDock::addAct(const char* name, const QString& text, const QKeySequence& key,
+                                   const QString& toolTip)
+{
+  auto* act = new QAction(text, this);
+  act->setObjectName(QString("actionSono") + name);
+  act->setShortcut(key);
+  act->setAutoRepeat(false);
+  act->setToolTip(QString("%1 (%2)").arg(toolTip, key.toString(QKeySequence::NativeText)));
+  pqCoreUtilities::mainWidget()->addAction(act); // wherever in the window the focus is
+  acts_.push_back(act);
+  return act;
+}
+
+void pqSonoScannerDock::addNudge(const char* name, const QString& text, const QKeySequence& key, const char* property,
+                                 double step)
+{
+  QAction* act = this->addAct(name, text, key, text);
+  act->setAutoRepeat(true);
+  QObject::connect(act, &QAction::triggered, this, [this, property, step] { nudge(property, step); });
+}
+
+void pqSonoScannerDock::say(const QString& sentence)
+{
+  message_->setText(sentence);
+  message_->setVisible(!sentence.isEmpty());
+}
+
+void pqSonoScannerDock::follow(pqPipelineSource* selected)
+{
+  const bool isOurs = selected && std::strcmp(selected->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+  if (isOurs && selected != source_) // another selection leaves it as it is
+  {
+    source_ = selected;
+    this->fill();
+  }
+}
+
+void pqSonoScannerDock::fill()
+{
+  delete settings_;
+  firstAxial_.clear();
+  firstLateral_.clear();
+  cine_->follow(source_);
+  if (source_)
+  {
+    settings_ = new SonoScannerSettings(
+      source_->getProxy(), [this] { markChanged(); }, controls_);
+    rows_->insertWidget(rows_->count() - 1, settings_);
+    scroll_->setMinimumWidth(controls_->minimumSizeHint().width() + scroll_->verticalScrollBar()->sizeHint().width());
+    for (const char* name : { "Lateral", "ScanKind" })
+    {
+      pqCoreUtilities::connect(source_->getProxy()->GetProperty(name), vtkCommand::ModifiedEvent, this,
+                               SLOT(showPlane()));
+    }
+  }
+  this->say(source_ ? QString() : tr("Select a Simulate Ultrasound in the pipeline browser; this panel then sets it."));
+  this->enable();
+}
+
+/// Keys act while the panel can be seen.
+void pqSonoScannerDock::enable()
+{
+  controls_->setEnabled(source_ != nullptr);
+  for (QAction* act : acts_)
+  {
+    act->setEnabled(source_ && this->isVisible());
+  }
+  const QSignalBlocker quiet(freezeAct_);
+  freezeAct_->setChecked(source_ && sonoIsFrozen(source_->getProxy()));
+  cine_->setFrozen(freezeAct_->isChecked());
+  this->showPlane();
+}
+
+/// As the properties panel does with each change of its own.
+void pqSonoScannerDock::markChanged()
+{
+  if (source_ && source_->modifiedState() == pqProxy::UNMODIFIED)
+  {
+    source_->setModifiedState(pqProxy::MODIFIED);
+  }
+}
+
+void pqSonoScannerDock::nudge(const char* property, double step)
+{
+  vtkSMUncheckedPropertyHelper number(source_->getProxy(), property);
+  const bool isDepth = std::strcmp(property, "DepthMm") == 0;
+  number.Set(isDepth ? std::max(number.GetAsDouble() + step, depthStepMm) : number.GetAsDouble() + step);
+  this->markChanged();
+}
+
+void pqSonoScannerDock::freeze(bool frozen)
+{
+  source_->setProperty(sonoFrozen, frozen);
+  cine_->setFrozen(frozen);
+  auto* panel = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
+  if (!frozen && panel && source_->modifiedState() == pqProxy::MODIFIED)
+  {
+    panel->apply(); // the scan goes on where the probe is now
+  }
+}
+
+bool pqSonoScannerDock::chooseFolder()
+{
+  // Where the filter runs: of a remote server, its folders.
+  pqFileDialog dialog(source_->getServer(), pqCoreUtilities::mainWidget(), tr("Store pictures in"), folder_, QString());
+  dialog.setObjectName("SonoStoreDialog");
+  dialog.setFileMode(pqFileDialog::Directory);
+  if (dialog.exec() != QDialog::Accepted || dialog.getSelectedFiles().isEmpty())
+  {
+    return false;
+  }
+  folder_ = dialog.getSelectedFiles()[0];
+  return true;
+}
+
+void pqSonoScannerDock::store()
+{
+  if (folder_.isEmpty() && !this->chooseFolder())
+  {
+    return;
+  }
+  const QString time = QDateTime::currentDateTime().toString("yyyyMMdd_HHmmss_zzz");
+  const QString file = QString("%1/ultrasound_%2.png").arg(folder_, time);
+  const QString refusal = sonoStorePicture(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), file);
+  this->say(refusal.isEmpty() ? tr("Stored as %1.").arg(file) : refusal);
+}
+
+/// Whether it stands at a right angle to how it stood when the other plane was asked for, straight into the same place.
+bool pqSonoScannerDock::isPlaneTurned() const
+{
+  if (firstLateral_.empty())
+  {
+    return false;
+  }
+  const std::vector<double> axial = numbersOf(source_, "Axial");
+  const std::vector<double> lateral = numbersOf(source_, "Lateral");
+  const auto cosine = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return dot(a, b) / std::sqrt(dot(a, a) * dot(b, b));
+  };
+  return cosine(axial, firstAxial_) > 0.999 && std::abs(cosine(lateral, firstLateral_)) < 0.05;
+}
+
+void pqSonoScannerDock::turnPlane()
+{
+  const bool back = this->isPlaneTurned();
+  if (!back)
+  {
+    firstAxial_ = numbersOf(source_, "Axial");
+    firstLateral_ = numbersOf(source_, "Lateral");
+  }
+  if (pqSonoProbeWidget* widget = this->probeWidget())
+  {
+    widget->turn(back ? -90.0 : 90.0);
+  }
+  this->showPlane();
+}
+
+void pqSonoScannerDock::showPlane()
+{
+  planeAct_->setEnabled(source_ && this->isVisible() && isVolumeProbe(source_));
+  planeAct_->setChecked(source_ && this->isPlaneTurned());
+}
+
+/// Of the source, in the properties panel.
+pqSonoProbeWidget* pqSonoScannerDock::probeWidget() const
+{
+  const auto widgets = pqCoreUtilities::mainWidget()->findChildren<pqSonoProbeWidget*>();
+  const auto found = std::find_if(widgets.begin(), widgets.end(), [this](pqSonoProbeWidget* widget) {
+    return source_ && widget->proxy() == source_->getProxy();
+  });
+  return found == widgets.end() ? nullptr : *found;
+}

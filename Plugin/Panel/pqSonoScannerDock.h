@@ -1,0 +1,61 @@
+#pragma once
+
+#include <QDockWidget>
+#include <QPointer>
+#include <QStringList>
+
+#include <vector>
+
+class QAction;
+class QKeySequence;
+class QLabel;
+class QScrollArea;
+class QVBoxLayout;
+class pqPipelineSource;
+class pqSonoCine;
+class pqSonoProbeWidget;
+
+/// The scanner's panel: the properties of the Simulate Ultrasound that was selected last that a sonographer knows, in
+/// ParaView's own widgets, and freeze, cine loop, store, flip and the other plane. Like the properties panel it changes
+/// what waits for Apply; "Live" (pqSonoLiveSettings, pqSonoProbeWidget) then shows it. Its keys act while it is open.
+class pqSonoScannerDock : public QDockWidget
+{
+  Q_OBJECT
+
+public:
+  explicit pqSonoScannerDock(QWidget* parent = nullptr);
+
+private Q_SLOTS:
+  void showPlane();
+
+private:
+  /// A key, and what it does; none of them repeats while it is held but those of `nudge`.
+  QAction* addAct(const char* name, const QString& text, const QKeySequence& key, const QString& toolTip);
+  void addNudge(const char* name, const QString& text, const QKeySequence& key, const char* property, double step);
+  void follow(pqPipelineSource* selected);
+  void fill();
+  void enable();
+  void markChanged();
+  void nudge(const char* property, double step);
+  void freeze(bool frozen);
+  void store();
+  bool chooseFolder();
+  void turnPlane();
+  bool isPlaneTurned() const;
+  pqSonoProbeWidget* probeWidget() const;
+  void say(const QString& sentence);
+
+  QPointer<pqPipelineSource> source_;
+  std::vector<QAction*> acts_;
+  QAction* freezeAct_;
+  QAction* planeAct_;
+  QLabel* message_;
+  QScrollArea* scroll_;
+  QWidget* controls_;
+  QVBoxLayout* rows_;
+  QPointer<QWidget> settings_; // of the source
+  pqSonoCine* cine_;
+  QString folder_;                 // where pictures are stored
+  std::vector<double> firstAxial_; // before the other plane was asked for
+  std::vector<double> firstLateral_;
+};
