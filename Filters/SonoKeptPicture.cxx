@@ -124,6 +124,7 @@ bool UltrasoundStages::takeKept(vtkInformationVector* output)
   world->GetFieldData()->Initialize();
   world->GetFieldData()->PassData(fields);
   world->GetFieldData()->PassData(acquisition_);
+  writeGreySettings(settings_.bmode, world->GetFieldData());
   world->GetPointData()->ShallowCopy(arrays);
   placement.place(world);
   flat->ShallowCopy(world);
