@@ -43,6 +43,9 @@ void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsign
   {
     vtkSMPropertyHelper(representation, "MapScalars").Set(0); // the colours themselves
     vtkSMPropertyHelper(representation, "Opacity").Set(0.2);
+    // Where two structures touch, the surfaces of both lie in one place and would flicker through each other.
+    constexpr int cullBackface = 401;
+    vtkSMPropertyHelper(representation, "BackfaceRepresentation", true).Set(cullBackface);
     vtkSMPVRepresentationProxy::SetScalarColoring(representation, "Color", vtkDataObject::CELL);
     representation->UpdateVTKObjects();
   }

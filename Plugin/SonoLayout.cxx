@@ -238,7 +238,7 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
   return solid;
 }
 
-void sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second)
+vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second)
 {
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = first->GetSessionProxyManager();
@@ -258,4 +258,5 @@ void sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second)
   {
     view->StillRender();
   }
+  return solid;
 }

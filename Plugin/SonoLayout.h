@@ -14,4 +14,4 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
 
 /// A tab "Split Screen" with the body of the first of two Simulate Ultrasounds, and the flat views of both side by
 /// side.
-void sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);
+vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);

@@ -6,15 +6,17 @@
 #include "pqLinksModel.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
+#include "pqView.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineController.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMViewProxy.h"
 #include "vtkSmartPointer.h"
 
 #include <initializer_list>
 
-pqPipelineSource* sonoSplitScreen(pqPipelineSource* first)
+SonoSplit sonoSplitScreen(pqPipelineSource* first)
 {
   auto* one = vtkSMSourceProxy::SafeDownCast(first->getProxy());
   auto other = vtkSmartPointer<vtkSMSourceProxy>::Take(
@@ -34,6 +36,6 @@ pqPipelineSource* sonoSplitScreen(pqPipelineSource* first)
                            other, name);
   }
   second->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
-  sonoShowSplitLayout(one, other);
-  return second;
+  vtkSMProxy* body = sonoShowSplitLayout(one, other);
+  return { second, pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(body) };
 }

@@ -3,6 +3,7 @@
 #include "SonoFlatView.h"
 #include "SonoOutputFilter.h"
 #include "SonoSplitScreen.h"
+#include "pqSonoCaliperFollow.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -45,6 +46,14 @@ pqRenderView* flatView()
   return found == views.end() ? nullptr : *found;
 }
 
+int numberOfCalipers()
+{
+  const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
+  return int(std::count_if(sources.begin(), sources.end(), [](const pqPipelineSource* source) {
+    return std::strcmp(source->getProxy()->GetXMLName(), "SonoCaliper") == 0;
+  }));
+}
+
 bool isShown(pqRenderView* view, const char* kind)
 {
   const SonoShownImage image = view ? sonoFlatImageOf(view->getProxy()) : SonoShownImage();
@@ -61,15 +70,15 @@ pqPipelineSource* ultrasoundOf(pqRenderView* view)
            : nullptr;
 }
 
-/// In the middle of what a view shows, so that each point can be seen and dragged.
-void place(vtkSMProxy* caliper, pqRenderView* view)
+/// In the middle of what a view shows, so that each point can be seen and dragged; a little below the `before` others.
+void place(vtkSMProxy* caliper, pqRenderView* view, int before)
 {
+  constexpr int places = 5;
   vtkCamera* camera = view->getRenderViewProxy()->GetActiveCamera();
   const double* at = camera->GetFocalPoint();
   const double reachMm = 0.3 * camera->GetParallelScale();
-  const double points[3][3] = { { at[0] - reachMm, at[1], 0.0 },
-                                { at[0] + reachMm, at[1], 0.0 },
-                                { at[0], at[1] + reachMm, 0.0 } };
+  const double y = at[1] + 0.4 * reachMm * (before % places - 1);
+  const double points[3][3] = { { at[0] - reachMm, y, 0.0 }, { at[0] + reachMm, y, 0.0 }, { at[0], y + reachMm, 0.0 } };
   vtkSMPropertyHelper(caliper, "Point1Mm").Set(points[0], 3);
   vtkSMPropertyHelper(caliper, "Point2Mm").Set(points[1], 3);
   vtkSMPropertyHelper(caliper, "Point3Mm").Set(points[2], 3);
@@ -86,6 +95,7 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
   this->setIcon(QIcon(":/sono/caliper.svg"));
   this->setToolTip(tr("Text, labels, calipers and split screen of the flat view"));
   this->setPopupMode(QToolButton::InstantPopup);
+  new pqSonoCaliperFollow(this);
   auto* menu = new QMenu(this);
   menu->setObjectName("SonoFlatMenu");
   this->setMenu(menu);
@@ -156,10 +166,11 @@ void pqSonoFlatMenu::measure(int kind, const QString& step)
     return;
   }
   BEGIN_UNDO_SET(step);
+  const int before = numberOfCalipers();
   pqPipelineSource* caliper =
     pqApplicationCore::instance()->getObjectBuilder()->createSource("sources", "SonoCaliper", view->getServer());
   vtkSMPropertyHelper(caliper->getProxy(), "Kind").Set(kind);
-  place(caliper->getProxy(), view);
+  place(caliper->getProxy(), view, before);
   caliper->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
   vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
   controller->Show(vtkSMSourceProxy::SafeDownCast(caliper->getProxy()), 0, view->getViewProxy());
@@ -174,9 +185,11 @@ void pqSonoFlatMenu::split()
   if (pqPipelineSource* first = ultrasoundOf(flatView()))
   {
     BEGIN_UNDO_SET(tr("Split Screen"));
-    pqPipelineSource* second = sonoSplitScreen(first);
+    const SonoSplit split = sonoSplitScreen(first);
     END_UNDO_SET();
-    pqActiveObjects::instance().setActiveSource(second);
+    pqActiveObjects::instance().setActiveSource(split.second);
+    // Where the probe can be seen and dragged.
+    pqActiveObjects::instance().setActiveView(split.body);
     pqApplicationCore::instance()->render();
   }
 }
