@@ -60,9 +60,10 @@ def proxies(state, kind):
 
 
 def place_in_flat_view(state, across, down):
-    """Where a part of the flat view's width and height is in its image: lateral and depth in mm."""
+    """Where the pixel at a part of the flat view's width and height is in its image: lateral and depth in mm."""
     view = next(v for v in proxies(state, "RenderView") if numbers(v, "InteractionMode") == [1])
     width, height = numbers(view, "ViewSize")
+    across, down = math.floor(across * width) / width, (math.floor(down * height) + 1) / height
     centre, scale = numbers(view, "CameraFocalPoint"), numbers(view, "CameraParallelScale")[0]
     return centre[0] + (across - 0.5) * 2 * scale * width / height, centre[1] + (down - 0.5) * 2 * scale
 
@@ -117,9 +118,9 @@ class TestGuiFlat(GuiCase):
     def test_the_name_under_the_pointer_is_that_of_its_pixel(self):
         with tempfile.TemporaryDirectory() as folder:
             data = self.label_map(folder)
-            self.assertEqual(self.play("layout.xml", folder, f"--data={data}"), [])
-            state = pathlib.Path(folder, "layout.pvsm")
-            place = place_in_flat_view(state, 0.45, 0.55)
+            self.assertEqual(self.play("rested.xml", folder, f"--data={data}"), [])
+            state = pathlib.Path(folder, "rested.pvsm")
+            place = place_in_flat_view(state, 0.5, 0.45)
             name, tissue, grey = self.ask(state, folder, place)[0]["pixel"]
             sentence = f"{name}, {tissue}, {math.hypot(*place):.1f} mm, grey {grey}"
             script = pathlib.Path(folder, "pointer.xml")
