@@ -138,8 +138,8 @@ void drawGreyBar(const Measures& mm, double halfWidthMm, double rangeDb, FlatDra
 {
   constexpr int steps = 32;
   drawing.setPart(GREY_BAR);
-  const double left = halfWidthMm + 0.04 * mm.depth;
-  const double right = left + 0.05 * mm.depth;
+  const double left = halfWidthMm + 0.02 * mm.depth;
+  const double right = left + 0.035 * mm.depth;
   const double top = mm.bottom - 0.45 * mm.depth;
   const double stepMm = 0.4 * mm.depth / steps;
   for (int i = 0; i < steps; ++i)
@@ -153,9 +153,11 @@ void drawGreyBar(const Measures& mm, double halfWidthMm, double rangeDb, FlatDra
     { { left, top }, { right, top }, { right, top + steps * stepMm }, { left, top + steps * stepMm } });
   if (rangeDb > 0.0)
   {
-    const double textMm = right + mm.shortTick();
-    drawing.text("0 dB", textMm, top, mm.digit(), Align::Left);
-    drawing.text(std::to_string(-std::lround(rangeDb)), textMm, top + steps * stepMm, mm.digit(), Align::Left);
+    // Small, as what stands here makes the picture smaller.
+    const double digitMm = 0.7 * mm.digit();
+    const double textMm = right + 0.5 * mm.shortTick();
+    drawing.text("0 dB", textMm, top, digitMm, Align::Left);
+    drawing.text(std::to_string(-std::lround(rangeDb)), textMm, top + steps * stepMm, digitMm, Align::Left);
   }
 }
 
