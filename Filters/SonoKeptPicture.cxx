@@ -128,6 +128,7 @@ void UltrasoundStages::givePicture(vtkPointData* arrays, vtkFieldData* fields, v
   world->GetFieldData()->Initialize();
   world->GetFieldData()->PassData(fields);
   world->GetFieldData()->PassData(acquisition_);
+  writeGreySettings(settings_.bmode, world->GetFieldData());
   world->GetPointData()->ShallowCopy(arrays);
   placement.place(world);
   flat->ShallowCopy(world);

@@ -119,6 +119,13 @@ void writeReached(const TracedLines& layout, vtkFieldData* fields)
   }
 }
 
+void writeGreySettings(const BModeSettings& settings, vtkFieldData* fields)
+{
+  writeNumber("GainDb", settings.gainDb, fields);
+  writeNumber("DynamicRangeDb", settings.dynamicRangeDb, fields);
+  writeNumber("TgcDbPerCm", settings.tgcDbPerCm, fields);
+}
+
 void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, vtkImageData* lines)
 {
   const TracedLines& layout = traced.layout();

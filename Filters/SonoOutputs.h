@@ -17,10 +17,13 @@ namespace sono {
 /// The outline of what is scanned and the transducer's face, see vtkSonoProbeSource.
 void fillProbe(const ProbeField& probe, vtkPolyData* polyData);
 
-/// Lines x bins "Intensity" and "StandardError", with the boundary echoes in the field data. `samplingMHz` is that of
-/// the RF to be.
 /// How many paths lines got, and how exact their picture is where that was asked for.
 void writeReached(const TracedLines& layout, vtkFieldData* fields);
+/// What a picture of grey levels was made with, for who writes it beside the picture: "GainDb", "DynamicRangeDb",
+/// "TgcDbPerCm".
+void writeGreySettings(const BModeSettings& settings, vtkFieldData* fields);
+/// Lines x bins "Intensity" and "StandardError", with the boundary echoes in the field data. `samplingMHz` is that of
+/// the RF to be.
 void fillTraced(const TracedResult& traced, const ProbeField& probe, double samplingMHz, vtkImageData* lines);
 /// Lines x samples "BoundaryEcho", beside traced lines.
 void fillEchoes(const TracedResult& traced, const ProbeField& probe, vtkImageData* lines, vtkImageData* echoes);

@@ -409,6 +409,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     return makeLines(
       rf, rfOf, [&] { fillRf(rf, field_, lines); }, rfLines_, lines);
   }
+  writeGreySettings(settings_.bmode, fields);
   if (port == Filter::BMODE_LINES)
   {
     const BModeResult grey = simulator_.bmode(image, progress(bmode, 0.0, bmodeEnd));

@@ -90,6 +90,7 @@ int vtkSonoBMode::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
     const sono::BModeSettings settings = this->Settings(probe);
+    sono::writeGreySettings(settings, vtkImageData::GetData(output)->GetFieldData());
     if (const sono::RfResult rf = sono::rfOf(lines))
     {
       return sono::fillBMode(this->Simulator->makeBMode(rf, settings), probe, vtkImageData::GetData(output));

@@ -10,6 +10,7 @@
 #include "SonoStage.h"
 #include "vtkSonoSceneHandle.h"
 
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"

@@ -1,22 +1,15 @@
 #include "vtkSonoFlatScale.h"
 
-#include "SonoImagePlacement.h"
+#include "SonoFlatDrawing.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkDataSet.h"
-#include "vtkIdList.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
-#include "vtkMath.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkVectorText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,79 +22,14 @@ namespace {
 enum Part
 {
   RULER = 0,
-  MARKER = 1
+  MARKER = 1,
+  LATERAL_RULER = 2,
+  GREY_BAR = 3
 };
 
-/// Strokes, discs and letters in the plane of the image, in mm, y down.
-class Drawing
-{
-public:
-  void stroke(double x0, double y0, double x1, double y1)
-  {
-    lines_->InsertNextCell({ point(x0, y0), point(x1, y1) });
-    lineParts_->InsertNextValue(RULER);
-  }
-
-  void disc(double x, double y, double radius)
-  {
-    constexpr int corners = 32;
-    polygons_->InsertNextCell(corners);
-    for (int i = 0; i < corners; ++i)
-    {
-      const double angle = 2.0 * vtkMath::Pi() * i / corners;
-      polygons_->InsertCellPoint(point(x + radius * std::cos(angle), y + radius * std::sin(angle)));
-    }
-    polygonParts_->InsertNextValue(MARKER);
-  }
-
-  /// Its middle at `y`, and its right end at `x`.
-  void text(const std::string& content, double x, double y, double height)
-  {
-    vtkNew<vtkVectorText> letters;
-    letters->SetText(content.c_str());
-    letters->Update();
-    vtkPolyData* shape = letters->GetOutput();
-    const double* box = shape->GetBounds();
-    const double scale = height / (box[3] - box[2]);
-    const double left = x - scale * (box[1] - box[0]);
-    vtkNew<vtkIdList> corners;
-    for (vtkIdType cell = 0; cell < shape->GetNumberOfCells(); ++cell)
-    {
-      shape->GetCellPoints(cell, corners);
-      polygons_->InsertNextCell(static_cast<int>(corners->GetNumberOfIds()));
-      for (const vtkIdType id : *corners)
-      {
-        const double* at = shape->GetPoint(id);
-        polygons_->InsertCellPoint(
-          point(left + scale * (at[0] - box[0]), y - scale * (at[1] - (box[2] + box[3]) / 2.0)));
-      }
-      polygonParts_->InsertNextValue(RULER);
-    }
-  }
-
-  void finish(vtkPolyData* polyData)
-  {
-    vtkNew<vtkIntArray> parts;
-    parts->SetName("Part");
-    for (vtkIntArray* some : { lineParts_.Get(), polygonParts_.Get() }) // lines come first in poly data
-    {
-      parts->InsertTuples(parts->GetNumberOfTuples(), some->GetNumberOfTuples(), 0, some);
-    }
-    polyData->SetPoints(points_);
-    polyData->SetLines(lines_);
-    polyData->SetPolys(polygons_);
-    polyData->GetCellData()->AddArray(parts);
-  }
-
-private:
-  vtkIdType point(double x, double y) { return points_->InsertNextPoint(x, y, sono::flatDrawingMm); }
-
-  vtkNew<vtkPoints> points_;
-  vtkNew<vtkCellArray> lines_;
-  vtkNew<vtkCellArray> polygons_;
-  vtkNew<vtkIntArray> lineParts_;
-  vtkNew<vtkIntArray> polygonParts_;
-};
+using sono::FlatDrawing;
+using Align = FlatDrawing::Align;
+constexpr FlatDrawing::Color lightGrey{ 217, 217, 217 };
 
 /// Half the lateral width of a polyline of the outline.
 double halfWidthMm(const std::vector<sono::Vec3d>& polyline)
@@ -144,26 +72,106 @@ double widthNearFaceMm(const std::vector<sono::Vec3d>& border, double nearMm)
   return widest;
 }
 
-void draw(const sono::ScanGeometry& geometry, Drawing& drawing)
+/// What a picture's rulers and bar have in common, in mm.
+struct Measures
 {
-  const auto outline = sono::scanOutline(geometry);
-  const double depthMm = geometry.depthMm;
-  const double faceMm = geometry.lineOrigin() == sono::LineOrigin::Catheter ? geometry.radiusMm : 0.0;
-  const int numberedCm = depthMm < 80.0 ? 1 : 5;
-  const double rulerMm = -halfWidthMm(outline[0]) - 0.03 * depthMm;
-  drawing.stroke(rulerMm, faceMm, rulerMm, faceMm + depthMm);
-  for (int cm = 0; cm <= std::floor(depthMm / 10.0 + 1e-9); ++cm)
+  explicit Measures(const sono::ScanGeometry& geometry)
+    : depth(geometry.depthMm)
+    , face(geometry.lineOrigin() == sono::LineOrigin::Catheter ? geometry.radiusMm : 0.0)
+    , bottom(sono::planeExtent(geometry).axialMaxMm)
+    , numberedCm(depth < 80.0 ? 1 : 5)
   {
-    const bool isNumbered = cm % numberedCm == 0;
-    const double yMm = faceMm + 10.0 * cm;
-    const double tickMm = rulerMm - (isNumbered ? 0.03 : 0.015) * depthMm;
+  }
+
+  double longTick() const { return 0.03 * depth; }
+  double shortTick() const { return 0.015 * depth; }
+  double digit() const { return 0.05 * depth; }
+
+  double depth;
+  double face;
+  double bottom;
+  int numberedCm;
+};
+
+constexpr double rounding = 1e-9;
+
+void drawDepth(const Measures& mm, double halfWidthMm, FlatDrawing& drawing)
+{
+  drawing.setPart(RULER);
+  const double rulerMm = -halfWidthMm - 0.03 * mm.depth;
+  drawing.stroke(rulerMm, mm.face, rulerMm, mm.face + mm.depth);
+  for (int cm = 0; cm <= std::floor(mm.depth / 10.0 + rounding); ++cm)
+  {
+    const bool isNumbered = cm % mm.numberedCm == 0;
+    const double yMm = mm.face + 10.0 * cm;
+    const double tickMm = rulerMm - (isNumbered ? mm.longTick() : mm.shortTick());
     drawing.stroke(rulerMm, yMm, tickMm, yMm);
     if (isNumbered)
     {
-      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickMm - 0.015 * depthMm, yMm, 0.05 * depthMm);
+      drawing.text(std::to_string(cm) + (cm == 0 ? " cm" : ""), tickMm - mm.shortTick(), yMm, mm.digit(), Align::Right);
     }
   }
-  const double dotMm = 0.02 * depthMm;
+}
+
+/// Below the picture, from its middle.
+void drawLateral(const Measures& mm, double halfWidthMm, FlatDrawing& drawing)
+{
+  drawing.setPart(LATERAL_RULER);
+  const double rulerMm = mm.bottom + 0.03 * mm.depth;
+  drawing.stroke(-halfWidthMm, rulerMm, halfWidthMm, rulerMm);
+  const int lastCm = int(std::floor(halfWidthMm / 10.0 + rounding));
+  for (int cm = -lastCm; cm <= lastCm; ++cm)
+  {
+    const bool isNumbered = cm % mm.numberedCm == 0;
+    const double tickMm = rulerMm + (isNumbered ? mm.longTick() : mm.shortTick());
+    drawing.stroke(10.0 * cm, rulerMm, 10.0 * cm, tickMm);
+    if (isNumbered)
+    {
+      drawing.text(std::to_string(cm), 10.0 * cm, tickMm + 0.5 * mm.digit() + mm.shortTick(), mm.digit(),
+                   Align::Centre);
+    }
+  }
+}
+
+/// White on top, black below, right of the picture's lower half, where a fan leaves no room above for the text.
+void drawGreyBar(const Measures& mm, double halfWidthMm, double rangeDb, FlatDrawing& drawing)
+{
+  constexpr int steps = 32;
+  drawing.setPart(GREY_BAR);
+  const double left = halfWidthMm + 0.02 * mm.depth;
+  const double right = left + 0.035 * mm.depth;
+  const double top = mm.bottom - 0.45 * mm.depth;
+  const double stepMm = 0.4 * mm.depth / steps;
+  for (int i = 0; i < steps; ++i)
+  {
+    const auto grey = static_cast<unsigned char>(std::lround(255.0 * (steps - 1 - i) / (steps - 1)));
+    drawing.setColor({ grey, grey, grey });
+    drawing.rectangle(left, top + stepMm * i, right, top + stepMm * (i + 1));
+  }
+  drawing.setColor(lightGrey);
+  drawing.closedLine(
+    { { left, top }, { right, top }, { right, top + steps * stepMm }, { left, top + steps * stepMm } });
+  if (rangeDb > 0.0)
+  {
+    // Small, as what stands here makes the picture smaller.
+    const double digitMm = 0.7 * mm.digit();
+    const double textMm = right + 0.5 * mm.shortTick();
+    drawing.text("0 dB", textMm, top, digitMm, Align::Left);
+    drawing.text(std::to_string(-std::lround(rangeDb)), textMm, top + steps * stepMm, digitMm, Align::Left);
+  }
+}
+
+/// `rangeDb`: from white to black; 0: not known.
+void draw(const sono::ScanGeometry& geometry, double rangeDb, FlatDrawing& drawing)
+{
+  const auto outline = sono::scanOutline(geometry);
+  const Measures mm(geometry);
+  const double halfMm = halfWidthMm(outline[0]);
+  drawDepth(mm, halfMm, drawing);
+  drawLateral(mm, halfMm, drawing);
+  drawGreyBar(mm, halfMm, rangeDb, drawing);
+  drawing.setPart(MARKER);
+  const double dotMm = 0.02 * mm.depth;
   const double clearMm = std::max(halfWidthMm(outline[1]), widthNearFaceMm(outline[0], 2.0 * dotMm));
   drawing.disc(clearMm + 2.0 * dotMm, 0.0, dotMm);
 }
@@ -187,11 +195,12 @@ int vtkSonoFlatScale::FillInputPortInformation(int, vtkInformation* info)
 int vtkSonoFlatScale::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    const sono::ScanGeometry geometry = sono::readProbe(vtkDataSet::GetData(input[0])->GetFieldData()).geometry;
+    vtkFieldData* fields = vtkDataSet::GetData(input[0])->GetFieldData();
+    const sono::ScanGeometry geometry = sono::readProbe(fields).geometry;
     if (!geometry.isVolume())
     {
-      Drawing drawing;
-      draw(geometry, drawing);
+      FlatDrawing drawing;
+      draw(geometry, fields->HasArray("DynamicRangeDb") ? sono::readNumber("DynamicRangeDb", fields) : 0.0, drawing);
       drawing.finish(vtkPolyData::GetData(output));
     }
   });

@@ -43,6 +43,9 @@ void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsign
   {
     vtkSMPropertyHelper(representation, "MapScalars").Set(0); // the colours themselves
     vtkSMPropertyHelper(representation, "Opacity").Set(0.2);
+    // Where two structures touch, the surfaces of both lie in one place and would flicker through each other.
+    constexpr int cullBackface = 401;
+    vtkSMPropertyHelper(representation, "BackfaceRepresentation", true).Set(cullBackface);
     vtkSMPVRepresentationProxy::SetScalarColoring(representation, "Color", vtkDataObject::CELL);
     representation->UpdateVTKObjects();
   }
@@ -94,6 +97,37 @@ void showRays(vtkSMProxy* representation)
   vtkSMPropertyHelper(representation, "PointSize", true).Set(4.0);
   vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0); // the colours themselves, whatever the light
   vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
+  representation->UpdateVTKObjects();
+}
+
+/// Whether it draws onto a flat image, in colours of its own.
+bool isFlatDrawing(const char* name)
+{
+  return equal(name, "SonoFlatScale") || equal(name, "SonoFlatLabels") || equal(name, "SonoCaliper");
+}
+
+/// The colours themselves, whatever the light.
+void showDrawing(vtkSMProxy* representation, vtkSMSourceProxy* drawing)
+{
+  vtkSMPropertyHelper(representation, "MapScalars", true).Set(0);
+  vtkSMPropertyHelper(representation, "Ambient", true).Set(1.0);
+  vtkSMPropertyHelper(representation, "Diffuse", true).Set(0.0);
+  vtkSMPropertyHelper(representation, "LineWidth", true).Set(equal(drawing->GetXMLName(), "SonoFlatScale") ? 1.0 : 2.0);
+  vtkSMPVRepresentationProxy::SetScalarColoring(representation, "Color", vtkDataObject::CELL);
+  representation->UpdateVTKObjects();
+}
+
+/// Where a fan leaves room.
+void showText(vtkSMProxy* representation)
+{
+  constexpr int upperRight = 5;
+  constexpr int right = 2;
+  const double lightGrey[] = { 0.85, 0.85, 0.85 };
+  vtkSMPropertyHelper(representation, "WindowLocation", true).Set(upperRight);
+  vtkSMPropertyHelper(representation, "Justification", true).Set(right);
+  vtkSMPropertyHelper(representation, "FontSize", true).Set(12);
+  vtkSMPropertyHelper(representation, "Color", true).Set(lightGrey, 3);
+  vtkSMPropertyHelper(representation, "Interactivity", true).Set(0);
   representation->UpdateVTKObjects();
 }
 
@@ -242,6 +276,14 @@ public:
     else if (equal(input->GetXMLName(), "Ruler") && hasUltrasound(input->GetSessionProxyManager()))
     {
       measureInMm(registered->Proxy);
+    }
+    else if (isFlatDrawing(input->GetXMLName()))
+    {
+      showDrawing(registered->Proxy, input);
+    }
+    else if (equal(input->GetXMLName(), "SonoFlatText"))
+    {
+      showText(registered->Proxy);
     }
     else if (isRays(input, port))
     {

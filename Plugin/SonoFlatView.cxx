@@ -2,6 +2,7 @@
 
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkSMSourceProxy.h"
 #include "vtkSonoUltrasound.h"
 
 #include <string>
@@ -22,13 +23,13 @@ SonoImageKind sonoImageKind(vtkSMProxy* source, unsigned int port)
   return SonoImageKind::None;
 }
 
-bool sonoIsFlatView(vtkSMProxy* view)
+SonoShownImage sonoFlatImageOf(vtkSMProxy* view)
 {
   constexpr int twoDimensional = 1;
   if (!view->GetProperty("InteractionMode") ||
       vtkSMPropertyHelper(view, "InteractionMode").GetAsInt() != twoDimensional)
   {
-    return false;
+    return {};
   }
   const vtkSMPropertyHelper representations(view, "Representations");
   for (unsigned int i = 0; i < representations.GetNumberOfElements(); ++i)
@@ -38,8 +39,13 @@ bool sonoIsFlatView(vtkSMProxy* view)
     if (input.GetAsProxy() && vtkSMPropertyHelper(shown, "Visibility", true).GetAsInt() == 1 &&
         sonoImageKind(input.GetAsProxy(), input.GetOutputPort()) == SonoImageKind::Flat)
     {
-      return true;
+      return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), input.GetOutputPort() };
     }
   }
-  return false;
+  return {};
+}
+
+bool sonoIsFlatView(vtkSMProxy* view)
+{
+  return sonoFlatImageOf(view).source != nullptr;
 }

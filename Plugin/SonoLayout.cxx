@@ -1,5 +1,7 @@
 #include "SonoLayout.h"
 
+#include "SonoOutputFilter.h"
+
 #include "vtkNew.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
@@ -15,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <functional>
 #include <initializer_list>
 #include <string>
@@ -82,8 +83,8 @@ void showPlainly(vtkSMSourceProxy* source, unsigned int port, std::initializer_l
   representation->UpdateVTKObjects();
 }
 
-/// Grey on black, the transducer on top, with the depth scale and the probe's marker.
-void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, vtkSMSourceProxy* scale, Controller* controller)
+/// Grey on black, the transducer on top, with what a scanner draws and writes beside it.
+void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
   {
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
@@ -95,44 +96,12 @@ void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, vtkSMSourc
     view->UpdateVTKObjects();
   }
   showQuietly(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, view, controller);
-  showPlainly(scale, 0, { 0.85, 0.85, 0.85 }, 1.0, view, controller);
+  for (const char* beside : { "SonoFlatScale", "SonoFlatText" })
+  {
+    controller->Show(sonoFilterOf(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, beside), 0, view);
+  }
   // From the side where x, lateral, runs to the right and y, depth, down.
   setCamera(view, { 0.0, 0.0, -1.0 }, { 0.0, -1.0, 0.0 });
-}
-
-/// The filter of this kind that an output of the ultrasound has already, or a new one. A scale is the same on all of
-/// them.
-vtkSmartPointer<vtkSMSourceProxy> filterOf(vtkSMSourceProxy* ultrasound, unsigned int port, const char* kind,
-                                           Controller* controller, vtkSMSessionProxyManager* manager)
-{
-  vtkNew<vtkSMProxyIterator> sources;
-  sources->SetSessionProxyManager(manager);
-  sources->SetModeToOneGroup();
-  for (sources->Begin("sources"); !sources->IsAtEnd(); sources->Next())
-  {
-    vtkSMProxy* source = sources->GetProxy();
-    if (std::strcmp(source->GetXMLName(), kind) != 0)
-    {
-      continue;
-    }
-    const vtkSMPropertyHelper input(source, "Input");
-    if (input.GetAsProxy() == ultrasound && (input.GetOutputPort() == port || !source->GetProperty("Line")))
-    {
-      return vtkSMSourceProxy::SafeDownCast(source);
-    }
-  }
-  auto made =
-    vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy("filters", kind)));
-  controller->PreInitializeProxy(made);
-  vtkSMPropertyHelper(made, "Input").Set(ultrasound, port);
-  if (made->GetProperty("Line"))
-  {
-    vtkSMPropertyHelper(made, "Line").Set(vtkSMPropertyHelper(ultrasound, "LineCount").GetAsInt() / 2);
-  }
-  controller->PostInitializeProxy(made);
-  controller->RegisterPipelineProxy(made);
-  made->UpdatePipeline();
-  return made;
 }
 
 /// Whether a view has shown an output.
@@ -163,15 +132,25 @@ vtkSMViewProxy* laidOut(vtkSMSourceProxy* ultrasound, vtkSMSessionProxyManager* 
   return nullptr;
 }
 
-/// Of a tab: Ultrasound, and numbers for those of other filters.
-std::string freeName(vtkSMSessionProxyManager* manager)
+/// Of a tab: these words, with a number where there is one already.
+std::string freeName(const std::string& words, vtkSMSessionProxyManager* manager)
 {
-  std::string name = "Ultrasound";
+  std::string name = words;
   for (int number = 2; manager->GetProxy("layouts", name.c_str()); ++number)
   {
-    name = "Ultrasound " + std::to_string(number);
+    name = words + " " + std::to_string(number);
   }
   return name;
+}
+
+vtkSmartPointer<vtkSMViewLayoutProxy> makeLayout(const std::string& words, Controller* controller,
+                                                 vtkSMSessionProxyManager* manager)
+{
+  auto layout = vtkSmartPointer<vtkSMViewLayoutProxy>::Take(
+    vtkSMViewLayoutProxy::SafeDownCast(manager->NewProxy("misc", "ViewLayout")));
+  controller->InitializeProxy(layout);
+  controller->RegisterLayoutProxy(layout, freeName(words, manager).c_str());
+  return layout;
 }
 
 constexpr std::array<double, 3> rfColor{ 0.2, 0.55, 0.25 };
@@ -233,10 +212,7 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
     return there;
   }
 
-  auto layout = vtkSmartPointer<vtkSMViewLayoutProxy>::Take(
-    vtkSMViewLayoutProxy::SafeDownCast(manager->NewProxy("misc", "ViewLayout")));
-  controller->InitializeProxy(layout);
-  controller->RegisterLayoutProxy(layout, freeName(manager).c_str());
+  const auto layout = makeLayout("Ultrasound", controller, manager);
   const int right = layout->SplitHorizontal(0, 0.5) + 1;
   const int upper = layout->SplitVertical(right, 0.62);
   const auto solid = makeView("RenderView", controller, manager);
@@ -247,16 +223,38 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
   layout->AssignView(upper + 1, chart);
 
   // What a kept picture suffices for comes first: whoever asks for other outputs waits for the simulation.
-  const auto scale = filterOf(ultrasound, vtkSonoUltrasound::PROBE, "SonoFlatScale", controller, manager);
-  fillFlatView(flat, ultrasound, scale, controller);
+  fillFlatView(flat, ultrasound, controller);
   drawNow(flat);
-  const auto line = filterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine", controller, manager);
+  const auto line = sonoFilterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine");
   fillSolidView(solid, ultrasound, controller);
   const std::initializer_list<double> yellow{ 1.0, 0.85, 0.2 };
   showPlainly(line, 1, yellow, 1.0, flat, controller);
   showPlainly(line, 2, yellow, 2.0, solid, controller);
   fillChart(chart, line, controller);
   for (const auto& view : { solid, flat, chart })
+  {
+    view->StillRender();
+  }
+  return solid;
+}
+
+vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second)
+{
+  vtkNew<Controller> controller;
+  vtkSMSessionProxyManager* manager = first->GetSessionProxyManager();
+  const auto layout = makeLayout("Split Screen", controller, manager);
+  const int flats = layout->SplitHorizontal(0, 0.34) + 1;
+  const int left = layout->SplitHorizontal(flats, 0.5);
+  const auto solid = makeView("RenderView", controller, manager);
+  const auto one = makeView("RenderView", controller, manager);
+  const auto other = makeView("RenderView", controller, manager);
+  layout->AssignView(flats - 1, solid);
+  layout->AssignView(left, one);
+  layout->AssignView(left + 1, other);
+  fillFlatView(one, first, controller);
+  fillFlatView(other, second, controller);
+  fillSolidView(solid, first, controller);
+  for (const auto& view : { solid, one, other })
   {
     view->StillRender();
   }

@@ -79,9 +79,10 @@ class TestFlatScale(unittest.TestCase):
         self.scale.Update()
         data = self.scale.GetOutput()
         points = vtk_to_numpy(data.GetPoints().GetData())
-        strokes = vtk_to_numpy(data.GetLines().GetConnectivityArray()).reshape(-1, 2)
         parts = vtk_to_numpy(data.GetCellData().GetArray("Part"))
-        (dot,) = (i for i in np.flatnonzero(parts == 1) if data.GetCell(i).GetNumberOfPoints() > 20)
+        strokes = np.array([[cell.GetPointId(0), cell.GetPointId(1)] for i in np.flatnonzero(parts == 0)
+                            for cell in [data.GetCell(int(i))] if cell.GetNumberOfPoints() == 2])
+        (dot,) = (int(i) for i in np.flatnonzero(parts == 1) if data.GetCell(i).GetNumberOfPoints() > 20)
         corners = [data.GetPoint(data.GetCell(dot).GetPointId(i)) for i in range(data.GetCell(dot).GetNumberOfPoints())]
         return points[strokes], np.mean(corners, axis=0)
 

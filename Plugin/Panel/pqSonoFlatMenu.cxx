@@ -1,0 +1,195 @@
+#include "pqSonoFlatMenu.h"
+
+#include "SonoFlatView.h"
+#include "SonoOutputFilter.h"
+#include "SonoSplitScreen.h"
+#include "pqSonoCaliperFollow.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqObjectBuilder.h"
+#include "pqPipelineSource.h"
+#include "pqRenderView.h"
+#include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
+#include "vtkCamera.h"
+#include "vtkNew.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMRenderViewProxy.h"
+#include "vtkSMRepresentationProxy.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSonoCaliper.h"
+
+#include <QAction>
+#include <QMenu>
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+constexpr const char* textKind = "SonoFlatText";
+constexpr const char* labelsKind = "SonoFlatLabels";
+
+/// The active one, or else the first; null: none.
+pqRenderView* flatView()
+{
+  const auto isFlat = [](pqView* view) { return view && sonoIsFlatView(view->getProxy()); };
+  pqView* active = pqActiveObjects::instance().activeView();
+  if (isFlat(active))
+  {
+    return qobject_cast<pqRenderView*>(active);
+  }
+  const auto views = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>();
+  const auto found = std::find_if(views.begin(), views.end(), isFlat);
+  return found == views.end() ? nullptr : *found;
+}
+
+int numberOfCalipers()
+{
+  const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
+  return int(std::count_if(sources.begin(), sources.end(), [](const pqPipelineSource* source) {
+    return std::strcmp(source->getProxy()->GetXMLName(), "SonoCaliper") == 0;
+  }));
+}
+
+bool isShown(pqRenderView* view, const char* kind)
+{
+  const SonoShownImage image = view ? sonoFlatImageOf(view->getProxy()) : SonoShownImage();
+  vtkSMSourceProxy* filter = image.source ? sonoFindFilterOf(image.source, image.port, kind) : nullptr;
+  vtkSMRepresentationProxy* shown = filter ? view->getViewProxy()->FindRepresentation(filter, 0) : nullptr;
+  return shown && vtkSMPropertyHelper(shown, "Visibility").GetAsInt() == 1;
+}
+
+pqPipelineSource* ultrasoundOf(pqRenderView* view)
+{
+  const SonoShownImage image = view ? sonoFlatImageOf(view->getProxy()) : SonoShownImage();
+  return image.source && std::strcmp(image.source->GetXMLName(), "SonoUltrasound") == 0
+           ? pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(image.source)
+           : nullptr;
+}
+
+/// In the middle of what a view shows, so that each point can be seen and dragged; a little below the `before` others.
+void place(vtkSMProxy* caliper, pqRenderView* view, int before)
+{
+  constexpr int places = 5;
+  vtkCamera* camera = view->getRenderViewProxy()->GetActiveCamera();
+  const double* at = camera->GetFocalPoint();
+  const double reachMm = 0.3 * camera->GetParallelScale();
+  const double y = at[1] + 0.4 * reachMm * (before % places - 1);
+  const double points[3][3] = { { at[0] - reachMm, y, 0.0 }, { at[0] + reachMm, y, 0.0 }, { at[0], y + reachMm, 0.0 } };
+  vtkSMPropertyHelper(caliper, "Point1Mm").Set(points[0], 3);
+  vtkSMPropertyHelper(caliper, "Point2Mm").Set(points[1], 3);
+  vtkSMPropertyHelper(caliper, "Point3Mm").Set(points[2], 3);
+  vtkSMPropertyHelper(caliper, "DigitMm").Set(0.08 * camera->GetParallelScale());
+  caliper->UpdateVTKObjects();
+}
+
+} // namespace
+
+pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
+  : QToolButton(parent)
+{
+  this->setObjectName("SonoFlatButton");
+  this->setIcon(QIcon(":/sono/caliper.svg"));
+  this->setToolTip(tr("Text, labels, calipers and split screen of the flat view"));
+  this->setPopupMode(QToolButton::InstantPopup);
+  new pqSonoCaliperFollow(this);
+  auto* menu = new QMenu(this);
+  menu->setObjectName("SonoFlatMenu");
+  this->setMenu(menu);
+  text_ =
+    add("actionSonoFlatText", tr("Text"), tr("Probe, frequency, depth, gain and rate, written into the flat view"),
+        [this] { toggle(textKind, tr("Flat Image Text")); });
+  labels_ = add("actionSonoFlatLabels", tr("Label Outlines"), tr("Where one label ends and the next begins"),
+                [this] { toggle(labelsKind, tr("Flat Image Labels")); });
+  text_->setCheckable(true);
+  labels_->setCheckable(true);
+  menu->addSeparator();
+  add("actionSonoDistance", tr("Distance (mm)"), tr("Measure a distance in the flat view"),
+      [this] { measure(vtkSonoCaliper::Distance, tr("Distance")); });
+  add("actionSonoEllipse", tr("Ellipse Area (mm^2)"), tr("Measure an ellipse's area in the flat view"),
+      [this] { measure(vtkSonoCaliper::Ellipse, tr("Ellipse")); });
+  add("actionSonoAngle", tr("Angle (degrees)"), tr("Measure an angle in the flat view"),
+      [this] { measure(vtkSonoCaliper::Angle, tr("Angle")); });
+  menu->addSeparator();
+  add("actionSonoSplit", tr("Split Screen"),
+      tr("A second Simulate Ultrasound of the same probe, with settings of its own, beside the first"),
+      [this] { split(); });
+  QObject::connect(menu, &QMenu::aboutToShow, this, [this] { update(); });
+}
+
+QAction* pqSonoFlatMenu::add(const char* name, const QString& words, const QString& tip,
+                             const std::function<void()>& act)
+{
+  QAction* action = this->menu()->addAction(words);
+  action->setObjectName(name);
+  action->setToolTip(tip);
+  QObject::connect(action, &QAction::triggered, this, act);
+  return action;
+}
+
+void pqSonoFlatMenu::update()
+{
+  pqRenderView* view = flatView();
+  for (QAction* action : this->menu()->actions())
+  {
+    action->setEnabled(view != nullptr);
+  }
+  text_->setChecked(isShown(view, textKind));
+  labels_->setChecked(isShown(view, labelsKind));
+}
+
+void pqSonoFlatMenu::toggle(const char* kind, const QString& step)
+{
+  pqRenderView* view = flatView();
+  if (!view)
+  {
+    return;
+  }
+  BEGIN_UNDO_SET(step);
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  const SonoShownImage image = sonoFlatImageOf(view->getProxy());
+  const bool isOn = isShown(view, kind);
+  const auto filter = sonoFilterOf(image.source, image.port, kind);
+  isOn ? controller->Hide(filter, 0, view->getViewProxy()) : controller->Show(filter, 0, view->getViewProxy());
+  END_UNDO_SET();
+  view->render();
+}
+
+void pqSonoFlatMenu::measure(int kind, const QString& step)
+{
+  pqRenderView* view = flatView();
+  if (!view)
+  {
+    return;
+  }
+  BEGIN_UNDO_SET(step);
+  const int before = numberOfCalipers();
+  pqPipelineSource* caliper =
+    pqApplicationCore::instance()->getObjectBuilder()->createSource("sources", "SonoCaliper", view->getServer());
+  vtkSMPropertyHelper(caliper->getProxy(), "Kind").Set(kind);
+  place(caliper->getProxy(), view, before);
+  caliper->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  controller->Show(vtkSMSourceProxy::SafeDownCast(caliper->getProxy()), 0, view->getViewProxy());
+  END_UNDO_SET();
+  pqActiveObjects::instance().setActiveView(view);
+  pqActiveObjects::instance().setActiveSource(caliper); // whose points can be dragged then
+  view->render();
+}
+
+void pqSonoFlatMenu::split()
+{
+  if (pqPipelineSource* first = ultrasoundOf(flatView()))
+  {
+    BEGIN_UNDO_SET(tr("Split Screen"));
+    const SonoSplit split = sonoSplitScreen(first);
+    END_UNDO_SET();
+    pqActiveObjects::instance().setActiveSource(split.second);
+    // Where the probe can be seen and dragged.
+    pqActiveObjects::instance().setActiveView(split.body);
+    pqApplicationCore::instance()->render();
+  }
+}

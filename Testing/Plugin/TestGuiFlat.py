@@ -1,0 +1,149 @@
+"""What a scanner has beside its picture, by clicks: text, names under the pointer, outlines of labels, calipers and a
+split screen. Needs Xvfb; run by ctest -L gui."""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from guicase import PLAYBACKS, GuiCase
+
+# What a state's filters say, what its flat image has at a place, and its flat view as a picture.
+ASK = """
+import json
+LoadState(sys.argv[1])
+said = {}
+
+
+def made(source, port=0):
+    # What is fetched loses the strings of field data.
+    source.UpdatePipeline()
+    return source.SMProxy.GetClientSideObject().GetOutputDataObject(port)
+
+
+for (name, _), source in GetSources().items():
+    if source.GetXMLName() == "SonoFlatText":
+        said["text"] = made(source).GetColumn(0).GetValue(0).split(chr(10))
+    if source.GetXMLName() == "SonoCaliper":
+        field = made(source).GetFieldData()
+        said["caliper"] = [field.GetArray("Value").GetValue(0), field.GetAbstractArray("Text").GetValue(0)]
+    if source.GetXMLName() == "SonoUltrasound":
+        image = made(source, 7)
+        x, y = float(sys.argv[3]), float(sys.argv[4])
+        at, field = image.FindPoint(x, y, 0), image.GetFieldData()
+        label = int(image.GetPointData().GetArray("Labels").GetValue(at))
+        ids = field.GetArray("LabelIds")
+        row = next(i for i in range(ids.GetNumberOfTuples()) if ids.GetValue(i) == label)
+        said["pixel"] = [field.GetAbstractArray("LabelNames").GetValue(row),
+                         field.GetAbstractArray("LabelTissues").GetValue(row),
+                         int(image.GetPointData().GetArray("BMode").GetValue(at))]
+view = next(v for v in GetViews() if v.GetXMLName() == "RenderView" and v.InteractionMode == "2D")
+SaveScreenshot(sys.argv[2] + ".png", view, ImageResolution=[416, 313], FontScaling="Do not scale fonts")
+with open(sys.argv[2] + ".json", "w", encoding="utf-8") as file:
+    json.dump(said, file)
+"""
+
+
+def texts(proxy, name):
+    return [element.get("value") for element in proxy.findall(f"Property[@name='{name}']/Element")]
+
+
+def numbers(proxy, name):
+    return [float(text) for text in texts(proxy, name)]
+
+
+def proxies(state, kind):
+    return [proxy for proxy in ElementTree.parse(state).iter("Proxy") if proxy.get("type") == kind]
+
+
+def place_in_flat_view(state, across, down):
+    """Where the pixel at a part of the flat view's width and height is in its image: lateral and depth in mm."""
+    view = next(v for v in proxies(state, "RenderView") if numbers(v, "InteractionMode") == [1])
+    width, height = numbers(view, "ViewSize")
+    across, down = math.floor(across * width) / width, (math.floor(down * height) + 1) / height
+    centre, scale = numbers(view, "CameraFocalPoint"), numbers(view, "CameraParallelScale")[0]
+    return centre[0] + (across - 0.5) * 2 * scale * width / height, centre[1] + (down - 0.5) * 2 * scale
+
+
+def pixels(path):
+    """Rows of three bytes a pixel."""
+    raw = path.with_suffix(".ppm")
+    subprocess.run(["oiiotool", str(path), "--ch", "R,G,B", "-o", str(raw)], check=True)
+    data = raw.read_bytes()[-3 * 416 * 313:]
+    return [data[3 * 416 * y:3 * 416 * (y + 1)] for y in range(313)]
+
+
+def bright(rows, left, right, top, bottom):
+    return sum(row[3 * x] > 150 for row in rows[top:bottom] for x in range(left, right))
+
+
+def coloured(rows):
+    return sum(max(row[3 * x:3 * x + 3]) - min(row[3 * x:3 * x + 3]) > 60 for row in rows for x in range(416))
+
+
+class TestGuiFlat(GuiCase):
+    def ask(self, state, folder, place=(0.0, 50.0)):
+        to = pathlib.Path(folder, state.stem + "-asked")
+        self.run_script(ASK, folder, state, to, *place)
+        return json.loads(to.with_suffix(".json").read_text(encoding="utf-8")), pixels(to.with_suffix(".png"))
+
+    def test_text_outlines_and_caliper(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("flat.xml", folder, f"--data={self.label_map(folder)}"), [])
+            states = {name: pathlib.Path(folder, name + ".pvsm") for name in ("labels", "plain", "placed", "dragged")}
+            said, with_text = self.ask(states["labels"], folder)
+            _, plain = self.ask(states["plain"], folder)
+            measured, _ = self.ask(states["dragged"], folder)
+            before, after = (proxies(states[name], "SonoCaliper")[0] for name in ("placed", "dragged"))
+            ends = [numbers(after, f"Point{i}Mm") for i in (1, 2)]
+            wanted = place_in_flat_view(states["dragged"], 0.387, 0.7)
+        # The text follows the gain, and is in what is exported, in the upper right corner.
+        self.assertIn("Gain 12 dB", said["text"])
+        self.assertIn("Depth 160 mm", said["text"])
+        corner = (300, 416, 0, 100)
+        self.assertGreater(bright(with_text, *corner), 300)
+        self.assertLess(bright(plain, *corner), 50)
+        # Outlines have colours where the picture is grey, but for the scan line.
+        self.assertGreater(coloured(with_text), 3 * coloured(plain) + 500)
+        # One end was dragged, the other one stayed, and the value is theirs.
+        self.assertEqual(ends[1], numbers(before, "Point2Mm"))
+        self.assertNotEqual(ends[0], numbers(before, "Point1Mm"))
+        self.assertLess(math.dist(ends[0][:2], wanted), 2.5)
+        self.assertAlmostEqual(measured["caliper"][0], math.dist(*ends), places=3)
+        self.assertEqual(measured["caliper"][1], f"{math.dist(*ends):.1f} mm")
+
+    def test_the_name_under_the_pointer_is_that_of_its_pixel(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.label_map(folder)
+            self.assertEqual(self.play("rested.xml", folder, f"--data={data}"), [])
+            state = pathlib.Path(folder, "rested.pvsm")
+            place = place_in_flat_view(state, 0.5, 0.45)
+            name, tissue, grey = self.ask(state, folder, place)[0]["pixel"]
+            sentence = f"{name}, {tissue}, {math.hypot(*place):.1f} mm, grey {grey}"
+            script = pathlib.Path(folder, "pointer.xml")
+            script.write_text((PLAYBACKS / "pointer.xml").read_text().replace("SENTENCE", sentence))
+            done = self.paraview(folder, f"--test-script={script}", f"--data={data}", "--exit")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("property value is", done.stdout)
+
+    def test_a_split_screen_has_one_probe_and_two_settings(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("split.xml", folder, f"--data={self.label_map(folder)}"), [])
+            state = pathlib.Path(folder, "split.pvsm")
+            both = proxies(state, "SonoUltrasound")
+            views = [view for view in proxies(state, "RenderView") if numbers(view, "InteractionMode") == [1]]
+            links = list(ElementTree.parse(state).iter("PropertyLink"))
+        self.assertEqual(len(both), 2)
+        for name in ("PositionMm", "Axial", "Lateral", "DepthMm"):
+            self.assertEqual(numbers(both[0], name), numbers(both[1], name))
+        self.assertEqual(numbers(both[0], "DepthMm"), [120])
+        self.assertEqual(sorted(numbers(one, "GainDb")[0] for one in both), [0, 12])
+        self.assertEqual(len(views), 3)  # that of the layout, and two
+        self.assertEqual(len(links), 6)
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
