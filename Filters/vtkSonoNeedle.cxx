@@ -1,7 +1,7 @@
 #include "vtkSonoNeedle.h"
 
-#include "Kernel/Vec.h"
 #include "Core/Require.h"
+#include "Kernel/Vec.h"
 #include "SonoStage.h"
 
 #include "vtkCellArray.h"

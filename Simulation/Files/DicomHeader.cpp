@@ -37,8 +37,8 @@ void putPixels(DcmItem& data, const CineInfo& info)
   putWord(data, DCM_HighBit, 7);
   putWord(data, DCM_PixelRepresentation, 0);
   putWord(data, DCM_UltrasoundColorDataPresent, 0);
-  // Ultrasound has it in the region's calibration alone, where GDCM, and with it ITK and 3D Slicer, do not look: between
-  // rows first.
+  // Ultrasound has it in the region's calibration alone, where GDCM, and with it ITK and 3D Slicer, do not look:
+  // between rows first.
   putNumbers(data, DCM_PixelSpacing, { info.pixelMm[1], info.pixelMm[0] });
 }
 
