@@ -6,6 +6,7 @@
 #include "vtkDataObject.h"
 #include "vtkNew.h"
 #include "vtkPVDataInformation.h"
+#include "vtkPVRepresentedArrayListSettings.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -297,6 +298,33 @@ public:
   }
 };
 
+/// Field arrays of our outputs, which say how they were made: nothing to colour by.
+const std::string notColors =
+  "^(A4CAxial|A4CLateral|A4CPositionMm|ApertureMm|AssumedSoundSpeedMPerS|BoundaryEcho|"
+  "CentreFrequencyMHz|CompoundFans|CompoundSpanDeg|DepthMm|DepthOffsetMm|DynamicRangeDb|"
+  "ElementCount|ElementWidthMm|ElevationApertureMm|ElevationFocusMm|ElevationLineCount|"
+  "ElevationSectorDeg|FacePressureKPa|FractionalBandwidth|GainDb|ImagingMode|IsCatheter|IsVolume|"
+  "KerfMm|LabelColors|LabelIds|LabelNames|LabelTissues|LineCount|PrepareInteraction|Preview|"
+  "ProbeAxial|ProbeLateral|ProbePositionMm|RadialBinMm|RadiusMm|ReferenceAmplitude|Reverberation|"
+  "ReverberationError|ReverberationNpPerMHz|SamplingMHz|ScanKind|SectorDeg|SonoResult|SonoScene|"
+  "TgcDbPerCm|TracedPaths|TransmitFocusMm|WidthMm|ErrorDb|PixelMm)$";
+
+/// ParaView takes settings when it starts; what is loaded later has to tell the list itself.
+void hideFromColors(const std::string& expression)
+{
+  vtkPVRepresentedArrayListSettings* list = vtkPVRepresentedArrayListSettings::GetInstance();
+  const int count = list->GetNumberOfFilterExpressions();
+  for (int i = 0; i < count; ++i)
+  {
+    if (expression == list->GetFilterExpression(i))
+    {
+      return;
+    }
+  }
+  list->SetNumberOfFilterExpressions(count + 1);
+  list->SetFilterExpression(count, expression.c_str());
+}
+
 } // namespace
 
 void sonoInstallDisplayDefaults()
@@ -306,13 +334,16 @@ void sonoInstallDisplayDefaults()
     return;
   }
   // The colour map that an array gets when it is first shown, and the reader that a file gets without a question: of a
-  // segmentation ParaView's own would lose names and place. A person's own settings have a higher priority.
-  vtkSMSettings::GetInstance()->AddCollectionFromString(
+  // segmentation ParaView's own would lose names and place; what is not offered to colour by. A person's own settings
+  // have a higher priority.
+  const std::string settings =
     R"json({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale",
       "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"},
       "settings": {"RepresentedArrayListSettings":
-        {"ReaderDetails": ["*.seg.nrrd", "sources", "SonoLabelMapReader"]}}})json",
-    0.0);
+        {"ReaderDetails": ["*.seg.nrrd", "sources", "SonoLabelMapReader"], "FilterExpressions": [")json" +
+    notColors + R"json("]}}})json";
+  vtkSMSettings::GetInstance()->AddCollectionFromString(settings, 0.0);
+  hideFromColors(notColors);
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
 }

@@ -165,8 +165,8 @@ class TestGuiScanner(GuiCase):
     def halves(picture):
         """What part of the upper and of the lower half of a picture is not black."""
         def part(cut):
-            done = subprocess.run(["oiiotool", str(picture), "--cut", cut, "--stats"], stdout=subprocess.PIPE, text=True,
-                                  check=True)
+            done = subprocess.run(["oiiotool", str(picture), "--cut", cut, "--printstats"],
+                                  stdout=subprocess.PIPE, text=True, check=True)
             (mean,) = [line.split()[-1] for line in done.stdout.splitlines() if "Stats Avg" in line]
             return float(mean)
 

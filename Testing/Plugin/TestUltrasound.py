@@ -302,5 +302,21 @@ class TestUltrasound(unittest.TestCase):
         self.assertTrue((grey(make_ultrasound()) == before).all())
 
 
+class TestColors(unittest.TestCase):
+    def test_pictures_are_coloured_by_what_their_points_hold(self):
+        """And not by one of the many field arrays that say how they were made."""
+        ultrasound = make_ultrasound()
+        ultrasound.UpdatePipeline()
+        for port, wanted in ((0, {"BMode", "Labels", "Mask"}), (7, {"BMode", "Labels", "Mask"}), (1, {"BMode"}),
+                             (2, {"Envelope", "IQ", "RF"}), (3, {"AttenuationNpPerMHz", "Intensity", "StandardError"})):
+            image = servermanager.ProxyManager().NewProxy("representations", "UniformGridRepresentation")
+            image.GetProperty("Input").SetInputConnection(0, ultrasound.SMProxy, port)
+            simple.OutputPort(ultrasound, port).UpdatePipeline()
+            image.UpdateVTKObjects()
+            arrays = image.GetProperty("ColorArrayName").FindDomain("vtkSMRepresentedArrayListDomain")
+            image.GetProperty("Input").UpdateDependentDomains()
+            self.assertEqual({arrays.GetString(i) for i in range(arrays.GetNumberOfStrings())}, wanted)
+
+
 if __name__ == "__main__":
     sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
