@@ -146,6 +146,19 @@ class TestUltrasound(unittest.TestCase):
         self.assertEqual(list(again.PositionMm), POSE["PositionMm"])
         self.assertTrue((grey(again) == before).all())
 
+    def test_pictures_are_coloured_by_what_their_points_hold(self):
+        """And not by one of the many field arrays that say how they were made."""
+        ultrasound = make_ultrasound()
+        for port, wanted in ((0, {"BMode", "Labels", "Mask"}), (7, {"BMode", "Labels", "Mask"}), (1, {"BMode"}),
+                             (2, {"Envelope", "IQ", "RF"}), (3, {"AttenuationNpPerMHz", "Intensity", "StandardError"})):
+            simple.OutputPort(ultrasound, port).UpdatePipeline()
+            image = servermanager.ProxyManager().NewProxy("representations", "UniformGridRepresentation")
+            image.GetProperty("Input").SetInputConnection(0, ultrasound.SMProxy, port)
+            image.UpdateVTKObjects()
+            arrays = image.GetProperty("ColorArrayName").FindDomain("vtkSMRepresentedArrayListDomain")
+            arrays.Update(image.GetProperty("ColorArrayName"))
+            self.assertEqual({arrays.GetString(i) for i in range(arrays.GetNumberOfStrings())}, wanted)
+
     def test_a_named_preset_survives_states_and_traces(self):
         def lines():
             return Fetch(simple.FindSource("ultrasound"), idx=5).GetFieldData().GetArray("WidthMm").GetValue(0)
@@ -300,22 +313,6 @@ class TestUltrasound(unittest.TestCase):
         simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
         self.tearDown()
         self.assertTrue((grey(make_ultrasound()) == before).all())
-
-
-class TestColors(unittest.TestCase):
-    def test_pictures_are_coloured_by_what_their_points_hold(self):
-        """And not by one of the many field arrays that say how they were made."""
-        ultrasound = make_ultrasound()
-        ultrasound.UpdatePipeline()
-        for port, wanted in ((0, {"BMode", "Labels", "Mask"}), (7, {"BMode", "Labels", "Mask"}), (1, {"BMode"}),
-                             (2, {"Envelope", "IQ", "RF"}), (3, {"AttenuationNpPerMHz", "Intensity", "StandardError"})):
-            image = servermanager.ProxyManager().NewProxy("representations", "UniformGridRepresentation")
-            image.GetProperty("Input").SetInputConnection(0, ultrasound.SMProxy, port)
-            simple.OutputPort(ultrasound, port).UpdatePipeline()
-            image.UpdateVTKObjects()
-            arrays = image.GetProperty("ColorArrayName").FindDomain("vtkSMRepresentedArrayListDomain")
-            image.GetProperty("Input").UpdateDependentDomains()
-            self.assertEqual({arrays.GetString(i) for i in range(arrays.GetNumberOfStrings())}, wanted)
 
 
 if __name__ == "__main__":
