@@ -167,7 +167,7 @@ class TestGuiScanner(GuiCase):
         def part(cut):
             done = subprocess.run(["oiiotool", str(picture), "--cut", cut, "--printstats"],
                                   stdout=subprocess.PIPE, text=True, check=True)
-            (mean,) = [line.split()[-1] for line in done.stdout.splitlines() if "Stats Avg" in line]
+            (mean,) = [line.split(":")[1].split()[0] for line in done.stdout.splitlines() if "Stats Avg" in line]
             return float(mean)
 
         done = subprocess.run(["oiiotool", "--info", str(picture)], stdout=subprocess.PIPE, text=True, check=True)
