@@ -3,11 +3,9 @@ import math
 import unittest
 
 import numpy as np
-from chain import listen, make
+from chain import label_image, listen, make
 from sonovdb.vtkSonoFilters import vtkSonoAcousticWindow, vtkSonoSceneBuilder, vtkSonoUltrasound
-from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkIntArray, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkImageData
 
 MIDDLE = (120.0, 120.0, 120.0)
 RADIUS_MM = 60.0
@@ -18,12 +16,8 @@ def liver():
     """A ball with a rib in it, so that it counts as a trunk and gets a body wall, not a bath."""
     z, y, x = np.mgrid[0:60, 0:60, 0:60] * 4.0
     r = np.sqrt((x - MIDDLE[0])**2 + (y - MIDDLE[1])**2 + (z - MIDDLE[2])**2)
-    image = vtkImageData()
-    image.SetDimensions(60, 60, 60)
+    image = label_image(np.select([r < 8, r < RADIUS_MM], [2, 1], 0).astype(np.uint8))
     image.SetSpacing(4, 4, 4)
-    voxels = numpy_to_vtk(np.select([r < 8, r < RADIUS_MM], [2, 1], 0).astype(np.uint8).ravel(), deep=True)
-    voxels.SetName("Labels")
-    image.GetPointData().SetScalars(voxels)
     ids, names = vtkIntArray(), vtkStringArray()
     for array, name, values in ((ids, "LabelIds", (1, 2)), (names, "LabelNames", ("liver", "rib_left_5"))):
         array.SetName(name)

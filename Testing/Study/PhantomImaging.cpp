@@ -154,6 +154,25 @@ double valueAt(const PlaneImage& image, double lateralMm, double depthMm)
   return above + (y - j) * (below - above);
 }
 
+std::vector<float> valuesIn(const PlaneImage& image, double lateralMm, double depthMm, double radiusMm)
+{
+  std::vector<float> values;
+  for (int j = 0; j < image.height; ++j)
+  {
+    for (int i = 0; i < image.width; ++i)
+    {
+      const double x = image.lateralMinMm + i * image.pixelMm - lateralMm;
+      const double z = image.axialMinMm + j * image.pixelMm - depthMm;
+      const std::size_t pixel = std::size_t(j) * std::size_t(image.width) + std::size_t(i);
+      if (x * x + z * z < radiusMm * radiusMm && image.mask[pixel])
+      {
+        values.push_back(image.value[pixel]);
+      }
+    }
+  }
+  return values;
+}
+
 PlaneImage decibelImage(const PhantomImaging& imaging, const RfLines& rf)
 {
   std::vector<float> decibels = rf.envelope();

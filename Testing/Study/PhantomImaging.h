@@ -74,6 +74,9 @@ TissueTable bundledTissues();
 /// An image's value at a place of the probe's plane, bilinear; NaN beyond its pixels.
 double valueAt(const PlaneImage& image, double lateralMm, double depthMm);
 
+/// The values of a disc around a place of the probe's plane.
+std::vector<float> valuesIn(const PlaneImage& image, double lateralMm, double depthMm, double radiusMm);
+
 /// The envelope in dB (20 log10), scan-converted.
 PlaneImage decibelImage(const PhantomImaging& imaging, const RfLines& rf);
 

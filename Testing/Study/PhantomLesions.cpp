@@ -12,25 +12,6 @@
 namespace sono::study {
 namespace {
 
-std::vector<float> valuesIn(const PlaneImage& image, double lateralMm, double depthMm, double radiusMm)
-{
-  std::vector<float> values;
-  for (int j = 0; j < image.height; ++j)
-  {
-    for (int i = 0; i < image.width; ++i)
-    {
-      const double x = image.lateralMinMm + i * image.pixelMm - lateralMm;
-      const double z = image.axialMinMm + j * image.pixelMm - depthMm;
-      const std::size_t pixel = std::size_t(j) * std::size_t(image.width) + std::size_t(i);
-      if (x * x + z * z < radiusMm * radiusMm && image.mask[pixel])
-      {
-        values.push_back(image.value[pixel]);
-      }
-    }
-  }
-  return values;
-}
-
 /// A lesion of the seed's table 4: real, and simulated as mean and standard deviation.
 struct SeedLesion
 {

@@ -76,20 +76,8 @@ struct Bench
 /// The levels of a disc in dB of the range, as the real picture's grey map is taken to be.
 std::vector<float> disc(const PlaneImage& image, double lateralMm, double depthMm, double radiusMm)
 {
-  std::vector<float> values;
-  for (int j = 0; j < image.height; ++j)
-  {
-    for (int i = 0; i < image.width; ++i)
-    {
-      const double x = image.lateralMinMm + i * image.pixelMm - lateralMm;
-      const double z = image.axialMinMm + j * image.pixelMm - depthMm;
-      const std::size_t pixel = std::size_t(j) * std::size_t(image.width) + std::size_t(i);
-      if (x * x + z * z < radiusMm * radiusMm && image.mask[pixel])
-      {
-        values.push_back(float(rangeDb) * image.value[pixel]);
-      }
-    }
-  }
+  std::vector<float> values = valuesIn(image, lateralMm, depthMm, radiusMm);
+  std::transform(values.begin(), values.end(), values.begin(), [](float grey) { return float(rangeDb) * grey; });
   return values;
 }
 
