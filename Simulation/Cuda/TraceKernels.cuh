@@ -185,6 +185,8 @@ struct LaneSink : PathSink
   int line;
   const TraceLine& beam; // that the path's segments are seen from
   StagedSegment& staged;
+  TissueEcho straight; // of the same segment, waits until that has been left
+  DepthSpan heard{ 0.0f, 0.0f };
   unsigned segments = 0;
 
   __device__ void segment(const PathSegment& piece)
@@ -192,7 +194,13 @@ struct LaneSink : PathSink
     ++segments;
     if (piece.reflections > 0 && launch.view.model == InterfaceModel::Acoustic)
     {
-      stage(tissueEcho(launch.wayOf(line), launch.lines[line], beam, piece), piece.length, launch.tissueBins(), staged);
+      const TissueBins bins = launch.tissueBins();
+      stage(ownWayEcho(piece), piece.length, bins, staged);
+      if (isStraightBack(launch.lines[line], piece))
+      {
+        straight = straightBackEcho(launch.wayOf(line), launch.lines[line], beam, piece);
+        heard = heardSpan(straight, piece.length, straight.level != 0.0f ? bins.endMm() : 0.0f);
+      }
     }
     else
     {
@@ -223,7 +231,13 @@ struct LaneSink : PathSink
   }
   /// Whether the last segment falls into a bin: there is room for one.
   __device__ bool holdsSegment() const { return staged.binHigh >= 0; }
-  __device__ void clear() { staged.binHigh = -1; }
+  __device__ bool holdsStraightBack() const { return heard.high > heard.low; }
+  __device__ void stageStraightBack() { stage(straight, heard, launch.tissueBins(), staged); }
+  __device__ void clear()
+  {
+    staged.binHigh = -1;
+    heard.high = heard.low;
+  }
 };
 
 /// A path at its start: in the body, from its own place on the aperture, or behind the first boundary that all paths of
@@ -236,12 +250,10 @@ __device__ bool beginPath(const Launch& launch, int line, const PathKey& key, Tr
   {
     beam = pathLine(launch.view, launch.lines[line], key);
     path = PathState();
-    path.straightBack = showsStraightBack(key);
     return startPath(launch.view, launch.space, beam, path, sink);
   }
   const LineStart& start = launch.starts[line];
   path = start.path;
-  path.straightBack = showsStraightBack(key);
   return passBoundary(launch.view, launch.space, start.boundary, key, path, sink);
 }
 
@@ -340,7 +352,18 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     {
       depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
     }
-    reverberateByWarp(staged, reverberating, reverberation, launch.echoScale, lane);
+    reverberateByWarp<false>(staged, reverberating, reverberation, launch.echoScale, lane);
+    const unsigned straightBack = __ballot_sync(allLanes, sink.holdsStraightBack());
+    if (straightBack != 0u)
+    {
+      __syncwarp();
+      if (sink.holdsStraightBack())
+      {
+        sink.stageStraightBack();
+      }
+      __syncwarp();
+      reverberateByWarp<true>(staged, straightBack, reverberation, launch.echoScale, lane);
+    }
     if (ManyPaths && untilFold <= 0)
     {
       foldBins(launch.binCount, lane, bins, launch.sums + warpRow);

@@ -55,10 +55,16 @@ __device__ inline void stage(const BeamSegment& seen, float length, float binMm,
   staged.direct.scale = smooth ? seen.intensity * (1.0f + half * half * (1.0f / 6.0f)) / binMm : 0.0f;
 }
 
+__device__ inline void stage(const TissueEcho& echo, const DepthSpan& span, const TissueBins& bins,
+                             StagedSegment& staged)
+{
+  stageSpan(span, bins.mm, true, staged);
+  staged.echo = echo;
+}
+
 __device__ inline void stage(const TissueEcho& echo, float length, const TissueBins& bins, StagedSegment& staged)
 {
-  stageSpan(depthSpan(echo.r0, echo.mu, length, echo.level != 0.0f ? bins.endMm() : 0.0f), bins.mm, true, staged);
-  staged.echo = echo;
+  stage(echo, depthSpan(echo.r0, echo.mu, length, echo.level != 0.0f ? bins.endMm() : 0.0f), bins, staged);
 }
 
 __device__ inline void addToBin(const BeamSegment& beam, float value, float at, BinSums<float>& bin)
@@ -131,18 +137,30 @@ struct ReverberationRow
 constexpr int echoLanes = 8;
 constexpr int echoBins = 2;
 
-/// What reverberates of a segment, by range, by a group's lane. Sums of integers, since warps share them.
+/// What reverberates of a segment, on its own way or straight back, by range, by a group's lane. Sums of integers,
+/// since warps share them.
+template<bool StraightBack>
 __device__ inline void reverberateByLanes(const StagedSegment& s, const ReverberationRow& row, float scale, int lane)
 {
   const DepthSpan span{ s.low, s.high };
   for (int first = int(s.binLow) + lane; first <= s.binHigh; first += echoLanes * echoBins)
   {
     BinEcho inBin[echoBins];
+    int sum[echoBins];
 #pragma unroll
     for (int i = 0; i < echoBins; ++i)
     {
       const int b = min(first + i * echoLanes, row.bins.count - 1);
-      inBin[i] = echoInBin(s.echo, span, row.lineKey, b, row.bins.mm, __ldg(row.cellMm + b));
+      inBin[i] = echoInBin(s.echo, span, b, row.bins.mm);
+      if (StraightBack)
+      {
+        sum[i] = straightPowerSum;
+        inBin[i].level *= heardInBin(inBin[i]);
+      }
+      else
+      {
+        sum[i] = signInBin(s.echo, inBin[i], row.lineKey, b, __ldg(row.cellMm + b)) > 0.0f ? plusSum : minusSum;
+      }
     }
 #pragma unroll
     for (int i = 0; i < echoBins; ++i)
@@ -153,8 +171,7 @@ __device__ inline void reverberateByLanes(const StagedSegment& s, const Reverber
         break;
       }
       const float units = scale * inBin[i].level * inBin[i].share;
-      const int sum = s.echo.straightBack ? straightPowerSum : (inBin[i].sign > 0.0f ? plusSum : minusSum);
-      addUnits(row.batch[reverberationSumCount * b + sum], s.echo.straightBack ? units * inBin[i].level : units);
+      addUnits(row.batch[reverberationSumCount * b + sum[i]], StraightBack ? units * inBin[i].level : units);
       if (b == row.bins.absorptionBin(b))
       {
         addAbsorbed(row.absorbedByTissue + 2 * b, units, inBin[i].absorbedNp);
@@ -164,6 +181,7 @@ __device__ inline void reverberateByLanes(const StagedSegment& s, const Reverber
 }
 
 /// The staged segments that `waiting` has a bit for.
+template<bool StraightBack>
 __device__ inline void reverberateByWarp(const StagedSegment* staged, unsigned waiting, const ReverberationRow& row,
                                          float scale, int lane)
 {
@@ -178,7 +196,7 @@ __device__ inline void reverberateByWarp(const StagedSegment* staged, unsigned w
     }
     if (mine >= 0)
     {
-      reverberateByLanes(staged[mine], row, scale, lane % echoLanes);
+      reverberateByLanes<StraightBack>(staged[mine], row, scale, lane % echoLanes);
     }
   }
 }

@@ -17,12 +17,6 @@ struct PathKey
   const BounceScramble* scrambles = nullptr; ///< of the batch, scrambleCount() of them, or null to make them
 };
 
-/// Every other path: see tissueEcho.
-SONO_HD inline bool showsStraightBack(const PathKey& key)
-{
-  return (key.path + key.batch) % 2 != 0;
-}
-
 /// A batch has one scramble a bounce up to maxCollisions, and one for where its paths start.
 SONO_HD inline int scrambleCount(const TraceView& view)
 {

@@ -140,9 +140,8 @@ SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, cons
   float travelled = 0.0f;
   const bool met = findBoundary(space, view.firstTargetMedium, path, limit, hit, boundary, travelled);
   const TraceMedium& medium = view.media[path.tissue];
-  piece = { path.ray.position, path.ray.direction, travelled,        path.intensity,
-            medium.decayPerMm, path.absorbed,      path.length,      path.rangeMm,
-            medium.rangePerMm, medium.scatter,     path.reflections, path.straightBack };
+  piece = { path.ray.position, path.ray.direction, travelled,         path.intensity, medium.decayPerMm, path.absorbed,
+            path.length,       path.rangeMm,       medium.rangePerMm, medium.scatter, path.reflections };
   const float left = expf(-medium.decayPerMm * travelled);
   path.intensity *= left;
   path.amplitude *= sqrtf(left);

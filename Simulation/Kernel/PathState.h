@@ -19,10 +19,9 @@ struct PathState
   /// chance with which the path was drawn.
   float amplitude = 1.0f;
   int reflections = 0;
-  bool straightBack = false; ///< which of the two echoes of tissue it shows, see tissueEcho
-  int tissue = 0;            ///< medium that the path is in
-  int target = -1;           ///< target that the path is in; the cells do not count there
-  int ignored = -1;          ///< see marchToBoundary
+  int tissue = 0;   ///< medium that the path is in
+  int target = -1;  ///< target that the path is in; the cells do not count there
+  int ignored = -1; ///< see marchToBoundary
   float ignoreUntil = 0.0f;
   int collisions = 0;
   int pieces = 0; ///< since the last boundary
@@ -42,7 +41,6 @@ struct PathSegment
   float rangePerMm = 1.0f; ///< of the medium
   float scatter = 0.0f;
   int reflections = 0;
-  bool straightBack = false;
 };
 
 /// One side of a boundary.

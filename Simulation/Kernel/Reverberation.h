@@ -77,52 +77,63 @@ struct TissueEcho
   float absorbed;  ///< what the media have taken at its start, two-way exponent of the amplitude
   Vec3f start;     ///< of its own way; straight back, as seen from where mirrors would have taken the path: placeAside
   Vec3f direction; ///< how either changes with s
-  bool straightBack;
 };
 
-/// A path shows either its own way or, of an even number of reflections and on its way into the body, the way straight
-/// back, each for the paths that show the other as well.
-SONO_HD inline TissueEcho tissueEcho(const StraightWay& way, const TraceLine& axis, const TraceLine& own,
-                                     const PathSegment& s)
+/// Of the path's own way (13.5).
+SONO_HD inline TissueEcho ownWayEcho(const PathSegment& s)
 {
-  TissueEcho echo{ s.rangeMm,   s.rangePerMm, s.intensity * s.scatter, s.decayPerMm, s.absorbed, s.start,
-                   s.direction, false };
-  const float cosine = glm::dot(s.direction, axis.axis);
-  if (s.reflections % 2 != 0 || cosine < 0.5f)
-  {
-    return echo;
-  }
-  if (!s.straightBack)
-  {
-    echo.level *= 2.0f;
-    return echo;
-  }
+  return { s.rangeMm, s.rangePerMm, s.intensity * s.scatter, s.decayPerMm, s.absorbed, s.start, s.direction };
+}
+
+/// Whether a segment is heard straight back as well: on its way into the body, after an even number of reflections.
+SONO_HD inline bool isStraightBack(const TraceLine& axis, const PathSegment& s)
+{
+  return s.reflections % 2 == 0 && glm::dot(s.direction, axis.axis) >= 0.5f;
+}
+
+/// Straight back, less by what is not heard of it beside the axis.
+SONO_HD inline TissueEcho straightBackEcho(const StraightWay& way, const TraceLine& axis, const TraceLine& own,
+                                           const PathSegment& s)
+{
   const StraightWayAt back = wayBackFrom(way, glm::dot(s.start - axis.origin, axis.axis), true);
-  const float mean = 0.5f * (1.0f + cosine);
-  echo.r0 = 0.5f * (s.rangeMm + back.rangeMm);
-  echo.mu = s.rangePerMm * mean;
-  // (13.6) for the two senses of the loop, twice for the paths that show their own way.
-  echo.level = sqrtf(8.0f * s.intensity) * back.amplitude * s.scatter;
-  echo.decay = s.decayPerMm * mean;
-  echo.absorbed = 0.5f * (s.absorbed + back.absorbedNp);
-  echo.start = placeAside(axis, own, s.start, s.lengthMm);
-  echo.direction = placeAside(axis, own, s.start + s.direction, s.lengthMm + 1.0f) - echo.start;
-  echo.straightBack = true;
-  return echo;
+  const float mean = 0.5f * (1.0f + glm::dot(s.direction, axis.axis));
+  const Vec3f start = placeAside(axis, own, s.start, s.lengthMm);
+  return { 0.5f * (s.rangeMm + back.rangeMm), s.rangePerMm * mean,
+           // (13.6), for the two senses of the loop.
+           2.0f * sqrtf(s.intensity) * back.amplitude * s.scatter, s.decayPerMm * mean,
+           0.5f * (s.absorbed + back.absorbedNp), start,
+           placeAside(axis, own, s.start + s.direction, s.lengthMm + 1.0f) - start };
+}
+
+/// The ranges, before `endMm`, in which what comes straight back from a segment so long is heard: up to five deviations
+/// beside the axis, beyond which less than 4e-6 of its power is.
+SONO_HD inline DepthSpan heardSpan(const TissueEcho& echo, float length, float endMm)
+{
+  constexpr float furthestMm = 5.0f * heardAsideMm;
+  const float a = larger(glm::dot(echo.direction, echo.direction), 1e-12f);
+  const float b = glm::dot(echo.start, echo.direction);
+  const float rest = b * b - a * (glm::dot(echo.start, echo.start) - furthestMm * furthestMm);
+  if (!(rest > 0.0f))
+  {
+    return { 0.0f, 0.0f };
+  }
+  const float reach = sqrtf(rest);
+  const float from = larger(0.0f, (-b - reach) / a);
+  const float to = smaller(length, (reach - b) / a);
+  return to > from ? depthSpan(echo.r0 + echo.mu * from, echo.mu, to - from, endMm) : DepthSpan{ 0.0f, 0.0f };
 }
 
 /// What such an echo leaves in a bin: amplitudes of own ways add up within a resolution cell, with the sign of its
-/// tissue; of ways straight back powers do (13.6).
+/// tissue (signInBin); of ways straight back powers do (13.6), of `level` times heardInBin.
 struct BinEcho
 {
   float share;      ///< of the bin that it covers
   float level;      ///< mean over that
   float absorbedNp; ///< in its middle
-  float sign;       ///< of its cell
+  Vec3f place;      ///< there
 };
 
-SONO_HD inline BinEcho echoInBin(const TissueEcho& echo, const DepthSpan& span, std::uint32_t line, int bin,
-                                 float binMm, float cellMm)
+SONO_HD inline BinEcho echoInBin(const TissueEcho& echo, const DepthSpan& span, int bin, float binMm)
 {
   const float from = larger(span.low, float(bin) * binMm);
   const float to = smaller(span.high, float(bin + 1) * binMm);
@@ -132,12 +143,19 @@ SONO_HD inline BinEcho echoInBin(const TissueEcho& echo, const DepthSpan& span, 
   const float near = larger(0.0f, smaller(s0, s1));
   const float step = larger(0.0f, larger(s0, s1) - near);
   const float middle = near + 0.5f * step;
-  const Vec3f place = echo.start + echo.direction * middle;
-  // Of ways straight back powers count: half of it.
-  const float unheard = echo.straightBack ? 0.5f * unheardAside(place) : 0.0f;
-  return { larger(0.0f, to - from) / binMm,
-           echo.level * expNegative(-echo.decay * near - unheard) * meanDecay(echo.decay * step),
-           echo.absorbed + echo.decay * middle, cellSign(place, echo.direction, cellMm, signDraw(line, bin)) };
+  return { larger(0.0f, to - from) / binMm, echo.level * expNegative(-echo.decay * near) * meanDecay(echo.decay * step),
+           echo.absorbed + echo.decay * middle, echo.start + echo.direction * middle };
+}
+
+SONO_HD inline float signInBin(const TissueEcho& echo, const BinEcho& inBin, std::uint32_t line, int bin, float cellMm)
+{
+  return cellSign(inBin.place, echo.direction, cellMm, signDraw(line, bin));
+}
+
+/// Of the amplitude, so that its square is what is heard of the power.
+SONO_HD inline float heardInBin(const BinEcho& inBin)
+{
+  return expNegative(-0.5f * unheardAside(inBin.place));
 }
 
 /// An echo that arrives at a range, with its sign.

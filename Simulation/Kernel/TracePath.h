@@ -130,7 +130,6 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const B
                               const PathKey& key, Sink& sink)
 {
   PathState path = start.path;
-  path.straightBack = showsStraightBack(key);
   PathBoundary boundary = start.boundary;
   while (passBoundary(view, space, boundary, key, path, sink) &&
          advanceToBoundary(view, space, beam, path, boundary, sink) && arriveAtBoundary(view, path, boundary, sink))
@@ -144,7 +143,6 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const T
                               Sink& sink)
 {
   PathState path;
-  path.straightBack = showsStraightBack(key);
   bool goesOn = startPath(view, space, own, path, sink);
   while (goesOn)
   {

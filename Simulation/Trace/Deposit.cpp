@@ -212,10 +212,9 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
   }
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void LineTally::addReverberation(const PathSegment& s)
+template<class Add>
+inline void LineTally::addToTissueBins(const TissueEcho& echo, const DepthSpan& span, const Add& add)
 {
-  const TissueEcho echo = tissueEcho(way_, *axis_, line_, s);
-  const DepthSpan span = depthSpan(echo.r0, echo.mu, s.length, tissueBins_.endMm());
   if (!(span.high > span.low) || echo.level == 0.0f)
   {
     return;
@@ -231,22 +230,36 @@ SONO_SIMD_CLONES __attribute__((flatten)) void LineTally::addReverberation(const
   const BinSpan covered = binSpan(span, tissueBins_.mm);
   for (int b = covered.first; b <= covered.last; ++b)
   {
-    const BinEcho inBin = echoInBin(echo, span, lineKey_, b, tissueBins_.mm, cellMm_[std::size_t(b)]);
-    const double level = double(inBin.level * inBin.share);
-    ReverberationSums& sums = reverberation_[std::size_t(b)];
-    if (echo.straightBack)
-    {
-      sums.of[straightPowerSum] += level * double(inBin.level);
-    }
-    else
-    {
-      sums.of[inBin.sign > 0.0f ? plusSum : minusSum] += level;
-    }
+    const BinEcho inBin = echoInBin(echo, span, b, tissueBins_.mm);
+    const double level = add(b, inBin, reverberation_[std::size_t(b)]);
     if (b == tissueBins_.absorptionBin(b))
     {
       absorbed_.tissue[std::size_t(b)].weight += level;
       absorbed_.tissue[std::size_t(b)].weightedNp += level * double(inBin.absorbedNp);
     }
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void LineTally::addReverberation(const PathSegment& s)
+{
+  const TissueEcho own = ownWayEcho(s);
+  addToTissueBins(own, depthSpan(own.r0, own.mu, s.length, tissueBins_.endMm()),
+                  [&](int b, const BinEcho& inBin, ReverberationSums& sums) {
+                    const float sign = signInBin(own, inBin, lineKey_, b, cellMm_[std::size_t(b)]);
+                    const double level = double(inBin.level * inBin.share);
+                    sums.of[sign > 0.0f ? plusSum : minusSum] += level;
+                    return level;
+                  });
+  if (isStraightBack(*axis_, s))
+  {
+    const TissueEcho straight = straightBackEcho(way_, *axis_, line_, s);
+    addToTissueBins(straight, heardSpan(straight, s.length, tissueBins_.endMm()),
+                    [&](int, const BinEcho& inBin, ReverberationSums& sums) {
+                      const float heard = inBin.level * heardInBin(inBin);
+                      const double level = double(heard * inBin.share);
+                      sums.of[straightPowerSum] += level * double(heard);
+                      return level;
+                    });
   }
 }
 

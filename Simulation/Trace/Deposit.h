@@ -61,6 +61,9 @@ public:
 private:
   void addEcho(float rangeMm, float amplitude);
   void addReverberation(const PathSegment& s);
+  /// `add` puts what an echo leaves in a bin to its sums and returns its level, for the mean of what was absorbed.
+  template<class Add>
+  void addToTissueBins(const TissueEcho& echo, const DepthSpan& span, const Add& add);
   template<int Sums>
   void deposit(const BeamSegment& g, const DepthSpan& span);
 

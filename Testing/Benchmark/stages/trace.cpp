@@ -230,12 +230,11 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
   }
 }
 
-/// The time of a whole image of so many paths that its noise is 1 or 0.5 dB.
-void printTimeToNoise(const Scene& scene)
+/// The time of a whole image of so many paths that its noise is 1 or 0.5 dB; figures end with the probe's name.
+void printTimeToNoise(const Scene& scene, ImageSettings settings, const std::string& probe)
 {
-  ImageSettings settings;
-  settings.matchStages();
   const PictureNoise noise(scene, settings);
+  printFigure("noise_of_256_paths_db" + probe, noise.decibels(256), "dB");
   for (const auto& [db, name] : { std::pair{ 1.0, "1db" }, std::pair{ 0.5, "05db" } })
   {
     settings.tracing.pathsPerLine = noise.pathsWithin(db);
@@ -244,8 +243,8 @@ void printTimeToNoise(const Scene& scene)
     {
       seconds.push_back(warmImageSeconds(scene, settings).image);
     }
-    printFigure(std::string("paths_to_") + name, settings.tracing.pathsPerLine, "paths");
-    printFigure(std::string("time_to_") + name + "_s", medianOf(seconds), "s");
+    printFigure(std::string("paths_to_") + name + probe, settings.tracing.pathsPerLine, "paths");
+    printFigure(std::string("time_to_") + name + probe + "_s", medianOf(seconds), "s");
   }
 }
 
@@ -260,7 +259,10 @@ void measureTrace()
     seconds.push_back(tracingSeconds(*scene, lines));
   }
   printFigure("trace_a4c_s", medianOf(seconds), "s");
-  printTimeToNoise(*scene);
+  ImageSettings unnamed; // no aperture
+  unnamed.matchStages();
+  printTimeToNoise(*scene, unnamed, "");
+  printTimeToNoise(*scene, a4cWith(InterfaceModel::Acoustic), "_p42");
   {
     const auto ten = sceneWithFarLabels(10, 165.0);
     const auto hundred = sceneWithFarLabels(100, 165.0);
