@@ -26,7 +26,8 @@ struct Measured
   std::string program;
   std::string scene;
   std::string setting;
-  double seconds;
+  double seconds;     ///< by the wall
+  double coreSeconds; ///< of all cores, which other programs on the machine hardly touch
   double error;
 };
 
@@ -140,7 +141,7 @@ std::vector<std::string> measureOurs(const Output& output, const PeerScene& scen
     user.push_back(userSeconds() - userBefore);
   }
   const double error = errorOf(data, referenceOf(output, scene));
-  measured.push_back({ us, scene.name, "as it is", median(wall), error });
+  measured.push_back({ us, scene.name, "as it is", median(wall), median(user), error });
   return { scene.name,    us,   version(), "as it is", number(median(wall)), number(median(user)), number(first),
            number(error), "CPU" };
 }
@@ -170,23 +171,26 @@ void compare(Output& output, const std::vector<Measured>& measured)
     const Measured* fastest = &runs.front();
     for (const Measured& run : runs)
     {
-      fastest = run.seconds < fastest->seconds ? &run : fastest;
-      if (run.error <= allowed && (!equal || run.seconds < equal->seconds))
+      fastest = run.coreSeconds < fastest->coreSeconds ? &run : fastest;
+      if (run.error <= allowed && (!equal || run.coreSeconds < equal->coreSeconds))
       {
         equal = &run;
       }
     }
     const double ratio = equal->seconds / ours->seconds;
+    const double coreRatio = equal->coreSeconds / ours->coreSeconds;
     std::string name = key;
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return c == '-' ? '_' : char(std::tolower(c)); });
     output.figure("peer_" + name + "_time_ratio", ratio, "1");
+    output.figure("peer_" + name + "_core_time_ratio", coreRatio, "1");
     rows.push_back({ runs.front().program, ours->scene, equal->setting, number(equal->error), number(ours->error),
-                     number(ratio), number(fastest->seconds / ours->seconds), number(fastest->error) });
+                     number(ratio), number(coreRatio), fastest->setting, number(fastest->error),
+                     number(fastest->coreSeconds / ours->coreSeconds) });
   }
   output.table("peers_equal.csv",
                { "program", "scene", "its setting at equal error", "its error", "our error", "its time to ours",
-                 "its fastest setting's time to ours", "and error" },
+                 "its core seconds to ours", "its fastest setting", "error of that", "core seconds of that to ours" },
                rows);
 }
 
@@ -211,7 +215,8 @@ void peers(Output& output)
     const double error = std::strtod(row.fields[7].c_str(), nullptr);
     if (error > 0.0)
     {
-      measured.push_back({ row.fields[1], row.fields[0], row.fields[3], std::stod(row.fields[4]), error });
+      measured.push_back(
+        { row.fields[1], row.fields[0], row.fields[3], std::stod(row.fields[4]), std::stod(row.fields[5]), error });
     }
   }
   output.table("peers.csv", theirs.header, rows);
