@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -31,11 +30,12 @@ struct Measured
   double error;
 };
 
-double userSeconds()
+double coreSeconds()
 {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return double(usage.ru_utime.tv_sec) + 1e-6 * double(usage.ru_utime.tv_usec);
+  return double(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * double(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 double median(std::vector<double> values)
@@ -54,12 +54,11 @@ std::string python()
   return std::filesystem::exists(own) ? own.string() : "python3";
 }
 
-/// Runs peers/measure.py, which leaves peers_theirs.csv, and for each scene pulse and reference.
-void measureTheirs(const Output& output)
+void runScript(const Output& output, const std::string& option)
 {
   const auto script = std::filesystem::path(SONOVDB_DATA_DIR) / ".." / "Testing" / "Study" / "peers" / "measure.py";
-  const std::string command = "env -u PYTHONPATH -u PYTHONHOME '" + python() + "' '" + script.string() + "' '" +
-                              output.file("").string() + "'" + (output.quick() ? " --quick" : "");
+  const std::string command = "env -u PYTHONPATH -u PYTHONHOME PYTHONDONTWRITEBYTECODE=1 '" + python() + "' '" +
+                              script.string() + "' '" + output.file("").string() + "' " + option;
   if (std::system(command.c_str()) != 0)
   {
     throw Error("'" + script.string() +
@@ -72,78 +71,30 @@ std::shared_ptr<const SampledPulse> pulseOf(const Output& output, const PeerScen
   return std::make_shared<const SampledPulse>(readPulse(output.file("peers_pulse_" + scene.name + ".csv").string()));
 }
 
-/// The reference's signals, transmits x elements x samples, in doubles.
-std::vector<double> referenceOf(const Output& output, const PeerScene& scene)
-{
-  const auto path = output.file("peers_reference_" + scene.name + ".f64");
-  std::vector<double> values(std::filesystem::file_size(path) / sizeof(double));
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(values.data()), std::streamsize(values.size() * sizeof(double)));
-  if (!file)
-  {
-    throw Error("'" + path.string() + "' cannot be read");
-  }
-  return values;
-}
-
-/// What is left of the signals less the reference after one factor for each transmit, as the peers have it; no delay is
-/// fitted to ours.
-double errorOf(const ChannelData& data, const std::vector<double>& reference)
-{
-  const std::size_t signals = std::size_t(data.transmitCount) * std::size_t(data.elementCount);
-  const std::size_t given = reference.size() / signals;
-  const std::size_t count = std::min(given, std::size_t(data.sampleCount));
-  double left = 0.0;
-  double all = 0.0;
-  for (int t = 0; t < data.transmitCount; ++t)
-  {
-    double mixed = 0.0;
-    double theirs = 0.0;
-    double ours = 0.0;
-    for (int n = 0; n < data.elementCount; ++n)
-    {
-      const float* signal = data.signal(t, n);
-      const double* wanted =
-        reference.data() + (std::size_t(t) * std::size_t(data.elementCount) + std::size_t(n)) * given;
-      for (std::size_t s = 0; s < count; ++s)
-      {
-        mixed += double(signal[s]) * wanted[s];
-        theirs += wanted[s] * wanted[s];
-        ours += double(signal[s]) * double(signal[s]);
-      }
-    }
-    const double factor = mixed / theirs;
-    left += ours / (factor * factor) - theirs;
-    all += theirs;
-  }
-  return std::sqrt(std::max(0.0, left) / all);
-}
-
-std::vector<std::string> measureOurs(const Output& output, const PeerScene& scene, std::vector<Measured>& measured)
+/// Our signals go into a file that the same script compares with the reference as it compares theirs.
+Measured measureOurs(const Output& output, const PeerScene& scene, double& firstSeconds)
 {
   const auto pulse = pulseOf(output, scene);
   std::vector<double> wall;
-  std::vector<double> user;
-  double first = 0.0;
+  std::vector<double> core;
   ChannelData data;
   for (int run = 0; run < (output.quick() ? 2 : 8); ++run)
   {
-    const double userBefore = userSeconds();
+    const double coreBefore = coreSeconds();
     const auto start = std::chrono::steady_clock::now();
     data = simulateChannels(scene.plan(pulse), scene.points);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (run == 0)
     {
-      first = seconds;
+      firstSeconds = seconds;
       continue;
     }
     wall.push_back(seconds);
-    user.push_back(userSeconds() - userBefore);
+    core.push_back(coreSeconds() - coreBefore);
   }
-  const double error = errorOf(data, referenceOf(output, scene));
-  measured.push_back({ us, scene.name, "as it is", median(wall), median(user), error });
-  return { scene.name,    us,   version(), "as it is", number(median(wall)), number(median(user)), number(first),
-           number(error), "CPU" };
+  std::ofstream file(output.file("peers_ours_" + scene.name + ".f32"), std::ios::binary);
+  file.write(reinterpret_cast<const char*>(data.rf.data()), std::streamsize(data.rf.size() * sizeof(float)));
+  return { us, scene.name, "as it is", median(wall), median(core), 0.0 };
 }
 
 /// What each peer takes at equal error: of its settings the fastest that is no further off than we are, or than it ever
@@ -198,16 +149,26 @@ void peers(Output& output)
 {
   const std::vector<PeerScene> scenes = peerScenes(output.quick());
   writePeerScenes(output, scenes);
-  measureTheirs(output);
+  runScript(output, output.quick() ? "--quick" : "");
   const CsvFile theirs = CsvFile::read(output.file("peers_theirs.csv").string());
-  std::vector<std::vector<std::string>> rows;
   std::vector<Measured> measured;
+  std::map<std::string, double> firstSeconds;
   for (const PeerScene& scene : scenes)
   {
-    if (std::filesystem::exists(output.file("peers_reference_" + scene.name + ".f64")))
+    if (std::filesystem::exists(output.file("peers_pulse_" + scene.name + ".csv")))
     {
-      rows.push_back(measureOurs(output, scene, measured));
+      measured.push_back(measureOurs(output, scene, firstSeconds[scene.name]));
     }
+  }
+  runScript(output, "--ours");
+  const CsvFile errors = CsvFile::read(output.file("peers_ours.csv").string());
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t n = 0; n < errors.rows.size(); ++n)
+  {
+    Measured& ours = measured[n];
+    ours.error = std::stod(errors.rows[n].fields[1]);
+    rows.push_back({ ours.scene, us, version(), ours.setting, number(ours.seconds), number(ours.coreSeconds),
+                     number(firstSeconds[ours.scene]), number(ours.error), "CPU" });
   }
   for (const CsvFile::Row& row : theirs.rows)
   {

@@ -146,7 +146,7 @@ class Spectrum:
         return (values @ turn).real, (values * (2j * np.pi * self.f) @ turn).real
 
 
-def in_time(scene, points, elements, times, along=6, across=48):
+def in_time(scene, points, elements, times, along=24, across=48):
     """The second way: no frequencies. Each pair of pieces of a sending and a hearing element, at midpoints instead of
     Gauss's nodes, echoes at its own time; what arrives at each time is gathered in fine bins and echoes the pulse."""
     spectrum = pulse_of(scene)
