@@ -51,7 +51,8 @@ std::string python()
   const std::filesystem::path folder =
     named ? std::filesystem::path(named) : std::filesystem::path(SONOVDB_DATA_DIR) / ".." / "build" / "peers";
   const std::filesystem::path own = folder / "bin" / "python";
-  return std::filesystem::exists(own) ? own.string() : "python3";
+  const char* machines = "/usr/bin/python3"; // Debian's, which has python3-numpy
+  return std::filesystem::exists(own) ? own.string() : std::filesystem::exists(machines) ? machines : "python3";
 }
 
 void runScript(const Output& output, const std::string& option)
