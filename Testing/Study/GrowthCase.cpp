@@ -86,7 +86,7 @@ std::vector<GrowthAxis> growthAxes(bool quick)
              { "elevations", "elevations", { 1, 2 } }, { "cores", "cores", { 1, 2 } } };
   }
   return { { "labels", "labels", { 10, 25, 50, 100, 200 } },
-           { "volume", "10^6 voxels of one body", { 1.94, 5.73, 15.5, 45.8, 124 } },
+           { "volume", "10^6 voxels of one body", { 1.94, 5.73, 15.5, 45.8, 123 } },
            { "lines", "scan lines", { 64, 128, 256, 512, 1024 } },
            { "depth", "depth, cm", { 4, 7.5, 15, 30 } },
            { "elevations", "elevations", { 1, 4, 16, 64 } },

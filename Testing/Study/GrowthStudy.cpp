@@ -117,6 +117,36 @@ PowerLaw powerLaw(const std::vector<double>& x, const std::vector<double>& y)
   return law;
 }
 
+/// y = at0 + each x by least squares of the relative deviations, and the largest of these.
+struct StraightLine
+{
+  double at0 = 0.0;
+  double each = 0.0;
+  double worst = 0.0;
+};
+
+StraightLine straightLine(const std::vector<double>& x, const std::vector<double>& y)
+{
+  double s11 = 0.0, s1x = 0.0, sxx = 0.0, s1 = 0.0, sx = 0.0; // of 1 / y and x / y, which are to make 1
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    const double a = 1.0 / y[i];
+    const double b = x[i] / y[i];
+    s11 += a * a;
+    s1x += a * b;
+    sxx += b * b;
+    s1 += a;
+    sx += b;
+  }
+  const double determinant = s11 * sxx - s1x * s1x;
+  StraightLine line{ (s1 * sxx - sx * s1x) / determinant, (sx * s11 - s1 * s1x) / determinant, 0.0 };
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    line.worst = std::max(line.worst, std::fabs((line.at0 + line.each * x[i]) / y[i] - 1.0));
+  }
+  return line;
+}
+
 int gpuCount()
 {
   int count = 0;
@@ -174,6 +204,7 @@ void growth(Output& output)
   }
   std::vector<std::vector<std::string>> rows;
   std::vector<std::vector<std::string>> slopes;
+  std::vector<std::vector<std::string>> lines;
   for (const GrowthAxis& axis : growthAxes(output.quick()))
   {
     std::vector<double> scene, first, next, peak;
@@ -203,6 +234,13 @@ void growth(Output& output)
       row.push_back(number(100.0 * (law.worst - 1.0)));
     }
     slopes.push_back(row);
+    for (const auto& [what, values] : { std::pair<const char*, const std::vector<double>&>{ "first picture, s", first },
+                                        { "next picture, s", next },
+                                        { "memory, MB", peak } })
+    {
+      const StraightLine line = straightLine(axis.values, values);
+      lines.push_back({ axis.label, what, number(line.at0), number(line.each), number(100.0 * line.worst) });
+    }
   }
   growGpus(output, rows);
   output.table(
@@ -213,6 +251,7 @@ void growth(Output& output)
     "growth_slopes.csv",
     { "axis", "scene", "off the line, %", "first picture", "off, %", "next picture", "off, %", "memory", "off, %" },
     slopes);
+  output.table("growth_lines.csv", { "axis", "what", "at 0", "each", "off the straight line, %" }, lines);
   std::error_code ignored;
   std::filesystem::remove_all(output.file("growth_case"), ignored);
 }

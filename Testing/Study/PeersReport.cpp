@@ -43,10 +43,10 @@ std::string peersPlot(const CsvFile& csv, const std::string& scene)
     {
       curve = curves.insert(curve, Curve{ name, {}, {}, CurveKind::Dots });
     }
-    curve->x.push_back(numberOf(row.fields[4]));
+    curve->x.push_back(numberOf(row.fields[5]));
     curve->y.push_back(numberOf(row.fields[7]));
   }
-  return svgPlot("Scene '" + scene + "': error over seconds", { "seconds of one call, by the wall", true },
+  return svgPlot("Scene '" + scene + "': error over seconds", { "seconds of all cores, one call", true },
                  { "root mean square error, share of the rms", true }, curves);
 }
 
@@ -125,13 +125,15 @@ std::string growthSection(const std::filesystem::path& folder)
   std::vector<Curve> memory;
   for (const auto& [name, rows] : axes)
   {
-    Curve first{ "first picture, core s", {}, {}, CurveKind::Line };
-    Curve next{ "next picture, core s", {}, {}, CurveKind::Line };
+    const bool byWall = name == "cores";
+    const std::string unit = byWall ? "seconds, by the wall" : "seconds of all cores";
+    Curve first{ "first picture", {}, {}, CurveKind::Line };
+    Curve next{ "next picture", {}, {}, CurveKind::Line };
     Curve peak{ name, {}, {}, CurveKind::Line };
     const double smallest = numberOf(rows.front()->fields[1]);
     for (const CsvFile::Row* row : rows)
     {
-      for (auto [curve, column] : { std::pair{ &first, 4 }, { &next, 6 } })
+      for (auto [curve, column] : { std::pair{ &first, byWall ? 3 : 4 }, { &next, byWall ? 5 : 6 } })
       {
         curve->x.push_back(numberOf(row->fields[1]));
         curve->y.push_back(numberOf(row->fields[std::size_t(column)]));
@@ -141,12 +143,12 @@ std::string growthSection(const std::filesystem::path& folder)
     }
     if (!first.y.empty() && first.y.front() > 0.0)
     {
-      text << svgPlot("Time over " + name, { name, true }, { "seconds of all cores", true }, { first, next });
+      text << svgPlot("Time over " + name, { name, true }, { unit, true }, { first, next });
       memory.push_back(peak);
     }
   }
   text << svgPlot("Memory over all of them", { "times the smallest", true }, { "peak, MB", true }, memory);
-  for (const char* name : { "growth_slopes.csv", "growth.csv" })
+  for (const char* name : { "growth_slopes.csv", "growth_lines.csv", "growth.csv" })
   {
     if (const auto table = tableIn(folder, name, text))
     {

@@ -146,7 +146,7 @@ TEST(StudyReport, PlotsPeersAndGrowthAndNamesWhatIsNotInstalled)
       { "GPUs", "1", "not measured: no GPU was here", "", "", "", "", "" } });
   writeReport(folder);
   const std::string html = textOf(folder / "report.html");
-  sono::testing::expectContains(html, "Scene 'plane': error over seconds");
+  sono::testing::expectContains(html, "Scene 'plane': error over core seconds");
   sono::testing::expectContains(html, ">Other 2<");
   sono::testing::expectContains(html, "not installed");
   sono::testing::expectContains(html, "Time over labels");
