@@ -46,7 +46,7 @@ std::string peersPlot(const CsvFile& csv, const std::string& scene)
     curve->x.push_back(numberOf(row.fields[5]));
     curve->y.push_back(numberOf(row.fields[7]));
   }
-  return svgPlot("Scene '" + scene + "': error over seconds", { "seconds of all cores, one call", true },
+  return svgPlot("Scene '" + scene + "': error over core seconds", { "seconds of all cores, one call", true },
                  { "root mean square error, share of the rms", true }, curves);
 }
 
@@ -111,8 +111,7 @@ std::string growthSection(const std::filesystem::path& folder)
     "Labels, lines, depth, elevations and cores: a synthetic torso of 400 x 400 x 300 mm, 256 x 256 x 192 voxels, 40 "
     "labels, P4-2 with 128 lines (elevations: a matrix of 64 lines in each). Volume: the bundled thorax in voxels of 2 "
     "to 0.5 mm. Slopes are exponents, of core seconds (of cores: of the wall), with how far the worst point lies off "
-    "the "
-    "line.");
+    "the line; a straight line is what costs the same for each one more, its deviation in per cent of the value.");
   std::vector<std::pair<std::string, std::vector<const CsvFile::Row*>>> axes;
   for (const CsvFile::Row& row : csv->rows)
   {
