@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # install-dependencies.sh [simulation|tests [--peers]]: installs the Debian 12 packages that SonoVDB needs to build and run;
 # those of the simulator alone, or those of the tests, too. Returns at once when all are there. With --peers, programs of
-# others from PyPI that read what is written (1.4 GB) go into build/peers, too; tests that ask them are skipped without.
+# others from PyPI that read what is written, and simulators (2.5 GB), go into build/peers, too; tests that ask them are
+# skipped without.
 set -euo pipefail
 
 packages=(
@@ -34,6 +35,8 @@ if [[ ${1:-} == tests ]]; then
 fi
 # As the tests know them.
 peers=(highdicom==0.28.2 dcmqi==1.5.7 SimpleITK==2.5.7 pyigtl==0.3.4 PyMUST==0.1.9 zea==0.1.8 "jax[cpu]==0.10.2" pyuff_ustb h5py)
+# Simulators that the study's part `peers` measures beside PyMUST and zea.
+peers+=(FastSIMUS==0.0.1 esdiva==0.3.0 k-Wave-python==0.6.2)
 
 fail()
 {

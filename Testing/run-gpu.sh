@@ -26,6 +26,7 @@ pack_programs()
   local work
   work="$(mktemp -d)"
   cp "$bin/GpuTests" "$bin/GpuBenchmark" "$bin/study_curves" "$root"/Data/*.csv "$work"
+  cp -r "$root/Data/probes" "$work"
   archive programs "$work"
 }
 

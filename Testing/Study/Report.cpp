@@ -4,6 +4,7 @@
 #include "Detectability.h"
 #include "ErrorReport.h"
 #include "Html.h"
+#include "PeersReport.h"
 #include "SvgPlot.h"
 
 #include <algorithm>
@@ -47,13 +48,15 @@ public:
 
   std::string html()
   {
+    pictures();
     summary();
     wires();
     lesions();
     speckle();
     beam();
-    pictures();
     text_ << errorSection(folder_);
+    text_ << peersSection(folder_);
+    text_ << growthSection(folder_);
     asTheyAre();
     return text_.str();
   }

@@ -127,6 +127,33 @@ TEST(StudyReport, ShowsTheReferencesOwnErrorAndTheGpusCurves)
   EXPECT_EQ(html.find("<h3>rib_gpu</h3>"), std::string::npos);
 }
 
+TEST(StudyReport, PlotsPeersAndGrowthAndNamesWhatIsNotInstalled)
+{
+  const auto folder = emptyFolder("study_peers");
+  const Output output(folder, "sample", true);
+  const std::vector<std::string> header{ "scene",        "program",       "version", "setting", "seconds",
+                                         "core seconds", "first call, s", "error",   "device" };
+  output.table("peers.csv", header,
+               { { "plane", "SonoVDB", "1", "as it is", "0.1", "0.2", "0.1", "0.001", "CPU" },
+                 { "plane", "Other", "2", "fast", "1", "1", "1", "0.01", "CPU" },
+                 { "plane", "Other", "2", "exact", "3", "3", "3", "0.0005", "CPU" },
+                 { "plane", "Absent", "", "not installed", "", "", "", "", "" } });
+  output.table(
+    "growth.csv",
+    { "axis", "value", "scene, s", "first picture, s", "first, core s", "next picture, s", "next, core s", "peak, MB" },
+    { { "labels", "10", "1", "1", "1", "1", "1", "100" },
+      { "labels", "20", "1", "1", "1", "2", "2", "110" },
+      { "GPUs", "1", "not measured: no GPU was here", "", "", "", "", "" } });
+  writeReport(folder);
+  const std::string html = textOf(folder / "report.html");
+  sono::testing::expectContains(html, "Scene 'plane': error over core seconds");
+  sono::testing::expectContains(html, ">Other 2<");
+  sono::testing::expectContains(html, "not installed");
+  sono::testing::expectContains(html, "Time over labels");
+  EXPECT_EQ(html.find("Time over GPUs"), std::string::npos);
+  sono::testing::expectContains(html, "no GPU was here");
+}
+
 TEST(StudyReport, OfAnEmptyFolderIsRefused)
 {
   const auto folder = emptyFolder("study_empty");
