@@ -190,7 +190,7 @@ Heart::Heart(const HeartShape& shape)
   rightEpicardium_ = Ellipsoid(Vec3d(0.0), radii + 4.0);
 }
 
-void Heart::addRipples(Surfaces& f, const Vec3d& p)
+inline void Heart::addRipples(Surfaces& f, const Vec3d& p)
 {
   const double leftMm = 0.5 * smoothStep(105.0, 75.0, p.z);
   if (leftMm > 0.0)
@@ -203,7 +203,7 @@ void Heart::addRipples(Surfaces& f, const Vec3d& p)
   }
 }
 
-void Heart::addLeftVentricle(Surfaces& f, const Vec3d& p) const
+inline void Heart::addLeftVentricle(Surfaces& f, const Vec3d& p) const
 {
   const double inner = leftVentricle_.distance(p) + f.leftRipple;
   const double outer = leftEpicardium_.distance(p);
@@ -213,13 +213,13 @@ void Heart::addLeftVentricle(Surfaces& f, const Vec3d& p) const
 }
 
 /// The right ventricle is an ellipsoid that reaches into the left ventricle, which cuts a crescent out of it.
-Vec3d Heart::inRightVentricle(const Vec3d& p) const
+inline Vec3d Heart::inRightVentricle(const Vec3d& p) const
 {
   const Vec3d q = p - rightVentricleCentre + Vec3d(rightwardMm_, 0.0, 0.0);
   return { glm::dot(q, rightSideAxis), glm::dot(q, rightDepthAxis), glm::dot(q, rightLongAxis) };
 }
 
-void Heart::addRightVentricle(Surfaces& f, const Vec3d& p) const
+inline void Heart::addRightVentricle(Surfaces& f, const Vec3d& p) const
 {
   const Vec3d local = inRightVentricle(p);
   const double inner = rightVentricle_.distance(local) + f.rightRipple;
@@ -227,7 +227,7 @@ void Heart::addRightVentricle(Surfaces& f, const Vec3d& p) const
   f.rightEpicardium = smoothIntersection(rightEpicardium_.distance(local), p.z - 107.5, 5.0);
 }
 
-void Heart::addAtria(Surfaces& f, const Vec3d& p) const
+inline void Heart::addAtria(Surfaces& f, const Vec3d& p) const
 {
   const double aside = 0.5 * rightwardMm_;
   // The bodies are cut by the plane of the interatrial septum; the septum is what is left between them.
@@ -240,7 +240,7 @@ void Heart::addAtria(Surfaces& f, const Vec3d& p) const
   f.rightAtrium = smoothIntersection(f.rightAtrium, -f.leftEpicardium, 3.0);
 }
 
-ThoraxLabel Heart::leftBlood(const Surfaces& f, const Vec3d& p) const
+inline ThoraxLabel Heart::leftBlood(const Surfaces& f, const Vec3d& p) const
 {
   if (f.outflow < 0.0)
   {
@@ -260,7 +260,7 @@ ThoraxLabel Heart::leftBlood(const Surfaces& f, const Vec3d& p) const
   return side == ValveSide::Leaflet ? MitralValve : side == ValveSide::Atrium ? LeftAtriumBlood : LeftVentricleBlood;
 }
 
-ThoraxLabel Heart::rightBlood(const Vec3d& p) const
+inline ThoraxLabel Heart::rightBlood(const Vec3d& p) const
 {
   if (moderatorBand(p + Vec3d(rightwardMm_, 0.0, 0.0)) < 0.0)
   {
@@ -273,14 +273,14 @@ ThoraxLabel Heart::rightBlood(const Vec3d& p) const
 }
 
 /// Whether a point of the left ventricle's wall has the right ventricle on its other side.
-bool Heart::facesRightVentricle(const Surfaces& f, const Vec3d& p) const
+inline bool Heart::facesRightVentricle(const Surfaces& f, const Vec3d& p) const
 {
   const Vec3d fromAxis(p.x - 5.0, p.y + 0.5, 0.0);
   const Vec3d onEpicardium = p - f.leftEpicardium * fromAxis / std::max(glm::length(fromAxis), 1.0);
   return rightOfSeptum_.distance(inRightVentricle(onEpicardium)) < 0.0;
 }
 
-ThoraxLabel Heart::wall(const Surfaces& f, const Vec3d& p) const
+inline ThoraxLabel Heart::wall(const Surfaces& f, const Vec3d& p) const
 {
   const bool leftAtrium = f.leftAtrium < atrialWallMm;
   const bool rightAtrium = f.rightAtrium < atrialWallMm;

@@ -93,26 +93,48 @@ public:
     return {};
   }
 
+  /// The plane through a place on the skin, however it is rocked there.
+  struct Approach
+  {
+    Vec3d normal;
+    Vec3d straight; ///< to the structures' middle
+    double planeOffDeg;
+    double markOffMm;
+    double lookOffDeg;
+  };
+
+  Approach approachFrom(const Vec3d& localMm) const
+  {
+    const PlaneFit fit = fitPlaneThrough(localMm, points_, weights_);
+    Approach approach{};
+    approach.normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
+    const Vec3d& normal = approach.normal;
+    approach.planeOffDeg = std::acos(std::min(1.0, glm::dot(normal, normal_))) / degree;
+    approach.markOffMm = std::abs(glm::dot(normal, mark_ - localMm));
+    const Vec3d way = ideal_.middle - localMm;
+    approach.straight = glm::normalize(way - glm::dot(way, normal) * normal);
+    approach.lookOffDeg = std::acos(std::min(1.0, glm::dot(approach.straight, look_))) / degree;
+    return approach;
+  }
+
   /// What becomes of a trial; of one that cannot be better than `best`, only that it is not.
-  Outcome tryAt(const Trial& trial, const Outcome& best) const
+  Outcome tryAt(const Trial& trial, const Approach& approach, const Outcome& best) const
   {
     Outcome outcome;
     StandardView& view = outcome.view;
-    const PlaneFit fit = fitPlaneThrough(trial.place.localMm, points_, weights_);
-    const Vec3d normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
-    view.planeOffDeg = std::acos(std::min(1.0, glm::dot(normal, normal_))) / degree;
-    view.markOffMm = std::abs(glm::dot(normal, mark_ - trial.place.localMm));
+    view.planeOffDeg = approach.planeOffDeg;
+    view.markOffMm = approach.markOffMm;
     if (view.planeOffDeg > atFirst * plan_.mostOffDeg || view.markOffMm > atFirst * plan_.mostOffMm)
     {
       return outcome;
     }
     outcome.stage = Outcome::OffLook;
-    const Vec3d way = ideal_.middle - trial.place.localMm;
-    const Vec3d straight = glm::normalize(way - glm::dot(way, normal) * normal);
+    const Vec3d& normal = approach.normal;
+    const Vec3d& straight = approach.straight;
+    const double lookOffDeg = approach.lookOffDeg;
     const Vec3d aside = glm::cross(normal, straight);
     const double rock = trial.rockDeg * degree;
     const Vec3d axis = std::cos(rock) * straight + std::sin(rock) * aside;
-    const double lookOffDeg = std::acos(std::min(1.0, glm::dot(straight, look_))) / degree;
     if (lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
     {
       return outcome;
@@ -164,7 +186,7 @@ public:
         const bool isPlace = other.place.outward != Vec3d(0.0) &&
                              grid_.isCovered(other.place.localMm, other.place.outward) &&
                              std::abs(other.rockDeg) <= mostRocks * rockStepDeg;
-        const Outcome outcome = isPlace ? tryAt(other, best) : Outcome();
+        const Outcome outcome = isPlace ? tryAt(other, approachFrom(other.place.localMm), best) : Outcome();
         if (isFurther(outcome, best))
         {
           best = outcome;
@@ -384,10 +406,11 @@ StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std:
   std::vector<Outcome> outcomes(places.size());
   parallelFor(int(places.size()), {}, [&](int i) {
     const std::size_t at = std::size_t(i);
+    const ViewSearch::Approach approach = search.approachFrom(places[at].localMm);
     for (int rock = 0; rock < rocks; ++rock)
     {
       const Trial trial{ places[at], (rock % 2 == 0 ? -1.0 : 1.0) * double((rock + 1) / 2) * rockStepDeg };
-      const Outcome outcome = search.tryAt(trial, outcomes[at]);
+      const Outcome outcome = search.tryAt(trial, approach, outcomes[at]);
       if (rock == 0 || ViewSearch::isFurther(outcome, outcomes[at]))
       {
         trials[at] = trial;
