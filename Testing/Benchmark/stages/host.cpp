@@ -108,6 +108,7 @@ MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
     }
     return found;
   });
+  costs.of("fibres", [&] { return body.scene->fibres() != nullptr; });
   costs.of("landmarks", [&] { return findHeartLandmarks(body.scene->volume()); });
   const ImageSettings deepest = plan.deepest().image(set.pixelMm, Device::Cpu);
   VoxelBox all{ body.scene->placement().size, Vec3i(0) };
