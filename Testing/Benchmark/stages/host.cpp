@@ -1,10 +1,13 @@
 // What a body and an image of the data set `apical_views` cost the processor where a GPU traces: user time by stage.
 #include "Cuda/MakeImageJob.h"
 #include "DataSets/DataSetImager.h"
+#include "DataSets/DataSetInfo.h"
 #include "DataSets/HoldProbe.h"
+#include "DataSets/ImageSight.h"
 #include "DataSets/MaskGroups.h"
 #include "Echo/ComputedBeam.h"
 #include "Echo/EchoSetup.h"
+#include "Image/LabelSlice.h"
 #include "Image/PngFile.h"
 #include "Labels/PrepareBody.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -75,6 +78,7 @@ struct MadeBody
   std::unique_ptr<Scene> scene;
   std::vector<std::uint8_t> groups;
   std::vector<StandardView> views;
+  HeartLandmarks landmarks;
 };
 
 MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
@@ -109,7 +113,7 @@ MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
     return found;
   });
   costs.of("fibres", [&] { return body.scene->fibres() != nullptr; });
-  costs.of("landmarks", [&] { return findHeartLandmarks(body.scene->volume()); });
+  body.landmarks = costs.of("landmarks", [&] { return findHeartLandmarks(body.scene->volume()); });
   const ImageSettings deepest = plan.deepest().image(set.pixelMm, Device::Cpu);
   VoxelBox all{ body.scene->placement().size, Vec3i(0) };
   for (const StandardView& view : body.views)
@@ -128,6 +132,44 @@ MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
     return 0;
   });
   return body;
+}
+
+/// What is made of a picture that came from the device: masks, flags, the description and the files.
+void finishImage(const DataSetPlan& plan, const PlannedImage& planned, const ImageSettings& settings,
+                 const ProbePose& pose, const TracedLines& traced, const MadeBody& body, Costs& costs)
+{
+  const DataSet& set = plan.set();
+  PlaneImage layout = plan.layout(planned);
+  layout.mask.assign(std::size_t(layout.width) * std::size_t(layout.height), 1);
+  const std::vector<std::uint16_t> labels = sliceLabels(body.scene->volume(), settings.geometry, pose, layout, {});
+  std::vector<std::uint8_t> mask(labels.size());
+  std::vector<std::uint8_t> grey(labels.size());
+  for (std::size_t i = 0; i < grey.size(); ++i)
+  {
+    mask[i] = body.groups[labels[i]];
+    grey[i] = std::uint8_t(drawSeed(1, DrawScope::Image, std::int64_t(i), 0) % 97);
+  }
+  DataSetFacts facts;
+  facts.image = planned;
+  facts.settings = plan.settings(planned);
+  facts.found = &body.views[std::size_t(planned.view)];
+  const std::vector<ScanLine> lines = makeScanLines(settings.geometry, pose);
+  costs.of("sight", [&] {
+    const ImageSight sight(settings, pose, layout, traced);
+    facts.landmarks = landmarksInImage(body.landmarks, pose, sight);
+    facts.flags.shareInsideVolume = shareInsideVolume(*body.scene, settings.geometry, pose);
+    facts.flags.shareShadowed = sight.shareShadowed(lines);
+    for (const double share : sight.visibleShares(mask, set.masks.size()))
+    {
+      facts.groups.push_back({ 1, true, share });
+    }
+    return 0;
+  });
+  const std::string info = costs.of("info", [&] { return describeImage(plan, *body.scene, facts); });
+  costs.of("png", [&] {
+    return pngBytes(grey.data(), layout.width, layout.height, layout.pixelMm).size() +
+           pngBytes(mask.data(), layout.width, layout.height, layout.pixelMm).size();
+  });
 }
 
 /// Sends a picture through what the host does of it.
@@ -172,6 +214,7 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
     const EchoSetup setup(sources, lines, settings.echo);
     return makeEchoJob(setup, int(lines.size())).lineCount;
   });
+  finishImage(plan, planned, settings, pose, traced, body, costs);
   costs.of("display_tables", [&] {
     const RfLines rf = rfLayout(int(lines.size()), settings.echo);
     return makeBModeJob(settings.bmode, rf.lineCount, rf.sampleCount, rf.sampleMm).noiseSeed;
