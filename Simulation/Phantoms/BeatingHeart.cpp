@@ -113,13 +113,26 @@ Vec3d HeartBeat::restingPlaceMm(const Vec3d& p) const
   return restingPlaceMm(p, { -1e9, 1e9 });
 }
 
+bool HeartBeat::isAtRest(const DistanceBounds& outsideMm) const
+{
+  return contraction_ == 0.0 || outsideMm.leastMm >= fadeMm;
+}
+
+bool HeartBeat::asksFor(const Vec3d& p, const DistanceBounds& outsideMm) const
+{
+  return !isAtRest(outsideMm) && outsideMm.mostMm > 0.0 && !isFar(p);
+}
+
 Vec3d HeartBeat::restingPlaceMm(const Vec3d& p, const DistanceBounds& outsideMm) const
 {
-  if (contraction_ == 0.0 || outsideMm.leastMm >= fadeMm || isFar(p))
+  if (isAtRest(outsideMm) || isFar(p))
   {
     return p;
   }
-  const double share = outsideMm.mostMm <= 0.0 ? 1.0 : 1.0 - smoothStep(0.0, fadeMm, heart_.sample(p).outsideMm);
+  const double own = outsideMm.mostMm <= 0.0                 ? 0.0
+                     : outsideMm.leastMm == outsideMm.mostMm ? outsideMm.leastMm
+                                                             : heart_.sample(p).outsideMm;
+  const double share = 1.0 - smoothStep(0.0, fadeMm, own);
   return share > 0.0 ? carried(p, share) : p;
 }
 

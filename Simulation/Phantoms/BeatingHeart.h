@@ -36,6 +36,10 @@ public:
   Vec3d restingPlaceMm(const Vec3d& p) const;
   /// The same where bounds of how far outside of the heart a point lies are known (Heart::outsideMm), mostly quicker.
   Vec3d restingPlaceMm(const Vec3d& p, const DistanceBounds& outsideMm) const;
+  /// Whether the distance itself is needed for that: the heart's at `p` then tells least and most of it.
+  bool asksFor(const Vec3d& p, const DistanceBounds& outsideMm) const;
+  /// Whether nothing is carried there.
+  bool isAtRest(const DistanceBounds& outsideMm) const;
   const Heart& heart() const { return heart_; }
   /// The reverse, by iteration to 10^-9 mm.
   Vec3d placeMm(const Vec3d& resting) const;

@@ -30,13 +30,6 @@ Chambers chambersMl(const HeartShape& shape, const HeartFrame& frame, const Thor
   const int blocks = (count + edge - 1) / edge;
   const auto place = [&](double i, double j, double k) { return middle - reach + stepMm * Vec3d(i, j, k); };
   std::vector<std::array<int, 4>> layers(blocks, std::array<int, 4>{}); // a layer of blocks each
-  const auto addPoint = [&](const Vec3d& q, std::array<int, 4>& layer) {
-    const int chamber = heart.sample(q).label - LeftVentricleBlood;
-    if (chamber >= 0 && chamber < 4 && aorta.sample(frame.toWorld(q)) == Background)
-    {
-      ++layer[std::size_t(chamber)];
-    }
-  };
   const auto addBlock = [&](const Vec3i& first, std::array<int, 4>& layer) {
     constexpr double half = 0.5 * (edge - 1);
     const Vec3d centre = place(first.x + half, first.y + half, first.z + half);
@@ -45,14 +38,26 @@ Chambers chambersMl(const HeartShape& shape, const HeartFrame& frame, const Thor
       return;
     }
     const Vec3i end = glm::min(first + edge, Vec3i(count));
+    std::array<Vec3d, edge * edge * edge> points;
+    std::array<HeartSample, edge * edge * edge> samples;
+    int of = 0;
     for (int k = first.z; k < end.z; ++k)
     {
       for (int j = first.y; j < end.y; ++j)
       {
         for (int i = first.x; i < end.x; ++i)
         {
-          addPoint(place(i, j, k), layer);
+          points[std::size_t(of++)] = place(i, j, k);
         }
+      }
+    }
+    heart.sampleEach(points.data(), of, samples.data());
+    for (int n = 0; n < of; ++n)
+    {
+      const int chamber = samples[std::size_t(n)].label - LeftVentricleBlood;
+      if (chamber >= 0 && chamber < 4 && aorta.sample(frame.toWorld(points[std::size_t(n)])) == Background)
+      {
+        ++layer[std::size_t(chamber)];
       }
     }
   };

@@ -51,10 +51,12 @@ public:
 
 private:
   struct Block;
-  struct Slice;
+  struct Row;
   Block blockAt(const Vec3d& middle, double aroundMm) const;
-  void fillRow(const Slice& slice, double y, const double* diaphragmMm, const Block* blocks, std::uint16_t* row) const;
-  HeartSample heartAt(const Vec3d& p, const Vec3d& inHeartFrame, double withinMm, const Block& block) const;
+  void placeRow(const ChestHeight& height, const double* diaphragmMm, const Block* blocks, Row& row,
+                std::uint16_t* voxels) const;
+  void carryRow(Row& row) const;
+  void takeHeart(Row& row, std::uint16_t* voxels) const;
 
   ChestShape chest_;
   HeartFrame frame_;

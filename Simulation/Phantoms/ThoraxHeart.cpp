@@ -116,11 +116,8 @@ constexpr double mostWarpMm = 1.81; // of what follows
 /// Low-frequency irregularity, below 1 mm along each axis: no wall is a perfect ellipsoid.
 Vec3d warped(const Vec3d& p)
 {
-  const double phases[4] = { 0.11 * p.z + 0.06 * p.y, 0.17 * p.z + 1.0, 0.10 * p.z - 0.08 * p.x + 2.0,
-                             0.09 * p.x + 0.10 * p.y + 0.5 };
-  double s[4];
-  sines(phases, s);
-  return p + Vec3d(0.9 * s[0] + 0.5 * s[1], 0.9 * s[2], 0.7 * s[3]);
+  return p + Vec3d(0.9 * sine(0.11 * p.z + 0.06 * p.y) + 0.5 * sine(0.17 * p.z + 1.0),
+                   0.9 * sine(0.10 * p.z - 0.08 * p.x + 2.0), 0.7 * sine(0.09 * p.x + 0.10 * p.y + 0.5));
 }
 
 const Vec3d rightVentricleCentre(-18.0, -3.0, 85.0);
@@ -149,11 +146,11 @@ double moderatorBand(const Vec3d& m)
 
 } // namespace
 
+constexpr int surfaceCount = 8;
+
 /// Every surface of the heart at one point.
 struct Heart::Surfaces
 {
-  double leftRipple; ///< trabeculae: of the endocardium, fading towards the base
-  double rightRipple;
   double leftVentricle;   ///< cavity
   double leftEpicardium;  ///< outer surface of the left ventricle and of its outflow tract
   double outflow;         ///< cavity of the outflow tract
@@ -161,6 +158,7 @@ struct Heart::Surfaces
   double rightEpicardium; ///< outer surface of the right ventricle, continued into the left
   double leftAtrium;      ///< cavity, with the annulus
   double rightAtrium;     ///< cavity, with the annulus
+  double sac;             ///< see pericardialSac
 
   /// Distance from the pericardium's inner surface; the blend leaves epicardial fat in the grooves.
   double pericardialSac() const
@@ -190,22 +188,11 @@ Heart::Heart(const HeartShape& shape)
   rightEpicardium_ = Ellipsoid(Vec3d(0.0), radii + 4.0);
 }
 
-inline void Heart::addRipples(Surfaces& f, const Vec3d& p)
-{
-  const double leftMm = 0.5 * smoothStep(105.0, 75.0, p.z);
-  if (leftMm > 0.0)
-  {
-    const double phases[2] = { 0.45 * p.z + 0.3 * p.y, 0.5 * p.z - 0.35 * p.x };
-    double s[2];
-    sines(phases, s);
-    f.leftRipple = leftMm * s[0];
-    f.rightRipple = 0.6 * smoothStep(100.0, 65.0, p.z) * s[1];
-  }
-}
-
 inline void Heart::addLeftVentricle(Surfaces& f, const Vec3d& p) const
 {
-  const double inner = leftVentricle_.distance(p) + f.leftRipple;
+  // Trabeculae: a ripple of the endocardium that fades towards the base.
+  const double ripple = 0.5 * sine(0.45 * p.z + 0.3 * p.y) * smoothStep(105.0, 75.0, p.z);
+  const double inner = leftVentricle_.distance(p) + ripple;
   const double outer = leftEpicardium_.distance(p);
   f.outflow = outflow_.distance(p);
   f.leftVentricle = smoothUnion(smoothIntersection(inner, p.z - 108.5, 8.0), f.outflow, 4.0);
@@ -221,8 +208,9 @@ inline Vec3d Heart::inRightVentricle(const Vec3d& p) const
 
 inline void Heart::addRightVentricle(Surfaces& f, const Vec3d& p) const
 {
+  const double ripple = 0.6 * sine(0.5 * p.z - 0.35 * p.x) * smoothStep(100.0, 65.0, p.z);
   const Vec3d local = inRightVentricle(p);
-  const double inner = rightVentricle_.distance(local) + f.rightRipple;
+  const double inner = rightVentricle_.distance(local) + ripple;
   f.rightVentricle = smoothIntersection(smoothIntersection(inner, p.z - 101.5, 6.0), -f.leftEpicardium, 4.0);
   f.rightEpicardium = smoothIntersection(rightEpicardium_.distance(local), p.z - 107.5, 5.0);
 }
@@ -299,17 +287,21 @@ inline ThoraxLabel Heart::wall(const Surfaces& f, const Vec3d& p) const
   return leftAtrium ? LeftAtriumWall : rightAtrium ? RightAtriumWall : Background;
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) HeartSample Heart::sample(const Vec3d& point) const
+/// `p` is warped.
+inline Heart::Surfaces Heart::surfacesAt(const Vec3d& p) const
 {
-  const Vec3d p = warped(point);
   Surfaces f{};
-  addRipples(f, p);
   addLeftVentricle(f, p);
   addRightVentricle(f, p);
   addAtria(f, p);
-  const double sac = f.pericardialSac();
+  f.sac = f.pericardialSac();
+  return f;
+}
+
+inline HeartSample Heart::sampleOf(const Surfaces& f, const Vec3d& p) const
+{
   HeartSample sample;
-  sample.outsideMm = sac - pericardiumMm;
+  sample.outsideMm = f.sac - pericardiumMm;
   if (sample.outsideMm > 0.0)
   {
     return sample;
@@ -328,9 +320,58 @@ SONO_SIMD_CLONES __attribute__((flatten)) HeartSample Heart::sample(const Vec3d&
   }
   if (sample.label == Background)
   {
-    sample.label = sac > 0.0 ? Pericardium : MediastinalFat;
+    sample.label = f.sac > 0.0 ? Pericardium : MediastinalFat;
   }
   return sample;
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) HeartSample Heart::sample(const Vec3d& point) const
+{
+  const Vec3d p = warped(point);
+  return sampleOf(surfacesAt(p), p);
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void Heart::sampleEach(const Vec3d* points, int count,
+                                                                 HeartSample* samples) const
+{
+  constexpr int together = 16;
+  const Heart own = *this; // what may be read at any time needs no branch
+  double x[together];
+  double y[together];
+  double z[together];
+  double of[surfaceCount][together];
+  for (int first = 0; first < count; first += together)
+  {
+    const int here = std::min(together, count - first);
+    for (int n = 0; n < together; ++n)
+    {
+      const Vec3d& point = points[first + std::min(n, here - 1)];
+      x[n] = point.x;
+      y[n] = point.y;
+      z[n] = point.z;
+    }
+    for (int n = 0; n < together; ++n)
+    {
+      const Vec3d p = warped(Vec3d(x[n], y[n], z[n]));
+      const Surfaces f = own.surfacesAt(p);
+      x[n] = p.x;
+      y[n] = p.y;
+      z[n] = p.z;
+      of[0][n] = f.leftVentricle;
+      of[1][n] = f.leftEpicardium;
+      of[2][n] = f.outflow;
+      of[3][n] = f.rightVentricle;
+      of[4][n] = f.rightEpicardium;
+      of[5][n] = f.leftAtrium;
+      of[6][n] = f.rightAtrium;
+      of[7][n] = f.sac;
+    }
+    for (int n = 0; n < here; ++n)
+    {
+      const Surfaces f{ of[0][n], of[1][n], of[2][n], of[3][n], of[4][n], of[5][n], of[6][n], of[7][n] };
+      samples[first + n] = sampleOf(f, Vec3d(x[n], y[n], z[n]));
+    }
+  }
 }
 
 DistanceBounds Heart::outsideMm(const Vec3d& p, double aroundMm) const

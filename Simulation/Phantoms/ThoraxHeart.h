@@ -55,6 +55,8 @@ public:
   const HeartShape& shape() const { return shape_; }
   /// What stands at a point of the heart's frame.
   HeartSample sample(const Vec3d& p) const;
+  /// The same at many points, by vectors: a third of the time.
+  void sampleEach(const Vec3d* points, int count, HeartSample* samples) const;
   /// Bounds of `outsideMm` at all points within `aroundMm` of one, a fifth of the time of a sample: from those of the
   /// ellipsoids and tubes that the heart is blended of.
   DistanceBounds outsideMm(const Vec3d& p, double aroundMm) const;
@@ -64,7 +66,8 @@ public:
 private:
   struct Surfaces;
 
-  static void addRipples(Surfaces& f, const Vec3d& p);
+  Surfaces surfacesAt(const Vec3d& p) const;
+  HeartSample sampleOf(const Surfaces& f, const Vec3d& p) const;
   void addLeftVentricle(Surfaces& f, const Vec3d& p) const;
   void addRightVentricle(Surfaces& f, const Vec3d& p) const;
   void addAtria(Surfaces& f, const Vec3d& p) const;

@@ -107,31 +107,27 @@ inline double smoothIntersection(double a, double b, double k)
   return -smoothUnion(-a, -b, k);
 }
 
-/// Sines of so many numbers within 1000, to 10^-13: side by side, where the sine of one takes as long.
-template<int count>
-inline void sines(const double (&x)[count], double (&out)[count])
+/// Sine of a number within 1000, to 10^-13, which a loop can take by vectors.
+inline double sine(double x)
 {
   constexpr double pi = 3.14159265358979323846;
   constexpr double twoPiLow = 2.4492935982947064e-16; // what a number leaves of it
   constexpr double round = 6755399441055744.0;        // 1.5 * 2^52
-  for (int i = 0; i < count; ++i)
-  {
-    const double turns = (x[i] * (0.5 / pi) + round) - round;
-    const double r = (x[i] - turns * (2.0 * pi)) - turns * twoPiLow;
-    const double mirrored = r > 0.0 ? pi - r : -pi - r;
-    const double t = r * r > 0.25 * pi * pi ? mirrored : r; // within a quarter turn
-    const double t2 = t * t;
-    // Taylor's series.
-    double sum = 1.0 / 355687428096000.0;
-    sum = sum * t2 - 1.0 / 1307674368000.0;
-    sum = sum * t2 + 1.0 / 6227020800.0;
-    sum = sum * t2 - 1.0 / 39916800.0;
-    sum = sum * t2 + 1.0 / 362880.0;
-    sum = sum * t2 - 1.0 / 5040.0;
-    sum = sum * t2 + 1.0 / 120.0;
-    sum = sum * t2 - 1.0 / 6.0;
-    out[i] = t + t * t2 * sum;
-  }
+  const double turns = (x * (0.5 / pi) + round) - round;
+  const double r = (x - turns * (2.0 * pi)) - turns * twoPiLow;
+  const double mirrored = (r > 0.0 ? pi : -pi) - r;
+  const double t = r * r > 0.25 * pi * pi ? mirrored : r; // within a quarter turn
+  const double t2 = t * t;
+  // Taylor's series.
+  double sum = 1.0 / 355687428096000.0;
+  sum = sum * t2 - 1.0 / 1307674368000.0;
+  sum = sum * t2 + 1.0 / 6227020800.0;
+  sum = sum * t2 - 1.0 / 39916800.0;
+  sum = sum * t2 + 1.0 / 362880.0;
+  sum = sum * t2 - 1.0 / 5040.0;
+  sum = sum * t2 + 1.0 / 120.0;
+  sum = sum * t2 - 1.0 / 6.0;
+  return t + t * t2 * sum;
 }
 
 /// 0 below `low`, 1 above `high`, a cubic between.
