@@ -1,6 +1,7 @@
 #include "Image/Haze.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Kernel/GreyLevel.h"
 #include "Kernel/NormalDeviate.h"
 #include "Trace/SecondHarmonic.h"
@@ -58,6 +59,17 @@ struct Blend
   SplineWeights weights;
 };
 
+/// Normals of (seed, row, column), of a whole row.
+SONO_SIMD_CLONES void drawRow(std::uint64_t seed, std::uint32_t row, std::uint32_t count, float* __restrict normals)
+{
+  constexpr std::uint32_t hazeUse = 0x68617a65u; // keeps the stream apart from others of the same seed
+  for (std::uint32_t n = 0; n < count; ++n)
+  {
+    const RandomWords words = philox(seed, row, n, 0u, hazeUse);
+    normals[n] = normalDeviate(uniformFrom(words.v[0]));
+  }
+}
+
 /// Normals at the corners of the cells, functions of (seed, place) alone, and a smooth field of unit variance between.
 class SmoothNormal
 {
@@ -66,11 +78,9 @@ public:
     : along_(std::size_t(depthMm / cellMm) + 4)
     , normals_((std::size_t(cellsAcross) + 4) * along_)
   {
-    constexpr std::uint32_t hazeUse = 0x68617a65u; // keeps the stream apart from others of the same seed
-    for (std::size_t n = 0; n < normals_.size(); ++n)
+    for (std::size_t row = 0; row < normals_.size() / along_; ++row)
     {
-      const RandomWords words = philox(seed, std::uint32_t(n / along_), std::uint32_t(n % along_), 0u, hazeUse);
-      normals_[n] = normalDeviate(uniformFrom(words.v[0]));
+      drawRow(seed, std::uint32_t(row), std::uint32_t(along_), normals_.data() + row * along_);
     }
   }
 

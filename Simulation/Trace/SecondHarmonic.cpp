@@ -1,6 +1,7 @@
 #include "Trace/SecondHarmonic.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Probe/BeamAperture.h"
 
 #include <algorithm>
@@ -15,6 +16,34 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double depletion = 8.0 / 3.0;
 /// Below it, -200 dB, nothing is heard that grows there, and the quotient is of noise.
 constexpr float leastIntensity = 1e-10f;
+
+/// S I1 / sqrt(I2) dz of the bins of a line.
+SONO_SIMD_CLONES void findStrengths(const float* __restrict sent, const float* __restrict doubled,
+                                    const float* __restrict sourcesPerMm, double binMm, int bins,
+                                    double* __restrict strengths)
+{
+  for (int bin = 0; bin < bins; ++bin)
+  {
+    const double i2 = doubled[bin];
+    const double i1 = std::max(double(sent[bin]), i2);
+    const double root = std::sqrt(std::max(i2, double(leastIntensity)));
+    const double strength = double(sourcesPerMm[bin]) * std::min(i1 / root, 1.0) * binMm;
+    strengths[bin] = doubled[bin] > leastIntensity ? strength : 0.0;
+  }
+}
+
+/// C / sqrt(1 + 8/3 u^2) of the bins of a line, of C^2.
+SONO_SIMD_CLONES void findGrowth(const float* __restrict sent, const float* __restrict doubled,
+                                 const double* __restrict amounts2, int bins, float* __restrict growth)
+{
+  for (int bin = 0; bin < bins; ++bin)
+  {
+    const double i2 = doubled[bin];
+    const double i1 = std::max(double(sent[bin]), i2);
+    const double ofSent2 = amounts2[bin] * i2 / std::max(i1, 1e-300);
+    growth[bin] = float(std::sqrt(amounts2[bin] / (1.0 + depletion * ofSent2)));
+  }
+}
 
 /// Of each sample of the boundary echoes, the bin whose harmonic it has: that of half of its range.
 std::vector<int> binsOfEchoes(const TracedLines& lines)
@@ -118,31 +147,29 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
   const auto bins = std::size_t(doubled.binCount);
   const std::vector<int> binOfEcho = binsOfEchoes(doubled);
   parallelFor(doubled.lineCount, {}, [&](int l) {
+    const std::size_t first = std::size_t(l) * bins;
+    std::vector<double> amounts(bins); // first what a bin adds
+    std::vector<float> growth(bins);
+    findStrengths(sent.intensity.data() + first, doubled.intensity.data() + first, sourcesPerMm.data() + first,
+                  doubled.binMm, doubled.binCount, amounts.data());
     std::complex<double> grown;
-    std::vector<float> growth; // of each bin
-    growth.reserve(bins);
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
-      const std::size_t at = std::size_t(l) * bins + bin;
-      const double i2 = doubled.intensity[at];
-      const double i1 = std::max(double(sent.intensity[at]), i2);
-      std::complex<double> here;
-      if (doubled.intensity[at] > leastIntensity)
-      {
-        here = double(sourcesPerMm[at]) * std::min(i1 / std::sqrt(i2), 1.0) * gains[bin] * doubled.binMm;
-      }
-      else
+      if (!(doubled.intensity[first + bin] > leastIntensity))
       {
         // What the next bin, which may be lit, must not be blended with: it would be lifted by tens of decibels.
-        doubled.attenuationNpPerMHz[at] = 0.0f;
+        doubled.attenuationNpPerMHz[first + bin] = 0.0f;
       }
-      const double amount = std::sqrt(std::norm(grown + 0.5 * here)); // in the middle of the bin
+      const std::complex<double> here = amounts[bin] * gains[bin];
+      amounts[bin] = std::norm(grown + 0.5 * here); // in the middle of the bin, squared
       grown += here;
-      const double ofSent2 = i1 > 0.0 ? amount * amount * i2 / i1 : 0.0;
-      const auto factor = float(amount / std::sqrt(1.0 + depletion * ofSent2));
-      doubled.intensity[at] *= factor;
-      doubled.standardError[at] *= factor;
-      growth.push_back(factor);
+    }
+    findGrowth(sent.intensity.data() + first, doubled.intensity.data() + first, amounts.data(), doubled.binCount,
+               growth.data());
+    for (std::size_t bin = 0; bin < bins; ++bin)
+    {
+      doubled.intensity[first + bin] *= growth[bin];
+      doubled.standardError[first + bin] *= growth[bin];
     }
     growReverberation(growth, binOfEcho, l, doubled);
   });
