@@ -302,6 +302,7 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.linesPerImage = linesPerImage;
   job.seeds.assign(setup.lines.size() / std::size_t(linesPerImage), setup.seed);
   job.region = setup.region;
+  job.bakedBlocks = setup.cells->bakedBlocks();
   job.targets = buildTargetBvh(setup.targets->triangles());
   job.paths = setup.paths;
   job.binCount = settings.binCount();

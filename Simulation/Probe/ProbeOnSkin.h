@@ -3,6 +3,7 @@
 #include "Probe/ScanGeometry.h"
 #include "Probe/WindowGrid.h"
 
+#include <utility>
 #include <vector>
 
 namespace sono {
@@ -73,6 +74,9 @@ public:
       }
     }
   }
+
+  /// Steps from the first to before the last of a walk that lie within the box; the grid's box is convex.
+  std::pair<int, int> stepsInside(const Vec3d& from, const Vec3d& axis, double lengthMm) const;
 
 private:
   /// Where so many steps lie.

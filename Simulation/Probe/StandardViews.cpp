@@ -248,20 +248,29 @@ private:
     const std::vector<double> areas = probe_.stepAreas(lines);
     const double stepMm = grid_.stepMm();
     std::vector<double> seen(structures_.count(), 0.0);
-    double seenExcess = 0.0; // dB mm^2
-    std::vector<double> inside(areas.size(), 0.0);
+    double seenExcess = 0.0;                      // dB mm^2
+    std::vector<int> inside(areas.size() + 1, 0); // lines more than a step before
     double farMm = 0.0;
     for (const ScanLine& line : lines)
     {
-      probe_.walk(line.originMm, line.axis, probe_.geometry().depthMm,
+      const auto [first, end] = probe_.stepsInside(line.originMm, line.axis, probe_.geometry().depthMm);
+      ++inside[std::min(areas.size(), std::size_t(first))];
+      --inside[std::min(areas.size(), std::size_t(end))];
+      // Beyond the structures nothing is lost that counts.
+      const Vec2d range =
+        WindowGrid::rangeWithin(line.originMm, line.axis, structures_.boxLowMm(), structures_.boxHighMm());
+      if (range.y < range.x)
+      {
+        continue;
+      }
+      probe_.walk(line.originMm, line.axis, std::min(probe_.geometry().depthMm, range.y + stepMm),
                   [&](double r, const Vec3d& at, std::size_t, double, double excessDb) {
-                    const auto bin = std::min(areas.size() - 1, std::size_t(r / stepMm));
-                    inside[bin] += areas[bin];
                     const int demand = structures_.at(at);
                     if (demand < 0)
                     {
                       return;
                     }
+                    const auto bin = std::min(areas.size() - 1, std::size_t(r / stepMm));
                     const double clear = std::clamp((goneDb - excessDb) / (goneDb - dimDb), 0.0, 1.0);
                     seen[std::size_t(demand)] += clear * areas[bin];
                     seenExcess += clear * areas[bin] * excessDb;
@@ -275,10 +284,12 @@ private:
     view.score *= std::pow(10.0, -seenExcess / std::max(1e-9, seenMm2) / lossScaleDb);
     double all = 0.0;
     double within = 0.0;
+    int linesInside = 0;
     for (std::size_t bin = 0; bin < areas.size() && double(bin) * stepMm < view.depthMm; ++bin)
     {
       all += areas[bin] * ProbeOnSkin::lineCount;
-      within += inside[bin];
+      linesInside += inside[bin];
+      within += areas[bin] * linesInside;
     }
     view.insidePercent = 100.0 * within / all;
     view.score *= within / all;

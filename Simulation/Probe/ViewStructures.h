@@ -17,6 +17,8 @@ class ViewStructures
 public:
   ViewStructures(const Scene& scene, const ViewPlan& plan);
 
+  const Vec3d& boxLowMm() const { return boxLowMm_; } ///< of a box that holds them, local
+  const Vec3d& boxHighMm() const { return boxHighMm_; }
   std::size_t count() const { return withinMm2_.size(); }
   /// By its number among the plan's demands; -1: none.
   int at(const Vec3d& local) const

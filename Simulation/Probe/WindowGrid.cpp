@@ -91,6 +91,23 @@ void WindowGrid::sample(const WindowTarget& target)
   });
 }
 
+Vec2d WindowGrid::rangeWithin(const Vec3d& from, const Vec3d& axis, const Vec3d& lowMm, const Vec3d& highMm)
+{
+  Vec2d range(0.0, 1e6);
+  for (int a = 0; a < 3; ++a)
+  {
+    if (axis[a] == 0.0)
+    {
+      range.y = from[a] < lowMm[a] || from[a] > highMm[a] ? -1e6 : range.y;
+      continue;
+    }
+    const double one = (lowMm[a] - from[a]) / axis[a];
+    const double other = (highMm[a] - from[a]) / axis[a];
+    range = { std::max(range.x, std::min(one, other)), std::min(range.y, std::max(one, other)) };
+  }
+  return range;
+}
+
 void WindowGrid::markTargetPoint(const Vec3d& pointMm)
 {
   const Vec3d point = scene_.localFromWorld(pointMm);

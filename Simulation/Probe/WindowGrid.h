@@ -29,6 +29,8 @@ public:
   /// Places on the way along `axis` from a place, at `count` distances, and the cells they lie in; -1 beyond the box.
   void cellsAlong(const Vec3d& from, const Vec3d& axis, const double* rMm, int count, double* x, double* y, double* z,
                   int* cell) const;
+  /// Where on that way it enters and leaves a box, mm; the second is less where it misses it.
+  static Vec2d rangeWithin(const Vec3d& from, const Vec3d& axis, const Vec3d& lowMm, const Vec3d& highMm);
   int tissue(std::size_t cell) const { return tissue_[cell]; }
   bool isTarget(std::size_t cell) const { return target_[cell] != 0; }
   /// Air around the body.

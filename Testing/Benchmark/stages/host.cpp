@@ -115,12 +115,15 @@ MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
   costs.of("fibres", [&] { return body.scene->fibres() != nullptr; });
   body.landmarks = costs.of("landmarks", [&] { return findHeartLandmarks(body.scene->volume()); });
   const ImageSettings deepest = plan.deepest().image(set.pixelMm, Device::Cpu);
+  std::vector<ScanLine> deepestLines;
   VoxelBox all{ body.scene->placement().size, Vec3i(0) };
   for (const StandardView& view : body.views)
   {
     if (view.refusal.empty())
     {
-      const VoxelBox box = fanBox(*body.scene, makeScanLines(deepest.geometry, view.pose), deepest.tracing);
+      const std::vector<ScanLine> lines = makeScanLines(deepest.geometry, view.pose);
+      const VoxelBox box = fanBox(*body.scene, lines, deepest.tracing);
+      deepestLines.insert(deepestLines.end(), lines.begin(), lines.end());
       all = { glm::min(all.first, box.first), glm::max(all.last, box.last) };
     }
   }
@@ -128,7 +131,8 @@ MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
   body.scene->shareRegion({ all.first - margin, all.last + margin });
   const auto region = costs.of("words", [&] { return body.scene->regionOnDemand({ all.first, all.last }); });
   costs.of("records", [&] {
-    region->bakeAll();
+    const FanReach reach = fanReach(*body.scene, deepestLines, deepest.tracing);
+    region->bakeAround(reach.middleMm, reach.mm + 15.0);
     return 0;
   });
   return body;
