@@ -106,15 +106,14 @@ public:
   Approach approachFrom(const Vec3d& localMm) const
   {
     const PlaneFit fit = fitPlaneThrough(localMm, points_, weights_);
-    Approach approach{};
-    approach.normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
-    const Vec3d& normal = approach.normal;
-    approach.planeOffDeg = std::acos(std::min(1.0, glm::dot(normal, normal_))) / degree;
-    approach.markOffMm = std::abs(glm::dot(normal, mark_ - localMm));
+    const Vec3d normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
     const Vec3d way = ideal_.middle - localMm;
-    approach.straight = glm::normalize(way - glm::dot(way, normal) * normal);
-    approach.lookOffDeg = std::acos(std::min(1.0, glm::dot(approach.straight, look_))) / degree;
-    return approach;
+    const Vec3d straight = glm::normalize(way - glm::dot(way, normal) * normal);
+    const auto offDeg = [](const Vec3d& u, const Vec3d& v) {
+      return std::acos(std::min(1.0, glm::dot(u, v))) / degree;
+    };
+    return { normal, straight, offDeg(normal, normal_), std::abs(glm::dot(normal, mark_ - localMm)),
+             offDeg(straight, look_) };
   }
 
   /// What becomes of a trial; of one that cannot be better than `best`, only that it is not.
@@ -129,26 +128,23 @@ public:
       return outcome;
     }
     outcome.stage = Outcome::OffLook;
-    const Vec3d& normal = approach.normal;
-    const Vec3d& straight = approach.straight;
-    const double lookOffDeg = approach.lookOffDeg;
-    const Vec3d aside = glm::cross(normal, straight);
+    const Vec3d aside = glm::cross(approach.normal, approach.straight);
     const double rock = trial.rockDeg * degree;
-    const Vec3d axis = std::cos(rock) * straight + std::sin(rock) * aside;
-    if (lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
+    const Vec3d axis = std::cos(rock) * approach.straight + std::sin(rock) * aside;
+    if (approach.lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
     {
       return outcome;
     }
     outcome.stage = Outcome::OffSkin;
     const double mostScore =
-      nearness(view) *
-      std::exp(-0.5 * (std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0) + std::pow(trial.rockDeg / rockedDeg, 2.0)));
+      nearness(view) * std::exp(-0.5 * (std::pow(2.0 * approach.lookOffDeg / plan_.lookDeg, 2.0) +
+                                        std::pow(trial.rockDeg / rockedDeg, 2.0)));
     if (best.stage == Outcome::Shown && mostScore <= best.view.score)
     {
       return outcome;
     }
     const Vec3d place = grid_.entry(trial.place.localMm, axis);
-    const Vec3d across = glm::cross(axis, normal);
+    const Vec3d across = glm::cross(axis, approach.normal);
     const Vec3d lateral = glm::dot(glm::transpose(toLocal_) * across, plan_.rightward) < 0.0 ? -across : across;
     if (!probe_.hasRoom(place, axis) || !probe_.touches(place, axis, lateral))
     {
