@@ -108,6 +108,7 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
     blocks.upload(job.region->cell, stream, traffic);
     firstRecord_.upload(job.region->firstRecord, stream, traffic);
     record_.upload(job.region->record, stream, traffic);
+    bakedBlocks_ = job.bakedBlocks;
     words_.resize(std::size_t(cells_.pitch.z) * std::size_t(cells_.size.z + 2));
     cells_.cell = blocks.data();
     const std::size_t rows = std::size_t(cells_.size.y + 2) * std::size_t(cells_.size.z + 2);
@@ -115,6 +116,11 @@ void DeviceTracer::prepare(const TraceJob& job, int linesPerImage, cudaStream_t 
     check(cudaGetLastError(), "laying out the tissues");
     check(await(stream), "laying out the tissues");
     region_ = job.region;
+  }
+  else if (bakedBlocks_ != job.bakedBlocks)
+  {
+    record_.upload(job.region->record, stream, traffic);
+    bakedBlocks_ = job.bakedBlocks;
   }
   cells_.cell = nullptr;
   cells_.words = words_.data();

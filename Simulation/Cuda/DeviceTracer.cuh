@@ -39,6 +39,7 @@ public:
 
 private:
   std::shared_ptr<const TraceRegion> region_;
+  int bakedBlocks_ = 0; // of its records
   RowCells cells_;
   DeviceArray<std::uint16_t> words_;
   DeviceArray<std::uint32_t> firstRecord_;

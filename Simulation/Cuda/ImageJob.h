@@ -42,6 +42,7 @@ struct TraceJob
   int linesPerImage = 1;
   std::vector<std::uint64_t> seeds;          ///< of the paths of each image
   std::shared_ptr<const TraceRegion> region; ///< kept on the device while it is the same
+  int bakedBlocks = 0;                       ///< of its records: they go up again when there are more
   TargetBvh targets;
   int paths = 0; ///< of a line
   int binCount = 0;

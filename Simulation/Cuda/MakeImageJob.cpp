@@ -302,6 +302,7 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.linesPerImage = linesPerImage;
   job.seeds.assign(setup.lines.size() / std::size_t(linesPerImage), setup.seed);
   job.region = setup.region;
+  job.bakedBlocks = setup.cells->bakedBlocks();
   job.targets = buildTargetBvh(setup.targets->triangles());
   job.paths = setup.paths;
   job.binCount = settings.binCount();
@@ -377,13 +378,14 @@ EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage)
     given.reverberationNpPerMHz = traced.reverberationNpPerMHz;
     given.binCount = traced.binCount;
     given.binMm = float(traced.binMm);
+    given.boundaryEcho.reserve(traced.echoCount > 0 ? std::size_t(job.lineCount) * std::size_t(job.rangeCount) : 0);
     for (int l = 0; l < job.lineCount && traced.echoCount > 0; ++l)
     {
       const LineSum sum = setup.finisher.boundaryEchoes(l);
-      for (int s = 0; s < job.rangeCount; ++s)
-      {
-        given.boundaryEcho.emplace_back(sum.iq[2 * std::size_t(s)], sum.iq[2 * std::size_t(s) + 1]);
-      }
+      const std::size_t before = given.boundaryEcho.size();
+      given.boundaryEcho.resize(before + std::size_t(job.rangeCount));
+      std::copy_n(sum.iq.data(), 2 * std::size_t(job.rangeCount),
+                  reinterpret_cast<float*>(given.boundaryEcho.data() + before));
     }
     job.given = std::move(given);
   }

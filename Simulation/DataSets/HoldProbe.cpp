@@ -12,7 +12,8 @@ namespace sono {
 namespace {
 
 constexpr int lineCount = 24;
-constexpr int pathsPerLine = 16;
+constexpr int pathsPerLine = 8;
+constexpr double leastBinMm = 1.0;
 
 /// Rodrigues' formula; `axis` has length 1.
 Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
@@ -59,6 +60,8 @@ double maskSufficiency(const Scene& scene, const std::vector<std::uint8_t>& grou
   geometry.lineCount = lineCount;
   TraceSettings tracing = settings.tracing;
   tracing.pathsPerLine = pathsPerLine;
+  tracing.radialBinMm = std::max(tracing.radialBinMm, leastBinMm);
+  tracing.reverberation = false; // which adds nothing to what arrives straight
   const std::vector<ScanLine> lines = makeScanLines(geometry, pose);
   const TracedLines traced = trace(scene, lines, tracing);
   std::vector<double> all(asked.size(), 0.0);

@@ -1,6 +1,7 @@
 #include "Image/Haze.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Kernel/GreyLevel.h"
 #include "Kernel/NormalDeviate.h"
 #include "Trace/SecondHarmonic.h"
@@ -58,6 +59,17 @@ struct Blend
   SplineWeights weights;
 };
 
+/// Normals of (seed, row, column), of a whole row.
+SONO_SIMD_CLONES void drawRow(std::uint64_t seed, std::uint32_t row, std::uint32_t count, float* __restrict normals)
+{
+  constexpr std::uint32_t hazeUse = 0x68617a65u; // keeps the stream apart from others of the same seed
+  for (std::uint32_t n = 0; n < count; ++n)
+  {
+    const RandomWords words = philox(seed, row, n, 0u, hazeUse);
+    normals[n] = normalDeviate(uniformFrom(words.v[0]));
+  }
+}
+
 /// Normals at the corners of the cells, functions of (seed, place) alone, and a smooth field of unit variance between.
 class SmoothNormal
 {
@@ -66,29 +78,38 @@ public:
     : along_(std::size_t(depthMm / cellMm) + 4)
     , normals_((std::size_t(cellsAcross) + 4) * along_)
   {
-    constexpr std::uint32_t hazeUse = 0x68617a65u; // keeps the stream apart from others of the same seed
-    for (std::size_t n = 0; n < normals_.size(); ++n)
+    for (std::size_t row = 0; row < normals_.size() / along_; ++row)
     {
-      const RandomWords words = philox(seed, std::uint32_t(n / along_), std::uint32_t(n % along_), 0u, hazeUse);
-      normals_[n] = normalDeviate(uniformFrom(words.v[0]));
+      drawRow(seed, std::uint32_t(row), std::uint32_t(along_), normals_.data() + row * along_);
     }
   }
 
-  float at(const Blend& across, const Blend& along) const
+  /// The corners' on a line along the cells.
+  std::vector<float> row(const Blend& across) const
   {
-    float sum = 0.0f;
+    std::vector<float> row(along_, 0.0f);
     for (std::size_t a = 0; a < 4; ++a)
     {
-      const float* row = normals_.data() + (across.first + a) * along_ + along.first;
-      const float* w = along.weights.w;
-      sum += across.weights.w[a] * (w[0] * row[0] + w[1] * row[1] + w[2] * row[2] + w[3] * row[3]);
+      const float* normals = normals_.data() + (across.first + a) * along_;
+      const float weight = across.weights.w[a];
+      for (std::size_t n = 0; n < along_; ++n)
+      {
+        row[n] += weight * normals[n];
+      }
     }
-    return sum;
+    return row;
   }
 
 private:
   std::size_t along_;
   std::vector<float> normals_;
+};
+
+/// What lines share at a node.
+struct HazeNode
+{
+  Blend along;
+  float power; ///< where the field is 0
 };
 
 } // namespace
@@ -108,20 +129,25 @@ HazePower makeHaze(const BModeSettings& settings, int lineCount, int sampleCount
   const double neperPerDb = std::log(10.0) / 10.0; // of power
   const double spread = neperPerDb * settings.hazeVariationDb;
   const SmoothNormal field(settings.noiseSeed, haze.nodeCount * nodeMm);
+  std::vector<HazeNode> nodes;
+  nodes.reserve(std::size_t(haze.nodeCount));
+  for (int node = 0; node < haze.nodeCount; ++node)
+  {
+    const double depthMm = node * nodeMm;
+    const double level = neperPerDb * (settings.hazeDb - fallDbPerMm * depthMm);
+    const double grown = settings.hazeGrowthPerMm > 0.0 ? grownShare(settings.hazeGrowthPerMm, depthMm) : 1.0;
+    nodes.push_back({ Blend(depthMm / cellMm), float(std::exp(level - 0.5 * spread * spread) * grown) });
+  }
   parallelFor(lineCount, {}, [&](int line) {
     const Blend across(cellsAcross * (line % linesAcross) / std::max(1, linesAcross - 1));
-    for (int node = 0; node < haze.nodeCount; ++node)
+    const std::vector<float> normals = field.row(across);
+    float* power = haze.power.data() + std::size_t(line) * std::size_t(haze.nodeCount);
+    for (const HazeNode& node : nodes)
     {
-      const double depthMm = node * nodeMm;
-      const double normal = field.at(across, Blend(depthMm / cellMm));
-      const double level = neperPerDb * (settings.hazeDb - fallDbPerMm * depthMm);
-      haze.power[std::size_t(line) * std::size_t(haze.nodeCount) + std::size_t(node)] =
-        float(std::exp(level + spread * normal - 0.5 * spread * spread));
-      if (settings.hazeGrowthPerMm > 0.0)
-      {
-        haze.power[std::size_t(line) * std::size_t(haze.nodeCount) + std::size_t(node)] *=
-          float(grownShare(settings.hazeGrowthPerMm, depthMm));
-      }
+      const float* w = node.along.weights.w;
+      const float* n = normals.data() + node.along.first;
+      const float normal = w[0] * n[0] + w[1] * n[1] + w[2] * n[2] + w[3] * n[3];
+      *power++ = node.power * std::exp(float(spread) * normal);
     }
   });
   return haze;

@@ -70,7 +70,7 @@ double outflowOpeningAt(double phase)
 }
 
 HeartBeat::HeartBeat(const HeartShape& shape, double ejectionPercent, double phase)
-  : shape_(shape)
+  : heart_(shape)
   , contraction_(contractionAt(phase))
   , squeeze_(healthySqueeze * ejectionPercent / healthyPercent)
   , annulusWayMm_(healthyWayMm * std::min(1.0, ejectionPercent / healthyPercent))
@@ -102,15 +102,44 @@ HeartBeat::AlongAxis HeartBeat::wayAt(double z) const
   return { up * (a - b) - down * (b - c), up * (apex - base) - down * (base - roof) };
 }
 
+bool HeartBeat::isFar(const Vec3d& p) const
+{
+  constexpr double farMm = 30.0;
+  return glm::distance(p, heartSphereCentreMm()) > heartSphereRadiusMm(heart_.shape()) + farMm;
+}
+
 Vec3d HeartBeat::restingPlaceMm(const Vec3d& p) const
 {
-  const double a = contraction_;
-  constexpr double farMm = 30.0;
-  if (a == 0.0 || glm::distance(p, heartSphereCentreMm()) > heartSphereRadiusMm(shape_) + farMm)
+  return restingPlaceMm(p, { -1e9, 1e9 });
+}
+
+bool HeartBeat::isAtRest(const DistanceBounds& outsideMm) const
+{
+  return contraction_ == 0.0 || outsideMm.leastMm >= fadeMm;
+}
+
+bool HeartBeat::asksFor(const Vec3d& p, const DistanceBounds& outsideMm) const
+{
+  return !isAtRest(outsideMm) && outsideMm.mostMm > 0.0 && !isFar(p);
+}
+
+Vec3d HeartBeat::restingPlaceMm(const Vec3d& p, const DistanceBounds& outsideMm) const
+{
+  if (isAtRest(outsideMm) || isFar(p))
   {
     return p;
   }
-  const double share = 1.0 - smoothStep(0.0, fadeMm, sampleHeart(p, shape_).outsideMm);
+  const double own = outsideMm.mostMm <= 0.0                 ? 0.0
+                     : outsideMm.leastMm == outsideMm.mostMm ? outsideMm.leastMm
+                                                             : heart_.sample(p).outsideMm;
+  const double share = 1.0 - smoothStep(0.0, fadeMm, own);
+  return share > 0.0 ? carried(p, share) : p;
+}
+
+/// By a share of the way.
+Vec3d HeartBeat::carried(const Vec3d& p, double share) const
+{
+  const double a = contraction_;
   const AlongAxis way = wayAt(p.z);
   const double m = 1.0 + a * way.slope;
   const double Z = p.z + a * way.mm;

@@ -34,6 +34,13 @@ public:
 
   /// Where, in mm, what is at `p` at this phase stands at the end of diastole.
   Vec3d restingPlaceMm(const Vec3d& p) const;
+  /// The same where bounds of how far outside of the heart a point lies are known (Heart::outsideMm), mostly quicker.
+  Vec3d restingPlaceMm(const Vec3d& p, const DistanceBounds& outsideMm) const;
+  /// Whether the distance itself is needed for that: the heart's at `p` then tells least and most of it.
+  bool asksFor(const Vec3d& p, const DistanceBounds& outsideMm) const;
+  /// Whether nothing is carried there.
+  bool isAtRest(const DistanceBounds& outsideMm) const;
+  const Heart& heart() const { return heart_; }
   /// The reverse, by iteration to 10^-9 mm.
   Vec3d placeMm(const Vec3d& resting) const;
 
@@ -45,7 +52,10 @@ private:
   };
   AlongAxis wayAt(double z) const;
 
-  HeartShape shape_;
+  bool isFar(const Vec3d& p) const;
+  Vec3d carried(const Vec3d& p, double share) const;
+
+  Heart heart_;
   double contraction_;
   double squeeze_; ///< E over the cavity's squared radius
   double annulusWayMm_;

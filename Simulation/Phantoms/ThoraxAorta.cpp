@@ -5,6 +5,9 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <array>
+#include <cmath>
+
 namespace sono {
 
 namespace {
@@ -32,18 +35,19 @@ Vec3d bezier(const std::array<Vec3d, 4>& c, double t)
 } // namespace
 
 ThoraxAorta::ThoraxAorta(const Vec3d& valveMm, const Vec3d& axis, const AortaPhase& phase)
-  : phase_(phase)
+  : descending_(archEnd, descendingEnd, 0.0)
+  , phase_(phase)
 {
   const std::array<Vec3d, 4> control{ valveMm, valveMm + 70.0 * axis, archEnd + Vec3d(0.0, 0.0, 65.0), archEnd };
-  for (int i = 0; i <= segments_; ++i)
+  const double reachMm = ascendingRadiusMm + wallMm + phase_.squeezedMm;
+  lowMm_ = valveMm - reachMm;
+  highMm_ = valveMm + reachMm;
+  for (int i = 0; i < segments_; ++i)
   {
-    points_[i] = bezier(control, double(i) / segments_);
-  }
-  lowMm_ = highMm_ = points_[0];
-  for (const Vec3d& point : points_)
-  {
-    lowMm_ = glm::min(lowMm_, point - (ascendingRadiusMm + wallMm + phase_.squeezedMm));
-    highMm_ = glm::max(highMm_, point + (ascendingRadiusMm + wallMm + phase_.squeezedMm));
+    const Vec3d end = bezier(control, double(i + 1) / segments_);
+    line_.emplace_back(bezier(control, double(i) / segments_), end, 0.0);
+    lowMm_ = glm::min(lowMm_, end - reachMm);
+    highMm_ = glm::max(highMm_, end + reachMm);
   }
 }
 
@@ -63,11 +67,28 @@ bool ThoraxAorta::isLeaflet(double radialMm, double alongMm) const
   return alongMm < valveThicknessMm || (alongMm < heightMm && radialMm < orificeMm + leafletThicknessMm);
 }
 
+ThoraxAorta::Nearest ThoraxAorta::nearest(const Vec3d& p) const
+{
+  Nearest nearest{ 1e18, 0.0 };
+  for (int i = 0; i < segments_; ++i)
+  {
+    const shapes::Capsule& segment = line_[std::size_t(i)];
+    const double t = segment.along(p);
+    const Vec3d away = p - segment.startMm - t * segment.alongMm;
+    const double distanceMm2 = glm::dot(away, away);
+    if (distanceMm2 < nearest.distanceMm2)
+    {
+      nearest = { distanceMm2, i + t };
+    }
+  }
+  return nearest;
+}
+
 ThoraxLabel ThoraxAorta::sample(const Vec3d& p) const
 {
   if (p.z < archEnd.z)
   {
-    const double radialMm = shapes::capsule(p, archEnd, descendingEnd, 0.0, 0.0);
+    const double radialMm = descending_.distance(p);
     if (radialMm < descendingRadiusMm + wallMm + phase_.squeezedMm)
     {
       return tube(radialMm, descendingRadiusMm);
@@ -77,25 +98,21 @@ ThoraxLabel ThoraxAorta::sample(const Vec3d& p) const
   {
     return Background;
   }
-  double nearestMm = 1e9;
-  double along = 0.0;
-  for (int i = 0; i < segments_; ++i)
-  {
-    const double t = shapes::alongSegment(p, points_[i], points_[i + 1]);
-    const double distance = glm::length(p - glm::mix(points_[i], points_[i + 1], t));
-    if (distance < nearestMm)
-    {
-      nearestMm = distance;
-      along = i + t;
-    }
-  }
+  const auto [distanceMm2, along] = nearest(p);
   if (along <= 0.0)
   {
     return Background; // on the ventricle's side of the valve
   }
+  const double nearestMm = std::sqrt(distanceMm2);
   const double radiusMm = glm::mix(ascendingRadiusMm, descendingRadiusMm, along / segments_);
-  const bool leaflets = nearestMm < radiusMm && isLeaflet(nearestMm, along * glm::length(points_[1] - points_[0]));
+  const bool leaflets = nearestMm < radiusMm && isLeaflet(nearestMm, along * glm::length(line_[0].alongMm));
   return leaflets ? AorticValve : tube(nearestMm, radiusMm);
+}
+
+double ThoraxAorta::leastOutsideMm(const Vec3d& p) const
+{
+  const double nearestMm = std::min(descending_.distance(p), std::sqrt(nearest(p).distanceMm2));
+  return nearestMm - ascendingRadiusMm - wallMm - phase_.squeezedMm; // the widest
 }
 
 } // namespace sono

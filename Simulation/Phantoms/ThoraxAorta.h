@@ -2,8 +2,9 @@
 
 #include "Kernel/Vec.h"
 #include "Phantoms/ThoraxLabels.h"
+#include "Phantoms/ThoraxShapes.h"
 
-#include <array>
+#include <vector>
 
 namespace sono {
 
@@ -24,14 +25,24 @@ public:
 
   /// AortaLumen, AortaWall, AorticValve, or Background where there is no aorta.
   ThoraxLabel sample(const Vec3d& p) const;
+  /// No more than the distance to it.
+  double leastOutsideMm(const Vec3d& p) const;
 
 private:
+  /// Of the centre line, where it comes nearest to a point.
+  struct Nearest
+  {
+    double distanceMm2;
+    double along; ///< in segments
+  };
+  Nearest nearest(const Vec3d& p) const;
   bool isLeaflet(double radialMm, double alongMm) const;
   ThoraxLabel tube(double radialMm, double radiusMm) const;
 
   static constexpr int segments_ = 24;
-  std::array<Vec3d, segments_ + 1> points_; ///< centre line from the valve to the end of the arch
-  Vec3d lowMm_{ 0.0 };                      ///< box around the arch with its wall
+  std::vector<shapes::Capsule> line_; ///< the centre line from the valve to the end of the arch
+  shapes::Capsule descending_;
+  Vec3d lowMm_{ 0.0 }; ///< box around the arch with its wall
   Vec3d highMm_{ 0.0 };
   AortaPhase phase_;
 };

@@ -22,22 +22,49 @@ using Chambers = std::array<double, 4>;
 Chambers chambersMl(const HeartShape& shape, const HeartFrame& frame, const ThoraxAorta& aorta)
 {
   constexpr double stepMm = 2.5;
+  constexpr int edge = 4; // of blocks of points
+  const Heart heart(shape);
   const Vec3d middle = heartSphereCentreMm();
   const double reach = heartSphereRadiusMm(shape);
   const int count = int(std::ceil(2.0 * reach / stepMm));
-  std::vector<std::array<int, 4>> layers(count, std::array<int, 4>{});
-  parallelFor(count, {}, [&](int k) {
-    for (int j = 0; j < count; ++j)
+  const int blocks = (count + edge - 1) / edge;
+  const auto place = [&](double i, double j, double k) { return middle - reach + stepMm * Vec3d(i, j, k); };
+  std::vector<std::array<int, 4>> layers(blocks, std::array<int, 4>{}); // a layer of blocks each
+  const auto addBlock = [&](const Vec3i& first, std::array<int, 4>& layer) {
+    constexpr double half = 0.5 * (edge - 1);
+    const Vec3d centre = place(first.x + half, first.y + half, first.z + half);
+    if (heart.outsideMm(centre, stepMm * half * std::sqrt(3.0)).leastMm > 0.0)
     {
-      for (int i = 0; i < count; ++i)
+      return;
+    }
+    const Vec3i end = glm::min(first + edge, Vec3i(count));
+    std::array<Vec3d, edge * edge * edge> points;
+    std::array<HeartSample, edge * edge * edge> samples;
+    int of = 0;
+    for (int k = first.z; k < end.z; ++k)
+    {
+      for (int j = first.y; j < end.y; ++j)
       {
-        const Vec3d q = middle - reach + stepMm * Vec3d(i, j, k);
-        const int chamber = sampleHeart(q, shape).label - LeftVentricleBlood;
-        if (chamber >= 0 && chamber < 4 && aorta.sample(frame.toWorld(q)) == Background)
+        for (int i = first.x; i < end.x; ++i)
         {
-          ++layers[k][chamber];
+          points[std::size_t(of++)] = place(i, j, k);
         }
       }
+    }
+    heart.sampleEach(points.data(), of, samples.data());
+    for (int n = 0; n < of; ++n)
+    {
+      const int chamber = samples[std::size_t(n)].label - LeftVentricleBlood;
+      if (chamber >= 0 && chamber < 4 && aorta.sample(frame.toWorld(points[std::size_t(n)])) == Background)
+      {
+        ++layer[std::size_t(chamber)];
+      }
+    }
+  };
+  parallelFor(blocks, {}, [&](int k) {
+    for (int block = 0; block < blocks * blocks; ++block)
+    {
+      addBlock(edge * Vec3i(block % blocks, block / blocks, k), layers[std::size_t(k)]);
     }
   });
   Chambers volumes{};
@@ -99,6 +126,15 @@ HeartFrame swung(const HeartFrame& frame, double leftLateral)
   return { frame.originMm + (frame.axes - axes) * aorticValveCentreMm(), axes };
 }
 
+/// At a phase, in the places of the end of diastole.
+HeartShape shapeAt(HeartShape shape, double phase)
+{
+  // What is thin between the left atrium and the aorta is made thicker, since the beat squeezes it.
+  shape.apartMm = 0.8 * std::min(1.0, 2.0 * contractionAt(phase));
+  shape.valveOpening *= inflowOpeningAt(phase);
+  return shape;
+}
+
 const ThoraxParameters& checked(const ThoraxParameters& parameters)
 {
   requireInRange(parameters);
@@ -136,14 +172,10 @@ HeartFrame heartFrame(const ThoraxParameters& p)
 ThoraxBody::ThoraxBody(const ThoraxParameters& parameters)
   : chest_(chestShape(checked(parameters)))
   , frame_(heartFrame(parameters))
-  , aorta_(aortaOf(frame_, {}))
-  , heart_(heartShape(parameters, frame_, aorta_))
-  , beat_(heart_, parameters.ejectionPercent, parameters.phase)
+  , beat_(heartShape(parameters, frame_, aortaOf(frame_, {})), parameters.ejectionPercent, parameters.phase)
+  , heart_(shapeAt(beat_.heart().shape(), parameters.phase))
+  , aorta_(aortaOf(frame_, { outflowOpeningAt(parameters.phase), heart_.shape().apartMm }))
 {
-  // What is thin between the left atrium and the aorta is made thicker, since the beat squeezes it.
-  heart_.apartMm = 0.8 * std::min(1.0, 2.0 * contractionAt(parameters.phase));
-  aorta_ = aortaOf(frame_, { outflowOpeningAt(parameters.phase), heart_.apartMm });
-  heart_.valveOpening *= inflowOpeningAt(parameters.phase);
 }
 
 Vec3d ThoraxBody::restingPlaceMm(const Vec3d& world) const
@@ -162,18 +194,18 @@ ThoraxLabel ThoraxBody::sample(const Vec3d& p) const
 {
   const Vec3d now = frame_.fromWorld(p);
   const Vec3d q = beat_.restingPlaceMm(now);
-  const Vec3d fromHeart = q - heartSphereCentreMm();
-  const double reach = heartSphereRadiusMm(heart_);
   HeartSample heart;
-  if (glm::dot(fromHeart, fromHeart) < reach * reach)
+  if (heart_.isNear(q))
   {
-    heart = sampleHeart(q, heart_);
+    heart = heart_.sample(q);
   }
   if (const ThoraxLabel vessel = aorta_.sample(q == now ? p : frame_.toWorld(q)))
   {
     heart.label = vessel;
   }
-  return sampleChest(p, heart, now, chest_);
+  const ChestHeight height = chestHeight(p.z, chest_);
+  const WallPoint wall = wallPoint(p.x, p.y, height.halfWidthMm, height.halfDepthMm);
+  return chestAt(p, wall, height, diaphragmMm(p.x, p.y), now, chest_).with(heart);
 }
 
 } // namespace sono

@@ -1,10 +1,14 @@
 #pragma once
 
+#include "Labels/LabelVolume.h"
 #include "Phantoms/BeatingHeart.h"
 #include "Phantoms/ThoraxAorta.h"
 #include "Phantoms/ThoraxChest.h"
 #include "Phantoms/ThoraxHeart.h"
 #include "Phantoms/ThoraxParameters.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace sono {
 
@@ -30,6 +34,9 @@ public:
 
   /// What stands at a point, world LPS mm.
   ThoraxLabel sample(const Vec3d& p) const;
+  /// The same at all voxels of a grid whose axes are the world's, i fastest, ten times as quickly: what a row, a slice
+  /// or a column of it shares is worked out once, and shapes that are too far away are left out.
+  std::vector<std::uint16_t> labels(const GridPlacement& grid) const;
 
   /// Where what the heart's motion brings to a place of this phase stands at the end of diastole, world mm. The chest
   /// wall, lungs and abdomen are drawn where they are all the same.
@@ -39,15 +46,23 @@ public:
 
   const HeartFrame& frame() const { return frame_; }
   /// At the end of diastole, with the valves of this phase.
-  const HeartShape& heart() const { return heart_; }
+  const HeartShape& heart() const { return heart_.shape(); }
   const ChestShape& chest() const { return chest_; }
 
 private:
+  struct Block;
+  struct Row;
+  Block blockAt(const Vec3d& middle, double aroundMm) const;
+  void placeRow(const ChestHeight& height, const double* diaphragmMm, const Block* blocks, Row& row,
+                std::uint16_t* voxels) const;
+  void carryRow(Row& row) const;
+  void takeHeart(Row& row, std::uint16_t* voxels) const;
+
   ChestShape chest_;
   HeartFrame frame_;
-  ThoraxAorta aorta_;
-  HeartShape heart_;
   HeartBeat beat_;
+  Heart heart_;
+  ThoraxAorta aorta_;
 };
 
 } // namespace sono

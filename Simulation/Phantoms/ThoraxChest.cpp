@@ -20,20 +20,9 @@ constexpr double ribSpacingMm = 29.0;
 constexpr double firstRibMm = 121.5; ///< height of rib 1 at the torso's side
 constexpr int ribPairs = 10;
 
-/// Outline of the torso at one height: the curve X^4 + c X^2 Y^2 + Y^4 = 1 with X = x/a, Y = y/b, between an ellipse
-/// (c = 2) and a rounded box (c = 0).
-constexpr double outlineBlend = 1.3;
-
 double outlineScale(double z)
 {
   return 1.0 - 0.08 * smoothStep(20.0, 150.0, z) - 0.02 * smoothStep(-60.0, -140.0, z);
-}
-
-double outlineRadius(double x, double y)
-{
-  const double x2 = x * x;
-  const double y2 = y * y;
-  return std::sqrt(std::sqrt(x2 * x2 + outlineBlend * x2 * y2 + y2 * y2));
 }
 
 double halfWidthAt(const ChestShape& chest, double z)
@@ -46,55 +35,41 @@ double halfDepthAt(const ChestShape& chest, double z)
   return halfDepthMm * chest.scale * outlineScale(z) + chest.extraFatMm;
 }
 
-/// A point as the chest wall sees it.
-struct WallPoint
-{
-  double depthMm; ///< below the skin's outer surface
-  double side;    ///< -1 right, 1 left: x on the outline of the same direction
-  double back;    ///< -1 front, 1 back
-};
+constexpr double meanFatMm = skinMm + 5.5;
+constexpr double mostSagMm = 1.5;
 
-WallPoint wallPoint(const Vec3d& p, const ChestShape& chest)
+bool isFat(const WallPoint& w, const ChestHeight& height)
 {
-  const double a = halfWidthAt(chest, p.z);
-  const double b = halfDepthAt(chest, p.z);
-  const double x = p.x / a;
-  const double y = p.y / b;
-  const double r = std::max(outlineRadius(x, y), 1e-6);
-  const double x1 = x / r;
-  const double y1 = y / r;
-  // Distance to the outline's tangent where the point's radius meets it.
-  const double slopeX = (2.0 * x1 * x1 * x1 + outlineBlend * x1 * y1 * y1) / (2.0 * a);
-  const double slopeY = (2.0 * y1 * y1 * y1 + outlineBlend * y1 * x1 * x1) / (2.0 * b);
-  return { (1.0 - r) / std::sqrt(slopeX * slopeX + slopeY * slopeY), x1, y1 };
-}
-
-bool isFat(const Vec3d& p, const WallPoint& w)
-{
-  constexpr double meanMm = skinMm + 5.5;
   constexpr double wavesMm = 0.8;
-  constexpr double sagMm = 1.5;
-  if (w.depthMm < meanMm - wavesMm || w.depthMm >= meanMm + wavesMm + sagMm)
+  if (w.depthMm < meanFatMm - wavesMm || w.depthMm >= meanFatMm + wavesMm + mostSagMm)
   {
-    return w.depthMm < meanMm; // without the sine, which takes as long as the rest
+    return w.depthMm < meanFatMm; // without the sine, which takes as long as the rest
   }
-  return w.depthMm < meanMm + wavesMm * std::sin(3.0 * w.side + 0.04 * p.z) + sagMm * smoothStep(-20.0, -110.0, p.z);
+  return w.depthMm < meanFatMm + wavesMm * std::sin(3.0 * w.side + 0.04 * height.zMm) + height.sagMm;
 }
 
 /// Depth of the pleura: the chest wall is thin at the front and the sides, thick at the back and the shoulders.
-double pleuraDepthMm(const Vec3d& p, const WallPoint& w)
+double pleuraDepthMm(const WallPoint& w, const ChestHeight& height)
 {
-  return 17.0 + 26.0 * smoothStep(35.0, 140.0, p.z) + 11.0 * smoothStep(0.2, 1.0, w.back);
+  return height.pleuraMm + 11.0 * smoothStep(0.2, 1.0, w.back);
 }
 
-/// Height of a rib's centre line: down to the front, then, as cartilage, up to the sternum.
-double ribHeightMm(int rib, const WallPoint& w, double spacingMm)
+/// Heights of the ribs' centre lines: down to the front, then, as cartilage, up to the sternum.
+struct RibHeights
 {
-  const double bone = firstRibMm - 4.5 * (ribSpacingMm - spacingMm) - spacingMm * (rib - 1) + 42.0 * w.back +
-                      14.0 * (1.0 - w.back * w.back);
-  const double climb = w.back < 0.0 ? 13.0 * std::max(rib - 3, 0) * smoothStep(0.5, 0.05, std::abs(w.side)) : 0.0;
-  return bone + climb;
-}
+  double firstMm;
+  double climbMm; ///< of each rib beyond the third
+
+  RibHeights(const WallPoint& w, double spacingMm)
+    : firstMm(firstRibMm - 4.5 * (ribSpacingMm - spacingMm) + 42.0 * w.back + 14.0 * (1.0 - w.back * w.back))
+    , climbMm(w.back < 0.0 ? 13.0 * smoothStep(0.5, 0.05, std::abs(w.side)) : 0.0)
+  {
+  }
+  double of(int rib, double spacingMm) const
+  {
+    return firstMm - spacingMm * (rib - 1) + climbMm * std::max(rib - 3, 0);
+  }
+};
 
 /// Of an ellipse.
 bool isWithin(double x, double halfX, double y, double halfY)
@@ -102,29 +77,42 @@ bool isWithin(double x, double halfX, double y, double halfY)
   return x * x / (halfX * halfX) + y * y / (halfY * halfY) < 1.0;
 }
 
-bool isSternum(const Vec3d& p, const WallPoint& w, double middleDepthMm)
+/// Of an ellipsoid about the origin.
+bool isWithin(const Vec3d& p, const Vec3d& radii)
 {
-  const double halfWidth = 15.0 + 7.0 * smoothStep(55.0, 90.0, p.z) - 7.0 * smoothStep(-25.0, -55.0, p.z);
-  return w.back < 0.0 && p.z > -58.0 && p.z < 98.0 && isWithin(p.x, halfWidth, w.depthMm - middleDepthMm, 5.5);
+  const Vec3d scaled = p / radii;
+  return glm::dot(scaled, scaled) < 1.0;
 }
 
-ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm, const ChestShape& chest)
+bool isSternum(const Vec3d& p, const WallPoint& w, double middleDepthMm, const ChestHeight& height)
+{
+  return w.back < 0.0 && height.sternumHalfMm > 0.0 &&
+         isWithin(p.x, height.sternumHalfMm, w.depthMm - middleDepthMm, 5.5);
+}
+
+ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm, const ChestHeight& height,
+                       const ChestShape& chest)
 {
   const double middleDepthMm = pleuraMm - 5.5;
   if (std::abs(w.depthMm - middleDepthMm) > 6.0)
   {
     return Background;
   }
-  if (isSternum(p, w, middleDepthMm))
+  if (isSternum(p, w, middleDepthMm, height))
   {
     return Sternum;
   }
   const double across = (w.depthMm - middleDepthMm) / ribHalfThicknessMm;
+  if (std::abs(across) > 1.0 || std::abs(p.x) < 8.0)
+  {
+    return Background;
+  }
+  const RibHeights heights(w, chest.ribSpacingMm);
   for (int rib = 1; rib <= ribPairs; ++rib)
   {
     const double along =
-      (p.z - ribHeightMm(rib, w, chest.ribSpacingMm)) * 0.94 / ribHalfHeightMm; // 0.94: cosine of the mean slope
-    if (along * along + across * across > 1.0 || std::abs(p.x) < 8.0)
+      (p.z - heights.of(rib, chest.ribSpacingMm)) * 0.94 / ribHalfHeightMm; // 0.94: cosine of the mean slope
+    if (along * along + across * across > 1.0)
     {
       continue;
     }
@@ -138,32 +126,22 @@ ThoraxLabel boneOfWall(const Vec3d& p, const WallPoint& w, double pleuraMm, cons
   return Background;
 }
 
-ThoraxLabel spine(const Vec3d& p)
+ThoraxLabel spine(const Vec3d& p, const ChestHeight& height)
 {
   if (std::abs(p.x) > 28.0 || p.y < 43.0 || p.y > 96.0) // most of the chest
   {
     return Background;
   }
-  const double waist = 1.3 * std::cos(2.0 * 3.14159265358979 * p.z / 25.0); // one vertebra each 25 mm
+  const double waist = height.vertebraWaistMm;
   if (isWithin(p.x, 6.0, p.y - 81.0, 6.0))
   {
     return SpinalCord;
   }
   const bool body = isWithin(p.x, 18.0 + waist, p.y - 60.0, 15.5 + waist);
   const bool arch = isWithin(p.x, 12.0, p.y - 80.0, 10.0);
-  const bool level = std::cos(2.0 * 3.14159265358979 * (p.z + 8.0) / 25.0) > -0.2;
-  const bool process = level && (isWithin(p.x, 4.0, p.y - 86.0, 10.0) || isWithin(p.x, 28.0, p.y - 78.0, 5.0));
+  const bool process =
+    height.hasProcess && (isWithin(p.x, 4.0, p.y - 86.0, 10.0) || isWithin(p.x, 28.0, p.y - 78.0, 5.0));
   return body || arch || process ? Vertebrae : Background;
-}
-
-/// Height of the diaphragm's upper surface: right dome, left dome and the central tendon below the heart.
-double diaphragmMm(const Vec3d& p)
-{
-  const auto dome = [&p](double x, double y, double top) {
-    return top - 0.012 * ((p.x - x) * (p.x - x) + 0.8 * (p.y - y) * (p.y - y));
-  };
-  const double domes = -smoothUnion(-dome(-58.0, -10.0, -4.0), -dome(66.0, 12.0, -24.0), 12.0);
-  return -smoothUnion(-domes, -dome(12.0, -50.0, -40.0), 12.0) + 1.5 * std::sin(0.05 * p.x + 0.04 * p.y);
 }
 
 ThoraxLabel abdomen(const Vec3d& p, double belowDiaphragmMm)
@@ -172,7 +150,7 @@ ThoraxLabel abdomen(const Vec3d& p, double belowDiaphragmMm)
   {
     return Muscle;
   }
-  if (belowDiaphragmMm > 5.0 && ellipsoid(p - Vec3d(68.0, 5.0, -84.0), Vec3d(42.0, 55.0, 44.0)) < 0.0)
+  if (belowDiaphragmMm > 5.0 && isWithin(p - Vec3d(68.0, 5.0, -84.0), Vec3d(42.0, 55.0, 44.0)))
   {
     return Stomach;
   }
@@ -181,25 +159,31 @@ ThoraxLabel abdomen(const Vec3d& p, double belowDiaphragmMm)
   return liver < 0.0 ? Liver : VisceralFat;
 }
 
-ThoraxLabel mediastinumOrLung(const Vec3d& p, const HeartSample& heart, const Vec3d& q, const ChestShape& chest)
+/// The cardiac notch: between the apex, the right ventricle and the chest wall there is no lung. `q` lies in the
+/// heart's frame.
+bool isNotch(const Vec3d& q, double lungOverlapMm)
 {
-  const double asideMm =
-    p.x > 3.0 ? chest.lungAsideMm * smoothStep(-20.0, -60.0, p.y) * smoothStep(100.0, 70.0, p.z) : 0.0;
+  static const Ellipsoid front(Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0));
+  constexpr double blendMm = 10.0;
+  constexpr double mostMm = 0.25 * blendMm; // in which a union may lie beyond its shapes
+  // Most of the lung, at a glance: boxes around the shapes.
+  const bool isBehind = q.z < -25.0 - mostMm || q.z > 62.0 + 41.0 + mostMm || std::abs(q.y) > 42.0 + 5.0 + mostMm ||
+                        q.x < -40.0 - 60.0 * (1.0 + mostMm / 42.0) || q.x > 4.0 + 41.0 + mostMm;
+  return !isBehind && smoothUnion(capsule(q, Vec3d(0.0, 0.0, 0.0), Vec3d(4.0, 0.0, 62.0), 25.0, 41.0),
+                                  front.distance(q), blendMm) < -lungOverlapMm;
+}
+
+ChestPlace mediastinumOrLung(const Vec3d& p, const Vec3d& q, const ChestHeight& height, const ChestShape& chest)
+{
+  const double asideMm = p.x > 3.0 ? height.lungAsideMm * smoothStep(-20.0, -60.0, p.y) : 0.0;
   const double halfWidth = 7.0 + 25.0 * smoothStep(-75.0, -10.0, p.y) - 6.0 * smoothStep(35.0, 60.0, p.y) + asideMm;
-  const auto isMediastinum = [&] { return std::abs(p.x - 3.0) < halfWidth + 2.0 * std::sin(0.06 * p.z); };
-  const auto isHilum = [&] {
-    return ellipsoid(Vec3d(std::abs(p.x - 3.0), p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0)) < 0.0;
-  };
-  // The cardiac notch: between the apex, the right ventricle and the chest wall there is no lung.
-  const auto notch = [&] {
-    return smoothUnion(capsule(q, Vec3d(0.0, 0.0, 0.0), Vec3d(4.0, 0.0, 62.0), 25.0, 41.0),
-                       ellipsoid(q - Vec3d(-40.0, -5.0, 50.0), Vec3d(60.0, 42.0, 42.0)), 10.0);
-  };
-  if (heart.outsideMm < 2.0 + asideMm || isMediastinum() || isHilum() || notch() < -chest.lungOverlapMm)
+  const double fromMiddle = std::abs(p.x - 3.0);
+  const bool isHilum = isWithin(Vec3d(fromMiddle, p.y, p.z) - Vec3d(38.0, 14.0, 42.0), Vec3d(30.0, 24.0, 30.0));
+  if (fromMiddle < halfWidth + height.wavesMm || isHilum || isNotch(q, chest.lungOverlapMm))
   {
-    return MediastinalFat;
+    return { MediastinalFat, ChestPlace::All, 0.0 };
   }
-  return p.x > 3.0 ? LungLeft : LungRight;
+  return { p.x > 3.0 ? LungLeft : LungRight, ChestPlace::All, 2.0 + asideMm };
 }
 
 } // namespace
@@ -220,50 +204,84 @@ Vec3d skinPointMm(const ChestShape& chest, double towardsX, double towardsY, dou
   return Vec3d(towardsX / r, towardsY / r, z);
 }
 
-ThoraxLabel sampleChest(const Vec3d& p, const HeartSample& heart, const Vec3d& inHeartFrame, const ChestShape& chest)
+ChestHeight chestHeight(double z, const ChestShape& chest)
 {
-  const double spineBackMm = halfDepthMm * (chest.scale - 1.0);
-  WallPoint w = wallPoint(p, chest);
-  if (w.depthMm < 0.0)
+  constexpr double perVertebra = 2.0 * 3.14159265358979 / 25.0; // one each 25 mm
+  ChestHeight height{};
+  height.zMm = z;
+  height.halfWidthMm = halfWidthAt(chest, z);
+  height.halfDepthMm = halfDepthAt(chest, z);
+  height.sagMm = mostSagMm * smoothStep(-20.0, -110.0, z);
+  height.pleuraMm = 17.0 + 26.0 * smoothStep(35.0, 140.0, z);
+  height.sternumHalfMm =
+    z > -58.0 && z < 98.0 ? 15.0 + 7.0 * smoothStep(55.0, 90.0, z) - 7.0 * smoothStep(-25.0, -55.0, z) : 0.0;
+  height.vertebraWaistMm = 1.3 * std::cos(perVertebra * z);
+  height.hasProcess = std::cos(perVertebra * (z + 8.0)) > -0.2;
+  height.wavesMm = 2.0 * std::sin(0.06 * z);
+  height.lungAsideMm = chest.lungAsideMm * smoothStep(100.0, 70.0, z);
+  return height;
+}
+
+/// Right dome, left dome and the central tendon below the heart.
+double diaphragmMm(double px, double py)
+{
+  const auto dome = [=](double x, double y, double top) {
+    return top - 0.012 * ((px - x) * (px - x) + 0.8 * (py - y) * (py - y));
+  };
+  const double domes = -smoothUnion(-dome(-58.0, -10.0, -4.0), -dome(66.0, 12.0, -24.0), 12.0);
+  return -smoothUnion(-domes, -dome(12.0, -50.0, -40.0), 12.0) + 1.5 * std::sin(0.05 * px + 0.04 * py);
+}
+
+ThoraxLabel ChestPlace::with(const HeartSample& heart) const
+{
+  const bool isWall = heart.label != Background && heart.label != Pericardium;
+  if (heartBefore == Nothing || (heartBefore == Walls && !isWall))
   {
-    return Background;
-  }
-  if (w.depthMm < skinMm)
-  {
-    return Skin;
-  }
-  w.depthMm -= chest.extraFatMm; // the lean body lies below
-  if (isFat(p, w))
-  {
-    return SubcutaneousFat;
-  }
-  const double pleuraMm = pleuraDepthMm(p, w);
-  const ThoraxLabel bone = boneOfWall(p, w, pleuraMm, chest);
-  const bool isInPericardium = heart.label != Background && heart.label != Pericardium; // where bone would open a wall
-  if (bone && !isInPericardium)
-  {
-    return bone;
+    return label;
   }
   if (heart.label != Background)
   {
     return heart.label;
   }
-  if (const ThoraxLabel vertebra = spine(p - Vec3d(0.0, spineBackMm, 0.0)))
+  return heart.outsideMm < fatWithinMm ? MediastinalFat : label;
+}
+
+ChestPlace chestAt(const Vec3d& p, const WallPoint& wall, const ChestHeight& height, double diaphragmMm,
+                   const Vec3d& inHeartFrame, const ChestShape& chest)
+{
+  WallPoint w = wall;
+  if (w.depthMm < skinMm)
   {
-    return vertebra;
+    return { w.depthMm < 0.0 ? Background : Skin, ChestPlace::Nothing, 0.0 };
+  }
+  w.depthMm -= chest.extraFatMm; // the lean body lies below
+  if (isFat(w, height))
+  {
+    return { SubcutaneousFat, ChestPlace::Nothing, 0.0 };
+  }
+  const double pleuraMm = pleuraDepthMm(w, height);
+  if (const ThoraxLabel bone = boneOfWall(p, w, pleuraMm, height, chest))
+  {
+    return { bone, ChestPlace::Walls, 0.0 };
+  }
+  const double spineBackMm = halfDepthMm * (chest.scale - 1.0);
+  if (const ThoraxLabel vertebra = spine(p - Vec3d(0.0, spineBackMm, 0.0), height))
+  {
+    return { vertebra, ChestPlace::All, 0.0 };
   }
   if (w.depthMm < pleuraMm)
   {
-    return Muscle;
+    return { Muscle, ChestPlace::All, 0.0 };
   }
   const Vec3d raised = p + Vec3d(0.0, 0.0, chest.diaphragmDownMm);
-  const double belowDiaphragmMm = diaphragmMm(raised) - raised.z;
-  return belowDiaphragmMm > 0.0 ? abdomen(raised, belowDiaphragmMm) : mediastinumOrLung(p, heart, inHeartFrame, chest);
+  const double belowDiaphragmMm = diaphragmMm - raised.z;
+  return belowDiaphragmMm > 0.0 ? ChestPlace{ abdomen(raised, belowDiaphragmMm), ChestPlace::All, 0.0 }
+                                : mediastinumOrLung(p, inHeartFrame, height, chest);
 }
 
 double skinDepthMm(const Vec3d& p, const ChestShape& chest)
 {
-  return wallPoint(p, chest).depthMm;
+  return wallPoint(p.x, p.y, halfWidthAt(chest, p.z), halfDepthAt(chest, p.z)).depthMm;
 }
 
 } // namespace sono

@@ -1,5 +1,6 @@
 #include "Phantoms/ThoraxHeart.h"
 
+#include "Core/Simd.h"
 #include "Phantoms/ThoraxShapes.h"
 
 namespace sono {
@@ -19,16 +20,7 @@ constexpr double tricuspidRadiusMm = 18.0;
 constexpr double outflowRadiusMm = 11.0;
 constexpr double atrialWallMm = 2.5;
 constexpr double pericardiumMm = 1.8;
-
-/// An atrioventricular valve: two leaflets that form a funnel from the annulus into the ventricle.
-struct Valve
-{
-  Vec3d centreMm;
-  double annulusRadiusMm;
-  double tipRadiusMm;
-  double heightMm;
-  Vec3d tipShiftMm; ///< makes one leaflet longer than the other
-};
+constexpr double annulusHalfMm = 8.0; // of the tube through a valve's annulus, along it
 
 /// The right heart, shifted to make room for the left one.
 Vec3d besideLeft(const Vec3d& p, const HeartShape& shape)
@@ -38,7 +30,7 @@ Vec3d besideLeft(const Vec3d& p, const HeartShape& shape)
 
 /// Opens or closes a valve that is given half open: the leaflets keep their length, so that a closed one is flatter; a
 /// wide ring's stretch to meet.
-Valve opened(Valve valve, double opening)
+HeartValve opened(HeartValve valve, double opening)
 {
   const double narrowing = valve.annulusRadiusMm - valve.tipRadiusMm;
   const double length2 = valve.heightMm * valve.heightMm + narrowing * narrowing;
@@ -49,13 +41,13 @@ Valve opened(Valve valve, double opening)
   return valve;
 }
 
-Valve mitralOf(const HeartShape& shape)
+HeartValve mitralOf(const HeartShape& shape)
 {
   const double size = std::sqrt(shape.leftScale);
   return opened({ mitralCentre, mitralRadiusMm * size, 6.5 * size, 15.0, Vec3d(2.5, 1.0, 0.0) }, shape.valveOpening);
 }
 
-Valve tricuspidOf(const HeartShape& shape)
+HeartValve tricuspidOf(const HeartShape& shape)
 {
   return opened(
     { besideLeft(tricuspidCentre, shape), tricuspidRadiusMm * shape.rightScale, 7.0, 14.0, Vec3d(-2.0, 0.0, 0.0) },
@@ -86,7 +78,7 @@ enum class ValveSide
   Ventricle
 };
 
-ValveSide valveSide(const Valve& valve, const Vec3d& p)
+ValveSide valveSide(const HeartValve& valve, const Vec3d& p)
 {
   constexpr double halfThicknessMm = 1.05;
   const double s = (valve.centreMm.z - p.z) / valve.heightMm; // 0 at the annulus, 1 at the tips
@@ -112,22 +104,52 @@ ValveSide valveSide(const Valve& valve, const Vec3d& p)
 }
 
 /// Tube through a valve's annulus, which joins ventricle and atrium.
-double annulusTube(const Valve& valve, const Vec3d& p, double apicalMm, double atrialMm)
+double annulusTube(const HeartValve& valve, const Vec3d& p, double apicalMm, double atrialMm)
 {
   const Vec3d q = p - valve.centreMm;
-  const double radial = std::hypot(q.x, q.y) - valve.annulusRadiusMm;
+  const double radial = std::sqrt(q.x * q.x + q.y * q.y) - valve.annulusRadiusMm;
   return std::max({ radial, -q.z - apicalMm, q.z - atrialMm });
 }
 
-/// Low-frequency irregularity, below 1 mm: no wall is a perfect ellipsoid.
+constexpr double mostWarpMm = 1.81; // of what follows
+
+/// Low-frequency irregularity, below 1 mm along each axis: no wall is a perfect ellipsoid.
 Vec3d warped(const Vec3d& p)
 {
-  return p + Vec3d(0.9 * std::sin(0.11 * p.z + 0.06 * p.y) + 0.5 * std::sin(0.17 * p.z + 1.0),
-                   0.9 * std::sin(0.10 * p.z - 0.08 * p.x + 2.0), 0.7 * std::sin(0.09 * p.x + 0.10 * p.y + 0.5));
+  return p + Vec3d(0.9 * sine(0.11 * p.z + 0.06 * p.y) + 0.5 * sine(0.17 * p.z + 1.0),
+                   0.9 * sine(0.10 * p.z - 0.08 * p.x + 2.0), 0.7 * sine(0.09 * p.x + 0.10 * p.y + 0.5));
 }
 
+const Vec3d rightVentricleCentre(-18.0, -3.0, 85.0);
+
+/// The right ventricle's long axis goes from the apex, close to the septum, to the tricuspid annulus.
+const Vec3d rightLongAxis = glm::normalize(Vec3d(-0.42, -0.08, 0.90));
+const Vec3d rightSideAxis = glm::normalize(glm::cross(Vec3d(0.0, 1.0, 0.0), rightLongAxis));
+const Vec3d rightDepthAxis = glm::cross(rightLongAxis, rightSideAxis);
+
+/// Anterolateral and posteromedial papillary muscles, from the middle of the free wall towards the leaflets; the
+/// moderator band, from the septum to the free wall, carries the anterior one of the right ventricle.
+double anterolateral(const Vec3d& m)
+{
+  return capsule(m, Vec3d(23.0, -2.0, 61.0), Vec3d(14.0, 0.5, 88.0), 6.5, 3.0);
+}
+
+double posteromedial(const Vec3d& m)
+{
+  return capsule(m, Vec3d(1.0, 21.0, 62.0), Vec3d(2.0, 11.0, 89.0), 6.5, 3.0);
+}
+
+double moderatorBand(const Vec3d& m)
+{
+  return capsule(m, Vec3d(-21.0, -2.0, 62.0), Vec3d(-52.0, -9.0, 72.0), 3.5, 3.0);
+}
+
+} // namespace
+
+constexpr int surfaceCount = 8;
+
 /// Every surface of the heart at one point.
-struct HeartSurfaces
+struct Heart::Surfaces
 {
   double leftVentricle;   ///< cavity
   double leftEpicardium;  ///< outer surface of the left ventricle and of its outflow tract
@@ -136,118 +158,123 @@ struct HeartSurfaces
   double rightEpicardium; ///< outer surface of the right ventricle, continued into the left
   double leftAtrium;      ///< cavity, with the annulus
   double rightAtrium;     ///< cavity, with the annulus
+  double sac;             ///< see pericardialSac
+
+  /// Distance from the pericardium's inner surface; the blend leaves epicardial fat in the grooves.
+  double pericardialSac() const
+  {
+    const double ventricles = smoothUnion(leftEpicardium, rightEpicardium, 8.0);
+    const double atria = smoothUnion(leftAtrium, rightAtrium, 10.0) - atrialWallMm;
+    return smoothUnion(ventricles, atria, 14.0) - 0.8;
+  }
 };
 
-void addLeftVentricle(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
+Heart::Heart(const HeartShape& shape)
+  : shape_(shape)
+  , sphereRadiusMm_(heartSphereRadiusMm(shape))
+  , rightwardMm_(shape.rightwardMm())
+  , mitral_(mitralOf(shape))
+  , tricuspid_(tricuspidOf(shape))
+  , leftVentricle_(leftVentricleCentre, leftVentricleRadii(shape))
+  , leftEpicardium_(Vec3d(5.5, -0.5, 87.0), leftVentricleRadii(shape) + (shape.wallMm / 10.0) * Vec3d(10.0, 9.5, 6.5))
+  , leftAtrium_(leftAtriumCentre(shape), shape.leftAtriumScale * Vec3d(25.0, 25.0, 17.5))
+  , rightAtrium_(rightAtriumCentre(shape), shape.rightAtriumScale * Vec3d(28.0, 26.0, 22.0))
+  , outflow_(outflowStart, aorticCentre, outflowRadiusMm)
+  , perGrown_(Vec3d(22.0, 24.0, 56.0) / leftVentricleRadii(shape))
 {
-  const Vec3d epicardiumCentre(5.5, -0.5, 87.0);
+  const Vec3d radii = shape.rightScale * Vec3d(44.0, 37.0, 44.0);
+  rightVentricle_ = Ellipsoid(Vec3d(0.0), radii);
+  rightOfSeptum_ = Ellipsoid(Vec3d(0.0), radii + 1.0);
+  rightEpicardium_ = Ellipsoid(Vec3d(0.0), radii + 4.0);
+}
+
+inline void Heart::addLeftVentricle(Surfaces& f, const Vec3d& p) const
+{
   // Trabeculae: a ripple of the endocardium that fades towards the base.
-  const double ripple = 0.5 * std::sin(0.45 * p.z + 0.3 * p.y) * smoothStep(105.0, 75.0, p.z);
-  const double inner = ellipsoid(p - leftVentricleCentre, leftVentricleRadii(shape)) + ripple;
-  const Vec3d wall = (shape.wallMm / 10.0) * Vec3d(10.0, 9.5, 6.5);
-  const double outer = ellipsoid(p - epicardiumCentre, leftVentricleRadii(shape) + wall);
-  f.outflow = capsule(p, outflowStart, aorticCentre, outflowRadiusMm, outflowRadiusMm);
+  const double ripple = 0.5 * sine(0.45 * p.z + 0.3 * p.y) * smoothStep(105.0, 75.0, p.z);
+  const double inner = leftVentricle_.distance(p) + ripple;
+  const double outer = leftEpicardium_.distance(p);
+  f.outflow = outflow_.distance(p);
   f.leftVentricle = smoothUnion(smoothIntersection(inner, p.z - 108.5, 8.0), f.outflow, 4.0);
   f.leftEpicardium = smoothUnion(smoothIntersection(outer, p.z - 114.5, 5.0), f.outflow - 3.5, 3.0);
 }
 
-const Vec3d rightVentricleCentre(-18.0, -3.0, 85.0);
-
-/// The right ventricle's ellipsoid, grown by `wallMm`. It reaches into the left ventricle, which cuts a crescent
-/// out of it; its long axis goes from the apex, close to the septum, to the tricuspid annulus.
-double rightEllipsoid(const Vec3d& p, const HeartShape& shape, double wallMm)
+/// The right ventricle is an ellipsoid that reaches into the left ventricle, which cuts a crescent out of it.
+inline Vec3d Heart::inRightVentricle(const Vec3d& p) const
 {
-  static const Vec3d longAxis = glm::normalize(Vec3d(-0.42, -0.08, 0.90));
-  static const Vec3d sideAxis = glm::normalize(glm::cross(Vec3d(0.0, 1.0, 0.0), longAxis));
-  static const Vec3d depthAxis = glm::cross(longAxis, sideAxis);
-  const Vec3d q = p - besideLeft(rightVentricleCentre, shape);
-  const Vec3d local(glm::dot(q, sideAxis), glm::dot(q, depthAxis), glm::dot(q, longAxis));
-  return ellipsoid(local, shape.rightScale * Vec3d(44.0, 37.0, 44.0) + wallMm);
+  const Vec3d q = p - rightVentricleCentre + Vec3d(rightwardMm_, 0.0, 0.0);
+  return { glm::dot(q, rightSideAxis), glm::dot(q, rightDepthAxis), glm::dot(q, rightLongAxis) };
 }
 
-void addRightVentricle(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
+inline void Heart::addRightVentricle(Surfaces& f, const Vec3d& p) const
 {
-  const double ripple = 0.6 * std::sin(0.5 * p.z - 0.35 * p.x) * smoothStep(100.0, 65.0, p.z);
-  const double inner = rightEllipsoid(p, shape, 0.0) + ripple;
+  const double ripple = 0.6 * sine(0.5 * p.z - 0.35 * p.x) * smoothStep(100.0, 65.0, p.z);
+  const Vec3d local = inRightVentricle(p);
+  const double inner = rightVentricle_.distance(local) + ripple;
   f.rightVentricle = smoothIntersection(smoothIntersection(inner, p.z - 101.5, 6.0), -f.leftEpicardium, 4.0);
-  f.rightEpicardium = smoothIntersection(rightEllipsoid(p, shape, 4.0), p.z - 107.5, 5.0);
+  f.rightEpicardium = smoothIntersection(rightEpicardium_.distance(local), p.z - 107.5, 5.0);
 }
 
-void addAtria(HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
+inline void Heart::addAtria(Surfaces& f, const Vec3d& p) const
 {
-  const double aside = 0.5 * shape.rightwardMm();
+  const double aside = 0.5 * rightwardMm_;
   // The bodies are cut by the plane of the interatrial septum; the septum is what is left between them.
-  const double left = smoothIntersection(
-    ellipsoid(p - leftAtriumCentre(shape), shape.leftAtriumScale * Vec3d(25.0, 25.0, 17.5)), -20.0 - aside - p.x, 3.0);
-  const double right = smoothIntersection(
-    ellipsoid(p - rightAtriumCentre(shape), shape.rightAtriumScale * Vec3d(28.0, 26.0, 22.0)), p.x + 22.5 + aside, 3.0);
-  f.leftAtrium = smoothUnion(left, annulusTube(mitralOf(shape), p, 8.0, 8.0), 3.0);
-  f.rightAtrium = smoothUnion(right, annulusTube(tricuspidOf(shape), p, 8.0, 8.0), 3.0);
+  const double left = smoothIntersection(leftAtrium_.distance(p), -20.0 - aside - p.x, 3.0);
+  const double right = smoothIntersection(rightAtrium_.distance(p), p.x + 22.5 + aside, 3.0);
+  f.leftAtrium = smoothUnion(left, annulusTube(mitral_, p, annulusHalfMm, annulusHalfMm), 3.0);
+  f.rightAtrium = smoothUnion(right, annulusTube(tricuspid_, p, annulusHalfMm, annulusHalfMm), 3.0);
   // The outflow tract and its wall pass between the atria.
-  f.leftAtrium = smoothIntersection(f.leftAtrium, 3.5 + shape.apartMm - f.outflow, 2.0);
+  f.leftAtrium = smoothIntersection(f.leftAtrium, 3.5 + shape_.apartMm - f.outflow, 2.0);
   f.rightAtrium = smoothIntersection(f.rightAtrium, -f.leftEpicardium, 3.0);
 }
 
-HeartSurfaces heartSurfaces(const Vec3d& p, const HeartShape& shape)
-{
-  HeartSurfaces f{};
-  addLeftVentricle(f, p, shape);
-  addRightVentricle(f, p, shape);
-  addAtria(f, p, shape);
-  return f;
-}
-
-ThoraxLabel leftBlood(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
+inline ThoraxLabel Heart::leftBlood(const Surfaces& f, const Vec3d& p) const
 {
   if (f.outflow < 0.0)
   {
     return LeftVentricleBlood;
   }
   // The muscles keep to the wall whatever the size of the cavity.
-  const Vec3d grown = leftVentricleRadii(shape) / Vec3d(22.0, 24.0, 56.0);
-  const Vec3d m = shape.leftScale == 1.0 ? p : leftVentricleCentre + (p - leftVentricleCentre) / grown;
-  // Anterolateral and posteromedial papillary muscles, from the middle of the free wall towards the leaflets.
-  if (capsule(m, Vec3d(23.0, -2.0, 61.0), Vec3d(14.0, 0.5, 88.0), 6.5, 3.0) < 0.0)
+  const Vec3d m = shape_.leftScale == 1.0 ? p : leftVentricleCentre + (p - leftVentricleCentre) * perGrown_;
+  if (anterolateral(m) < 0.0)
   {
     return PapillaryMuscleAnterolateral;
   }
-  if (capsule(m, Vec3d(1.0, 21.0, 62.0), Vec3d(2.0, 11.0, 89.0), 6.5, 3.0) < 0.0)
+  if (posteromedial(m) < 0.0)
   {
     return PapillaryMusclePosteromedial;
   }
-  const ValveSide side = valveSide(mitralOf(shape), p);
+  const ValveSide side = valveSide(mitral_, p);
   return side == ValveSide::Leaflet ? MitralValve : side == ValveSide::Atrium ? LeftAtriumBlood : LeftVentricleBlood;
 }
 
-ThoraxLabel rightBlood(const Vec3d& p, const HeartShape& shape)
+inline ThoraxLabel Heart::rightBlood(const Vec3d& p) const
 {
-  const Vec3d m = p + Vec3d(shape.rightwardMm(), 0.0, 0.0);
-  // The moderator band, from the septum to the free wall, carries the anterior papillary muscle.
-  if (capsule(m, Vec3d(-21.0, -2.0, 62.0), Vec3d(-52.0, -9.0, 72.0), 3.5, 3.0) < 0.0)
+  if (moderatorBand(p + Vec3d(rightwardMm_, 0.0, 0.0)) < 0.0)
   {
     return PapillaryMuscleRight;
   }
-  const ValveSide side = valveSide(tricuspidOf(shape), p);
+  const ValveSide side = valveSide(tricuspid_, p);
   return side == ValveSide::Leaflet  ? TricuspidValve
          : side == ValveSide::Atrium ? RightAtriumBlood
                                      : RightVentricleBlood;
 }
 
 /// Whether a point of the left ventricle's wall has the right ventricle on its other side.
-bool facesRightVentricle(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
+inline bool Heart::facesRightVentricle(const Surfaces& f, const Vec3d& p) const
 {
   const Vec3d fromAxis(p.x - 5.0, p.y + 0.5, 0.0);
   const Vec3d onEpicardium = p - f.leftEpicardium * fromAxis / std::max(glm::length(fromAxis), 1.0);
-  return rightEllipsoid(onEpicardium, shape, 1.0) < 0.0;
+  return rightOfSeptum_.distance(inRightVentricle(onEpicardium)) < 0.0;
 }
 
-ThoraxLabel wall(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape)
+inline ThoraxLabel Heart::wall(const Surfaces& f, const Vec3d& p) const
 {
   const bool leftAtrium = f.leftAtrium < atrialWallMm;
   const bool rightAtrium = f.rightAtrium < atrialWallMm;
   if (f.leftEpicardium < 0.0)
   {
-    return facesRightVentricle(f, p, shape) ? InterventricularSeptum : LeftVentricleMyocardium;
+    return facesRightVentricle(f, p) ? InterventricularSeptum : LeftVentricleMyocardium;
   }
   if (f.rightEpicardium < 0.0)
   {
@@ -260,44 +287,121 @@ ThoraxLabel wall(const HeartSurfaces& f, const Vec3d& p, const HeartShape& shape
   return leftAtrium ? LeftAtriumWall : rightAtrium ? RightAtriumWall : Background;
 }
 
-/// Distance from the pericardium's inner surface; the blend leaves epicardial fat in the grooves.
-double pericardialSac(const HeartSurfaces& f)
+/// `p` is warped.
+inline Heart::Surfaces Heart::surfacesAt(const Vec3d& p) const
 {
-  const double ventricles = smoothUnion(f.leftEpicardium, f.rightEpicardium, 8.0);
-  const double atria = smoothUnion(f.leftAtrium, f.rightAtrium, 10.0) - atrialWallMm;
-  return smoothUnion(ventricles, atria, 14.0) - 0.8;
+  Surfaces f{};
+  addLeftVentricle(f, p);
+  addRightVentricle(f, p);
+  addAtria(f, p);
+  f.sac = f.pericardialSac();
+  return f;
 }
 
-} // namespace
-
-HeartSample sampleHeart(const Vec3d& point, const HeartShape& shape)
+inline HeartSample Heart::sampleOf(const Surfaces& f, const Vec3d& p) const
 {
-  const Vec3d p = warped(point);
-  const HeartSurfaces f = heartSurfaces(p, shape);
-  const double sac = pericardialSac(f);
   HeartSample sample;
-  sample.outsideMm = sac - pericardiumMm;
+  sample.outsideMm = f.sac - pericardiumMm;
   if (sample.outsideMm > 0.0)
   {
     return sample;
   }
   if (std::min(f.leftVentricle, f.leftAtrium) < 0.0)
   {
-    sample.label = leftBlood(f, p, shape);
+    sample.label = leftBlood(f, p);
   }
   else if (std::min(f.rightVentricle, f.rightAtrium) < 0.0)
   {
-    sample.label = rightBlood(p, shape);
+    sample.label = rightBlood(p);
   }
   else
   {
-    sample.label = wall(f, p, shape);
+    sample.label = wall(f, p);
   }
   if (sample.label == Background)
   {
-    sample.label = sac > 0.0 ? Pericardium : MediastinalFat;
+    sample.label = f.sac > 0.0 ? Pericardium : MediastinalFat;
   }
   return sample;
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) HeartSample Heart::sample(const Vec3d& point) const
+{
+  const Vec3d p = warped(point);
+  return sampleOf(surfacesAt(p), p);
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void Heart::sampleEach(const Vec3d* points, int count,
+                                                                 HeartSample* samples) const
+{
+  constexpr int together = 16;
+  const Heart own = *this; // what may be read at any time needs no branch
+  double x[together];
+  double y[together];
+  double z[together];
+  double of[surfaceCount][together];
+  for (int first = 0; first < count; first += together)
+  {
+    const int here = std::min(together, count - first);
+    for (int n = 0; n < together; ++n)
+    {
+      const Vec3d& point = points[first + std::min(n, here - 1)];
+      x[n] = point.x;
+      y[n] = point.y;
+      z[n] = point.z;
+    }
+    for (int n = 0; n < together; ++n)
+    {
+      const Vec3d p = warped(Vec3d(x[n], y[n], z[n]));
+      const Surfaces f = own.surfacesAt(p);
+      x[n] = p.x;
+      y[n] = p.y;
+      z[n] = p.z;
+      of[0][n] = f.leftVentricle;
+      of[1][n] = f.leftEpicardium;
+      of[2][n] = f.outflow;
+      of[3][n] = f.rightVentricle;
+      of[4][n] = f.rightEpicardium;
+      of[5][n] = f.leftAtrium;
+      of[6][n] = f.rightAtrium;
+      of[7][n] = f.sac;
+    }
+    for (int n = 0; n < here; ++n)
+    {
+      const Surfaces f{ of[0][n], of[1][n], of[2][n], of[3][n], of[4][n], of[5][n], of[6][n], of[7][n] };
+      samples[first + n] = sampleOf(f, Vec3d(x[n], y[n], z[n]));
+    }
+  }
+}
+
+DistanceBounds Heart::outsideMm(const Vec3d& p, double aroundMm) const
+{
+  const double r = aroundMm + mostWarpMm;
+  const Vec3d local = inRightVentricle(p);
+  // A smooth union lies up to a quarter of its width below the nearer shape, a smooth intersection above the farther.
+  const auto tube = [&](const HeartValve& valve) {
+    const double z = std::abs(p.z - valve.centreMm.z) - annulusHalfMm;
+    const double x = p.x - valve.centreMm.x;
+    const double y = p.y - valve.centreMm.y;
+    return std::max(z, std::sqrt(x * x + y * y) - valve.annulusRadiusMm) - r;
+  };
+  const double leftWall =
+    std::min(std::max(leftEpicardium_.leastAround(p, r), p.z - r - 114.5), outflow_.distance(p) - r - 3.5) - 0.25 * 3.0;
+  const double rightWall = std::max(rightEpicardium_.leastAround(local, r), p.z - r - 107.5);
+  const double atria = std::min(std::min(leftAtrium_.leastAround(p, r), tube(mitral_)),
+                                std::min(rightAtrium_.leastAround(p, r), tube(tricuspid_))) -
+                       0.25 * 3.0 - 0.25 * 10.0 - atrialWallMm;
+  const double least = std::min(std::min(leftWall, rightWall) - 0.25 * 8.0, atria) - 0.25 * 14.0;
+  const double most = std::min(std::max(leftEpicardium_.mostAround(p, r), p.z + r - 114.5),
+                               std::max(rightEpicardium_.mostAround(local, r), p.z + r - 107.5)) +
+                      0.25 * 5.0;
+  return { least - 0.8 - pericardiumMm, most - 0.8 - pericardiumMm };
+}
+
+bool Heart::isNear(const Vec3d& p) const
+{
+  const Vec3d from = p - heartSphereCentreMm();
+  return glm::dot(from, from) < sphereRadiusMm_ * sphereRadiusMm_;
 }
 
 HeartPoints heartPoints(const HeartShape& shape)

@@ -121,18 +121,7 @@ LabelVolume makeThoraxPhantom(double spacingMm, const ThoraxParameters& paramete
   const ThoraxBody body(parameters);
   LabelVolume volume;
   volume.placement = placementFor(body.chest(), spacingMm);
-  volume.voxels.resize(volume.placement.voxelCount());
-  const Vec3i size = volume.placement.size;
-  parallelFor(size.z, {}, [&](int k) {
-    std::uint16_t* voxel = volume.voxels.data() + std::size_t(k) * size.x * size.y;
-    for (int j = 0; j < size.y; ++j)
-    {
-      for (int i = 0; i < size.x; ++i)
-      {
-        *voxel++ = body.sample(volume.placement.worldFromIndex(Vec3d(i, j, k)));
-      }
-    }
-  });
+  volume.voxels = body.labels(volume.placement);
   volume.labels = labelsOf(volume.voxels);
   return volume;
 }

@@ -37,13 +37,16 @@ public:
     , cellMm_(volume.placement.spacingMm * Vec3d(factor_))
   {
     cells_.resize(std::size_t(HeartPart::InferiorVenaCava) + 1);
+    const Vec3i n = volume.placement.size;
     for (int k = 0; k < size_.z; ++k)
     {
       for (int j = 0; j < size_.y; ++j)
       {
+        const Vec3i v = voxelOf({ 0, j, k });
+        const std::uint16_t* row = volume.voxels.data() + (std::size_t(v.z) * n.y + v.y) * n.x;
         for (int i = 0; i < size_.x; ++i)
         {
-          const HeartPart part = at({ i, j, k });
+          const HeartPart part = parts_.of(row[std::min(i * factor_.x + factor_.x / 2, n.x - 1)]);
           if (part != HeartPart::None)
           {
             cells_[std::size_t(part)].emplace_back(i, j, k);
@@ -62,14 +65,10 @@ public:
   HeartPart at(const Vec3i& c) const
   {
     const Vec3i n = volume_.placement.size;
-    const Vec3i v = glm::min(c * factor_ + factor_ / 2, n - 1);
+    const Vec3i v = voxelOf(c);
     return parts_.of(volume_.voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x]);
   }
-  Vec3d worldMm(const Vec3i& c) const
-  {
-    const Vec3i v = glm::min(c * factor_ + factor_ / 2, volume_.placement.size - 1);
-    return volume_.placement.worldFromIndex(Vec3d(v));
-  }
+  Vec3d worldMm(const Vec3i& c) const { return volume_.placement.worldFromIndex(Vec3d(voxelOf(c))); }
 
   Vec3d centroid(HeartPart part) const
   {
@@ -119,6 +118,8 @@ public:
   }
 
 private:
+  Vec3i voxelOf(const Vec3i& c) const { return glm::min(c * factor_ + factor_ / 2, volume_.placement.size - 1); }
+
   const LabelVolume& volume_;
   HeartParts parts_;
   Vec3i factor_;

@@ -11,12 +11,14 @@ namespace {
 PlaneFit eigen(Mat3d a)
 {
   constexpr int sweeps = 12;
+  // Of what lies on the diagonal, after which turns move no digit.
+  const double negligible = 1e-20 * (std::abs(a[0][0]) + std::abs(a[1][1]) + std::abs(a[2][2]));
   Mat3d vectors(1.0);
   for (int sweep = 0; sweep < sweeps; ++sweep)
   {
     for (const auto& [p, q] : { std::array<int, 2>{ 0, 1 }, std::array<int, 2>{ 0, 2 }, std::array<int, 2>{ 1, 2 } })
     {
-      if (a[p][q] == 0.0)
+      if (std::abs(a[p][q]) <= negligible)
       {
         continue;
       }

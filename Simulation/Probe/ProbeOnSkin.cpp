@@ -40,6 +40,25 @@ std::vector<double> ProbeOnSkin::stepAreas(const std::vector<ScanLine>& lines) c
   return areas;
 }
 
+std::pair<int, int> ProbeOnSkin::stepsInside(const Vec3d& from, const Vec3d& axis, double lengthMm) const
+{
+  const double stepMm = grid_.stepMm();
+  const auto isInside = [&](int n) { return grid_.isInside(from + (n + 0.5) * stepMm * axis); };
+  const Vec2d range = grid_.rangeWithin(from, axis, Vec3d(0.0), grid_.boxMm());
+  const int count = int(std::ceil(lengthMm / stepMm - 0.5));
+  int first = std::clamp(int(std::floor(range.x / stepMm)) - 1, 0, count);
+  int end = std::clamp(int(std::ceil(range.y / stepMm)) + 1, first, count);
+  while (first < end && !isInside(first))
+  {
+    ++first;
+  }
+  while (end > first && !isInside(end - 1))
+  {
+    --end;
+  }
+  return { first, end };
+}
+
 void ProbeOnSkin::lookUpLosses(double frequencyMHz)
 {
   const auto& tissues = grid_.scene().tissues();

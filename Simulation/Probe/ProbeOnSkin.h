@@ -3,6 +3,7 @@
 #include "Probe/ScanGeometry.h"
 #include "Probe/WindowGrid.h"
 
+#include <utility>
 #include <vector>
 
 namespace sono {
@@ -36,33 +37,56 @@ public:
   template<class Visit>
   void walk(const Vec3d& from, const Vec3d& axis, double lengthMm, const Visit& visit) const
   {
+    constexpr int together = 64; // steps
     const std::size_t tissueCount = lossOfStep_.size();
     const double stepMm = grid_.stepMm();
+    const double softOfStep = softLossOfMm_ * stepMm;
+    double rMm[together];
+    GridSteps<together> steps;
     int last = -1;
     double lossDb = 0.0;
     double softDb = 0.0;
-    for (double r = 0.5 * stepMm; r < lengthMm; r += stepMm)
+    for (double r = 0.5 * stepMm; r < lengthMm;)
     {
-      const Vec3d at = from + r * axis;
-      if (!grid_.isInside(at))
+      int count = 0;
+      for (; count < together && r < lengthMm; r += stepMm)
       {
-        continue;
+        rMm[count++] = r;
       }
-      const std::size_t cell = grid_.at(at);
-      const int tissue = grid_.tissue(cell);
-      const bool isGel = last < 0 && grid_.isOuter(cell); // between the face and the skin
-      if (!isGel)
+      grid_.cellsAlong(from, axis, rMm, count, steps.x, steps.y, steps.z, steps.cell);
+      for (int n = 0; n < count; ++n)
       {
-        lossDb += lossOfStep_[std::size_t(tissue)];
-        softDb += softLossOfMm_ * stepMm;
-        lossDb += last >= 0 ? lossOfBoundary_[std::size_t(last) * tissueCount + std::size_t(tissue)] : 0.0;
-        last = tissue;
+        if (steps.cell[n] < 0)
+        {
+          continue;
+        }
+        const auto cell = std::size_t(steps.cell[n]);
+        const int tissue = grid_.tissue(cell);
+        const bool isGel = last < 0 && grid_.isOuter(cell); // between the face and the skin
+        if (!isGel)
+        {
+          lossDb += lossOfStep_[std::size_t(tissue)];
+          softDb += softOfStep;
+          lossDb += last >= 0 ? lossOfBoundary_[std::size_t(last) * tissueCount + std::size_t(tissue)] : 0.0;
+          last = tissue;
+        }
+        visit(rMm[n], Vec3d(steps.x[n], steps.y[n], steps.z[n]), cell, lossDb, lossDb > softDb ? lossDb - softDb : 0.0);
       }
-      visit(r, at, cell, lossDb, lossDb > softDb ? lossDb - softDb : 0.0);
     }
   }
 
+  /// Steps from the first to before the last of a walk that lie within the box; the grid's box is convex.
+  std::pair<int, int> stepsInside(const Vec3d& from, const Vec3d& axis, double lengthMm) const;
+
 private:
+  /// Where so many steps lie.
+  template<int count>
+  struct GridSteps
+  {
+    double x[count], y[count], z[count];
+    int cell[count];
+  };
+
   void lookUpLosses(double frequencyMHz);
 
   const WindowGrid& grid_;

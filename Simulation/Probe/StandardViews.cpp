@@ -93,40 +93,58 @@ public:
     return {};
   }
 
+  /// The plane through a place on the skin, however it is rocked there.
+  struct Approach
+  {
+    Vec3d normal;
+    Vec3d straight; ///< to the structures' middle
+    double planeOffDeg;
+    double markOffMm;
+    double lookOffDeg;
+  };
+
+  Approach approachFrom(const Vec3d& localMm) const
+  {
+    const PlaneFit fit = fitPlaneThrough(localMm, points_, weights_);
+    const Vec3d normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
+    const Vec3d way = ideal_.middle - localMm;
+    const Vec3d straight = glm::normalize(way - glm::dot(way, normal) * normal);
+    const auto offDeg = [](const Vec3d& u, const Vec3d& v) {
+      return std::acos(std::min(1.0, glm::dot(u, v))) / degree;
+    };
+    return { normal, straight, offDeg(normal, normal_), std::abs(glm::dot(normal, mark_ - localMm)),
+             offDeg(straight, look_) };
+  }
+
   /// What becomes of a trial; of one that cannot be better than `best`, only that it is not.
-  Outcome tryAt(const Trial& trial, const Outcome& best) const
+  Outcome tryAt(const Trial& trial, const Approach& approach, const Outcome& best) const
   {
     Outcome outcome;
     StandardView& view = outcome.view;
-    const PlaneFit fit = fitPlaneThrough(trial.place.localMm, points_, weights_);
-    const Vec3d normal = glm::dot(fit.normal(), normal_) < 0.0 ? -fit.normal() : fit.normal();
-    view.planeOffDeg = std::acos(std::min(1.0, glm::dot(normal, normal_))) / degree;
-    view.markOffMm = std::abs(glm::dot(normal, mark_ - trial.place.localMm));
+    view.planeOffDeg = approach.planeOffDeg;
+    view.markOffMm = approach.markOffMm;
     if (view.planeOffDeg > atFirst * plan_.mostOffDeg || view.markOffMm > atFirst * plan_.mostOffMm)
     {
       return outcome;
     }
     outcome.stage = Outcome::OffLook;
-    const Vec3d way = ideal_.middle - trial.place.localMm;
-    const Vec3d straight = glm::normalize(way - glm::dot(way, normal) * normal);
-    const Vec3d aside = glm::cross(normal, straight);
+    const Vec3d aside = glm::cross(approach.normal, approach.straight);
     const double rock = trial.rockDeg * degree;
-    const Vec3d axis = std::cos(rock) * straight + std::sin(rock) * aside;
-    const double lookOffDeg = std::acos(std::min(1.0, glm::dot(straight, look_))) / degree;
-    if (lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
+    const Vec3d axis = std::cos(rock) * approach.straight + std::sin(rock) * aside;
+    if (approach.lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
     {
       return outcome;
     }
     outcome.stage = Outcome::OffSkin;
     const double mostScore =
-      nearness(view) *
-      std::exp(-0.5 * (std::pow(2.0 * lookOffDeg / plan_.lookDeg, 2.0) + std::pow(trial.rockDeg / rockedDeg, 2.0)));
+      nearness(view) * std::exp(-0.5 * (std::pow(2.0 * approach.lookOffDeg / plan_.lookDeg, 2.0) +
+                                        std::pow(trial.rockDeg / rockedDeg, 2.0)));
     if (best.stage == Outcome::Shown && mostScore <= best.view.score)
     {
       return outcome;
     }
     const Vec3d place = grid_.entry(trial.place.localMm, axis);
-    const Vec3d across = glm::cross(axis, normal);
+    const Vec3d across = glm::cross(axis, approach.normal);
     const Vec3d lateral = glm::dot(glm::transpose(toLocal_) * across, plan_.rightward) < 0.0 ? -across : across;
     if (!probe_.hasRoom(place, axis) || !probe_.touches(place, axis, lateral))
     {
@@ -164,7 +182,7 @@ public:
         const bool isPlace = other.place.outward != Vec3d(0.0) &&
                              grid_.isCovered(other.place.localMm, other.place.outward) &&
                              std::abs(other.rockDeg) <= mostRocks * rockStepDeg;
-        const Outcome outcome = isPlace ? tryAt(other, best) : Outcome();
+        const Outcome outcome = isPlace ? tryAt(other, approachFrom(other.place.localMm), best) : Outcome();
         if (isFurther(outcome, best))
         {
           best = outcome;
@@ -226,20 +244,29 @@ private:
     const std::vector<double> areas = probe_.stepAreas(lines);
     const double stepMm = grid_.stepMm();
     std::vector<double> seen(structures_.count(), 0.0);
-    double seenExcess = 0.0; // dB mm^2
-    std::vector<double> inside(areas.size(), 0.0);
+    double seenExcess = 0.0;                      // dB mm^2
+    std::vector<int> inside(areas.size() + 1, 0); // lines more than a step before
     double farMm = 0.0;
     for (const ScanLine& line : lines)
     {
-      probe_.walk(line.originMm, line.axis, probe_.geometry().depthMm,
+      const auto [first, end] = probe_.stepsInside(line.originMm, line.axis, probe_.geometry().depthMm);
+      ++inside[std::min(areas.size(), std::size_t(first))];
+      --inside[std::min(areas.size(), std::size_t(end))];
+      // Beyond the structures nothing is lost that counts.
+      const Vec2d range =
+        WindowGrid::rangeWithin(line.originMm, line.axis, structures_.boxLowMm(), structures_.boxHighMm());
+      if (range.y < range.x)
+      {
+        continue;
+      }
+      probe_.walk(line.originMm, line.axis, std::min(probe_.geometry().depthMm, range.y + stepMm),
                   [&](double r, const Vec3d& at, std::size_t, double, double excessDb) {
-                    const auto bin = std::min(areas.size() - 1, std::size_t(r / stepMm));
-                    inside[bin] += areas[bin];
                     const int demand = structures_.at(at);
                     if (demand < 0)
                     {
                       return;
                     }
+                    const auto bin = std::min(areas.size() - 1, std::size_t(r / stepMm));
                     const double clear = std::clamp((goneDb - excessDb) / (goneDb - dimDb), 0.0, 1.0);
                     seen[std::size_t(demand)] += clear * areas[bin];
                     seenExcess += clear * areas[bin] * excessDb;
@@ -253,10 +280,12 @@ private:
     view.score *= std::pow(10.0, -seenExcess / std::max(1e-9, seenMm2) / lossScaleDb);
     double all = 0.0;
     double within = 0.0;
+    int linesInside = 0;
     for (std::size_t bin = 0; bin < areas.size() && double(bin) * stepMm < view.depthMm; ++bin)
     {
       all += areas[bin] * ProbeOnSkin::lineCount;
-      within += inside[bin];
+      linesInside += inside[bin];
+      within += areas[bin] * linesInside;
     }
     view.insidePercent = 100.0 * within / all;
     view.score *= within / all;
@@ -384,10 +413,11 @@ StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std:
   std::vector<Outcome> outcomes(places.size());
   parallelFor(int(places.size()), {}, [&](int i) {
     const std::size_t at = std::size_t(i);
+    const ViewSearch::Approach approach = search.approachFrom(places[at].localMm);
     for (int rock = 0; rock < rocks; ++rock)
     {
       const Trial trial{ places[at], (rock % 2 == 0 ? -1.0 : 1.0) * double((rock + 1) / 2) * rockStepDeg };
-      const Outcome outcome = search.tryAt(trial, outcomes[at]);
+      const Outcome outcome = search.tryAt(trial, approach, outcomes[at]);
       if (rock == 0 || ViewSearch::isFurther(outcome, outcomes[at]))
       {
         trials[at] = trial;

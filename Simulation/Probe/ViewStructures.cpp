@@ -17,6 +17,10 @@ constexpr double sectionReachMm = 130.0;
 ViewStructures::ViewStructures(const Scene& scene, const ViewPlan& plan)
   : scene_(scene)
   , demandOfLabel_(65536, -1)
+  , voxels_(scene.volume().voxels.data())
+  , perVoxelMm_(1.0 / scene.placement().spacingMm)
+  , pitchY_(scene.placement().size.x)
+  , pitchZ_(pitchY_ * scene.placement().size.y)
 {
   for (std::size_t i = 0; i < plan.demands.size(); ++i)
   {
@@ -26,7 +30,7 @@ ViewStructures::ViewStructures(const Scene& scene, const ViewPlan& plan)
       demandOfLabel_[std::size_t(id)] = int(i);
     }
     nearLocal_.push_back(scene.localFromWorld(demand.nearMm));
-    withinMm_.push_back(demand.withinMm);
+    withinMm2_.push_back(demand.withinMm * demand.withinMm);
   }
   findBox();
 }
@@ -62,26 +66,9 @@ void ViewStructures::findBox()
     all.high = glm::max(all.high, box.high);
   }
   const bool isEmpty = all.high.x < 0;
-  boxLowMm_ = isEmpty ? Vec3d(0.0) : scene_.placement().spacingMm * (Vec3d(all.low) - 0.5); // a margin for rounding
-  boxHighMm_ = isEmpty ? Vec3d(0.0) : scene_.placement().spacingMm * (Vec3d(all.high) + 1.5);
-}
-
-int ViewStructures::at(const Vec3d& local) const
-{
-  if (glm::any(glm::lessThan(local, boxLowMm_)) || glm::any(glm::greaterThanEqual(local, boxHighMm_)))
-  {
-    return -1; // most of a body
-  }
-  const Vec3i n = scene_.placement().size;
-  const Vec3i v = Vec3i(glm::floor(local / scene_.placement().spacingMm));
-  if (glm::any(glm::lessThan(v, Vec3i(0))) || glm::any(glm::greaterThanEqual(v, n)))
-  {
-    return -1;
-  }
-  const int demand = demandOfLabel_[scene_.volume().voxels[(std::size_t(v.z) * n.y + v.y) * n.x + v.x]];
-  const bool isNear =
-    demand >= 0 && glm::distance(local, nearLocal_[std::size_t(demand)]) < withinMm_[std::size_t(demand)];
-  return isNear ? demand : -1;
+  boxLowMm_ = isEmpty ? Vec3d(0.0) : scene_.placement().spacingMm * Vec3d(all.low);
+  // A little less, lest rounding lead beyond the volume.
+  boxHighMm_ = isEmpty ? Vec3d(0.0) : (1.0 - 1e-12) * scene_.placement().spacingMm * Vec3d(all.high + 1);
 }
 
 IdealSection idealSection(const Scene& scene, const ViewPlan& plan, const ViewStructures& structures)

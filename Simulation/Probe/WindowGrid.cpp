@@ -38,6 +38,7 @@ WindowGrid::WindowGrid(const Scene& scene, const WindowTarget& target)
   , factor_(glm::max(Vec3i(glm::round(wantedCellMm / scene.placement().spacingMm)), Vec3i(1)))
   , size_((scene.placement().size + factor_ - 1) / factor_)
   , cellMm_(scene.placement().spacingMm * Vec3d(factor_))
+  , perCellMm_(1.0 / cellMm_)
   , boxMm_(scene.placement().spacingMm * Vec3d(scene.placement().size))
   , stepMm_(0.7 * std::min({ cellMm_.x, cellMm_.y, cellMm_.z }))
 {
@@ -88,6 +89,23 @@ void WindowGrid::sample(const WindowTarget& target)
       }
     }
   });
+}
+
+Vec2d WindowGrid::rangeWithin(const Vec3d& from, const Vec3d& axis, const Vec3d& lowMm, const Vec3d& highMm)
+{
+  Vec2d range(0.0, 1e6);
+  for (int a = 0; a < 3; ++a)
+  {
+    if (axis[a] == 0.0)
+    {
+      range.y = from[a] < lowMm[a] || from[a] > highMm[a] ? -1e6 : range.y;
+      continue;
+    }
+    const double one = (lowMm[a] - from[a]) / axis[a];
+    const double other = (highMm[a] - from[a]) / axis[a];
+    range = { std::max(range.x, std::min(one, other)), std::min(range.y, std::max(one, other)) };
+  }
+  return range;
 }
 
 void WindowGrid::markTargetPoint(const Vec3d& pointMm)
@@ -230,12 +248,19 @@ bool WindowGrid::isSurface(const Vec3i& cell) const
 /// What lies beyond the border is not known.
 Vec3d WindowGrid::outwardNormal(const Vec3d& local) const
 {
+  static const std::vector<Vec3d> directions = [] {
+    std::vector<Vec3d> made;
+    for (int i = 0; i < normalDirections; ++i)
+    {
+      made.push_back(evenDirection(i, normalDirections));
+    }
+    return made;
+  }();
   Vec3d sum(0.0);
   for (const double radiusMm : normalRadiiMm)
   {
-    for (int i = 0; i < normalDirections; ++i)
+    for (const Vec3d& offset : directions)
     {
-      const Vec3d offset = evenDirection(i, normalDirections);
       const Vec3d place = local + radiusMm * offset;
       if (isInside(place))
       {

@@ -26,6 +26,11 @@ public:
   }
   /// Of a place inside the box.
   std::size_t at(const Vec3d& local) const { return index(glm::min(Vec3i(local / cellMm_), size_ - 1)); }
+  /// Places on the way along `axis` from a place, at `count` distances, and the cells they lie in; -1 beyond the box.
+  void cellsAlong(const Vec3d& from, const Vec3d& axis, const double* rMm, int count, double* x, double* y, double* z,
+                  int* cell) const;
+  /// Where on that way it enters and leaves a box, mm; the second is less where it misses it.
+  static Vec2d rangeWithin(const Vec3d& from, const Vec3d& axis, const Vec3d& lowMm, const Vec3d& highMm);
   int tissue(std::size_t cell) const { return tissue_[cell]; }
   bool isTarget(std::size_t cell) const { return target_[cell] != 0; }
   /// Air around the body.
@@ -71,6 +76,7 @@ private:
   Vec3i factor_;
   Vec3i size_;
   Vec3d cellMm_;
+  Vec3d perCellMm_; ///< 1 / cellMm_
   Vec3d boxMm_;
   Vec3d borderMm_{ 0.0 }; ///< where along each axis no surface counts
   double stepMm_;

@@ -3,6 +3,7 @@
 #include "Core/Simd.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace sono {
@@ -18,6 +19,13 @@ inline void load(const std::uint8_t* from, Bytes& to)
   std::memcpy(&to, from, sizeof to);
 }
 
+inline bool isAny(const Bytes& mask)
+{
+  std::uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof mask);
+  return (halves[0] | halves[1]) != 0;
+}
+
 /// The weight where the mask's byte is set.
 inline void addWhere(const Bytes& mask, const Masks& weight, Sums& sum)
 {
@@ -29,29 +37,37 @@ SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* 
                                                             const float* weightY, const float* weightZ, FaceColumns& to)
 {
   const Bytes wanted = Bytes{} + std::int8_t(tissue);
-  for (int a = 0; a < 3; ++a)
+  Sums toward[3]{};
+  Sums away[3]{};
+  for (int k = 0; k < count.z; ++k)
   {
-    Sums toward{};
-    Sums away{};
-    for (int k = 0; k < count.z; ++k)
+    for (int j = 0; j < count.y; ++j)
     {
-      for (int j = 0; j < count.y; ++j)
+      const std::uint8_t* row = corner + pitch[1] * j + pitch[2] * k;
+      Bytes own;
+      load(row, own);
+      const Bytes isOwn = own == wanted;
+      if (!isAny(isOwn))
       {
-        const std::uint8_t* row = corner + pitch[1] * j + pitch[2] * k;
-        const Sums weights = Sums{} + weightY[j] * weightZ[k];
-        const Masks weight = (Masks)weights;
-        Bytes own;
+        continue; // most rows, of a thin wall
+      }
+      const Sums weights = Sums{} + weightY[j] * weightZ[k];
+      const Masks weight = (Masks)weights;
+      for (int a = 0; a < 3; ++a)
+      {
         Bytes next;
         Bytes before;
-        load(row, own);
         load(row + pitch[a], next);
         load(row - pitch[a], before);
-        addWhere((own == wanted) & (next != wanted), weight, toward);
-        addWhere((own == wanted) & (before != wanted), weight, away);
+        addWhere(isOwn & (next != wanted), weight, toward[a]);
+        addWhere(isOwn & (before != wanted), weight, away[a]);
       }
     }
-    std::memcpy(to.toward[a], &toward, sizeof toward);
-    std::memcpy(to.away[a], &away, sizeof away);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    std::memcpy(to.toward[a], &toward[a], sizeof toward[a]);
+    std::memcpy(to.away[a], &away[a], sizeof away[a]);
   }
 }
 

@@ -144,24 +144,46 @@ std::uint32_t RegionOnDemand::knownAt(const Vec3i& volumeVoxel) const
   return cells.contains(voxel) ? __atomic_load_n(cells.record + recordIndex(cells, voxel), __ATOMIC_RELAXED) : 0u;
 }
 
+/// Those that are not there yet.
+template<class Wants>
+void RegionOnDemand::bakeBlocks(const Wants& isWanted, const Progress& progress) const
+{
+  const Vec3i blocks = baking_->blocks;
+  parallelFor(blocks.y * blocks.z, progress, [&](int row) {
+    for (int x = 0; x < blocks.x; ++x)
+    {
+      const Vec3i block(x, row % blocks.y, row / blocks.y);
+      if (isWanted(block) && !baking_->flag(block).load(std::memory_order_acquire))
+      {
+        bakeBlock(block);
+      }
+    }
+  });
+}
+
 void RegionOnDemand::bakeAll(const Progress& progress) const
 {
   if (baking_->all.load(std::memory_order_acquire))
   {
     return report(progress, 1.0);
   }
-  const Vec3i blocks = baking_->blocks;
-  parallelFor(blocks.y * blocks.z, progress, [&](int row) {
-    for (int x = 0; x < blocks.x; ++x)
-    {
-      const Vec3i block(x, row % blocks.y, row / blocks.y);
-      if (!baking_->flag(block).load(std::memory_order_acquire))
-      {
-        bakeBlock(block);
-      }
-    }
-  });
+  bakeBlocks([](const Vec3i&) { return true; }, progress);
   baking_->all.store(true, std::memory_order_release);
+}
+
+void RegionOnDemand::bakeAround(const Vec3d& middleMm, double reachMm, const Progress& progress) const
+{
+  if (baking_->all.load(std::memory_order_acquire))
+  {
+    return report(progress, 1.0);
+  }
+  const Vec3d blockMm = double(recordBlock) * Vec3d(region_.spacing);
+  const auto isNear = [&](const Vec3i& block) {
+    const Vec3d lowMm = Vec3d(baking_->first + block) * blockMm;
+    const Vec3d away = middleMm - glm::clamp(middleMm, lowMm, lowMm + blockMm);
+    return glm::dot(away, away) <= reachMm * reachMm;
+  };
+  bakeBlocks(isNear, progress);
 }
 
 int RegionOnDemand::bakedBlocks() const

@@ -40,6 +40,8 @@ public:
   CellsOnDemand view() const { return { region_.view(), this }; }
 
   void bakeAll(const Progress& progress = {}) const;
+  /// Those that lie within so many mm of a place, in the volume's local mm, and some around them.
+  void bakeAround(const Vec3d& middleMm, double reachMm, const Progress& progress = {}) const;
   /// Bakes the block around a voxel of the box that has a record, and gives that record.
   [[gnu::cold]] std::uint32_t bakeAt(const Vec3i& voxel) const;
   /// Blocks that were baked so far.
@@ -51,6 +53,8 @@ public:
 private:
   struct Baking;
   void bakeBlock(const Vec3i& block) const;
+  template<class Wants>
+  void bakeBlocks(const Wants& isWanted, const Progress& progress) const;
   std::uint32_t knownAt(const Vec3i& volumeVoxel) const;
 
   mutable TraceRegion region_; ///< of which the records change

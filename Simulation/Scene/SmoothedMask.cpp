@@ -4,28 +4,133 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 namespace sono {
 
 namespace {
 
-/// out[i] = sum over k of weight[k] in[i + k stride], for `length` contiguous i.
-SONO_SIMD_CLONES void weightedSum(const float* in, std::ptrdiff_t stride, const float* weight, int taps, int length,
-                                  float* out)
+using Floats = float __attribute__((vector_size(4 * vectorWidth)));
+using Masks = std::int32_t __attribute__((vector_size(4 * vectorWidth)));
+
+using Bytes = std::uint8_t __attribute__((vector_size(vectorWidth)));
+using Words = std::uint16_t __attribute__((vector_size(2 * vectorWidth)));
+
+/// Sums of so many vectors of numbers, in registers.
+template<int vectors>
+inline void sumVectors(const float* in, std::ptrdiff_t stride, const float* weight, int taps, float* out)
 {
-  for (int i = 0; i < length; ++i)
+  Floats sum[vectors]{};
+  for (int k = 0; k < taps; ++k, in += stride)
   {
-    out[i] = weight[0] * in[i];
-  }
-  for (int k = 1; k < taps; ++k)
-  {
-    const float w = weight[k];
-    const float* row = in + k * stride;
-    for (int i = 0; i < length; ++i)
+    for (int v = 0; v < vectors; ++v)
     {
-      out[i] += w * row[i];
+      Floats row;
+      std::memcpy(&row, in + v * vectorWidth, sizeof row);
+      sum[v] += weight[k] * row;
     }
   }
+  std::memcpy(out, sum, sizeof sum);
+}
+
+/// out[i] = sum over k of weight[k] in[i + k stride], for `length` contiguous i.
+SONO_SIMD_CLONES __attribute__((flatten)) void weightedSum(const float* in, std::ptrdiff_t stride, const float* weight,
+                                                           int taps, int length, float* out)
+{
+  int i = 0;
+  for (; i + 4 * vectorWidth <= length; i += 4 * vectorWidth)
+  {
+    sumVectors<4>(in + i, stride, weight, taps, out + i);
+  }
+  for (; i + vectorWidth <= length; i += vectorWidth)
+  {
+    sumVectors<1>(in + i, stride, weight, taps, out + i);
+  }
+  if (i < length && length >= vectorWidth) // the rest with some of those before, once more
+  {
+    sumVectors<1>(in + length - vectorWidth, stride, weight, taps, out + length - vectorWidth);
+    return;
+  }
+  for (; i < length; ++i)
+  {
+    float sum = 0.0f;
+    for (int k = 0; k < taps; ++k)
+    {
+      sum += weight[k] * in[i + k * stride];
+    }
+    out[i] = sum;
+  }
+}
+
+/// 1 where a row has the value, 0 elsewhere.
+template<class Voxel>
+inline void markRow(const Voxel* row, Voxel value, int count, float* out)
+{
+  using Voxels = std::conditional_t<sizeof(Voxel) == 1, Bytes, Words>;
+  const Voxels wanted = Voxels{} + value;
+  const Masks one = (Masks)(Floats{} + 1.0f);
+  const auto markVector = [&](int i) {
+    Voxels own;
+    std::memcpy(&own, row + i, sizeof own);
+    const Masks isIt = __builtin_convertvector(own == wanted, Masks) & one;
+    std::memcpy(out + i, &isIt, sizeof isIt);
+  };
+  int i = 0;
+  for (; i + vectorWidth <= count; i += vectorWidth)
+  {
+    markVector(i);
+  }
+  if (i < count && count >= vectorWidth)
+  {
+    markVector(count - vectorWidth);
+    return;
+  }
+  for (; i < count; ++i)
+  {
+    out[i] = row[i] == value ? 1.0f : 0.0f;
+  }
+}
+
+/// A part of a slice, which its border continues.
+template<class Voxel>
+struct SlicePart
+{
+  const Voxel* slice;
+  int width, height; ///< of the slice
+  int firstX, firstY;
+  int countX, countY;
+};
+
+/// 1 where it has the value, 0 elsewhere.
+template<class Voxel>
+inline void markRows(const SlicePart<Voxel>& part, Voxel value, float* out)
+{
+  const bool isInside = part.firstX >= 0 && part.firstX + part.countX <= part.width;
+  for (int j = 0; j < part.countY; ++j, out += part.countX)
+  {
+    const Voxel* row = part.slice + std::ptrdiff_t(part.width) * std::clamp(part.firstY + j, 0, part.height - 1);
+    if (isInside)
+    {
+      markRow(row + part.firstX, value, part.countX, out);
+      continue;
+    }
+    for (int i = 0; i < part.countX; ++i)
+    {
+      out[i] = row[std::clamp(part.firstX + i, 0, part.width - 1)] == value ? 1.0f : 0.0f;
+    }
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void mark(const SlicePart<std::uint8_t>& part, std::uint8_t value, float* out)
+{
+  markRows(part, value, out);
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void mark(const SlicePart<std::uint16_t>& part, std::uint16_t value,
+                                                    float* out)
+{
+  markRows(part, value, out);
 }
 
 } // namespace
@@ -66,23 +171,15 @@ void MaskSmoother<Voxel>::smooth(Voxel value, const Vec3i& first, const Vec3i& c
   indicator_.resize(std::size_t(plane) * wide.z);
   alongZ_.resize(std::size_t(plane) * count.z);
   alongY_.resize(std::size_t(wide.x) * count.y * count.z);
+  alongX_.resize(alongY_.size());
 
-  const int x0 = first.x - r.x;
-  const bool inside = x0 >= 0 && x0 + wide.x <= size_.x;
-  float* to = indicator_.data();
   for (int k = 0; k < wide.z; ++k)
   {
     const int z = std::clamp(first.z - r.z + k, 0, size_.z - 1);
-    for (int j = 0; j < wide.y; ++j, to += wide.x)
-    {
-      const int y = std::clamp(first.y - r.y + j, 0, size_.y - 1);
-      const Voxel* row = voxels_ + std::size_t(size_.x) * (std::size_t(y) + std::size_t(size_.y) * z);
-      for (int i = 0; i < wide.x; ++i)
-      {
-        const int x = inside ? x0 + i : std::clamp(x0 + i, 0, size_.x - 1);
-        to[i] = row[x] == value ? 1.0f : 0.0f;
-      }
-    }
+    const SlicePart<Voxel> part{
+      voxels_ + std::ptrdiff_t(size_.x) * size_.y * z, size_.x, size_.y, first.x - r.x, first.y - r.y, wide.x, wide.y
+    };
+    mark(part, value, indicator_.data() + k * plane);
   }
   for (int k = 0; k < count.z; ++k)
   {
@@ -91,10 +188,11 @@ void MaskSmoother<Voxel>::smooth(Voxel value, const Vec3i& first, const Vec3i& c
     weightedSum(alongZ_.data() + k * plane, wide.x, gaussian.weight[1].data(), 2 * r.y + 1, wide.x * count.y,
                 alongY_.data() + std::ptrdiff_t(k) * wide.x * count.y);
   }
+  // All rows in one run; what mixes two of them is not taken over.
+  weightedSum(alongY_.data(), 1, gaussian.weight[0].data(), 2 * r.x + 1, int(alongY_.size()) - 2 * r.x, alongX_.data());
   for (int row = 0; row < count.y * count.z; ++row)
   {
-    weightedSum(alongY_.data() + std::ptrdiff_t(row) * wide.x, 1, gaussian.weight[0].data(), 2 * r.x + 1, count.x,
-                out + std::ptrdiff_t(row) * count.x);
+    std::copy_n(alongX_.data() + std::ptrdiff_t(row) * wide.x, count.x, out + std::ptrdiff_t(row) * count.x);
   }
 }
 

@@ -37,6 +37,7 @@ private:
   std::vector<float> indicator_;
   std::vector<float> alongZ_;
   std::vector<float> alongY_;
+  std::vector<float> alongX_;
 };
 
 extern template class MaskSmoother<std::uint8_t>;

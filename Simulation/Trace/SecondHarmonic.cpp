@@ -1,6 +1,7 @@
 #include "Trace/SecondHarmonic.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Probe/BeamAperture.h"
 
 #include <algorithm>
@@ -16,9 +17,50 @@ constexpr double depletion = 8.0 / 3.0;
 /// Below it, -200 dB, nothing is heard that grows there, and the quotient is of noise.
 constexpr float leastIntensity = 1e-10f;
 
+/// S I1 / sqrt(I2) dz of the bins of a line.
+SONO_SIMD_CLONES void findStrengths(const float* __restrict sent, const float* __restrict doubled,
+                                    const float* __restrict sourcesPerMm, double binMm, int bins,
+                                    double* __restrict strengths)
+{
+  for (int bin = 0; bin < bins; ++bin)
+  {
+    const double i2 = doubled[bin];
+    const double i1 = std::max(double(sent[bin]), i2);
+    const double root = std::sqrt(std::max(i2, double(leastIntensity)));
+    const double strength = double(sourcesPerMm[bin]) * std::min(i1 / root, 1.0) * binMm;
+    strengths[bin] = doubled[bin] > leastIntensity ? strength : 0.0;
+  }
+}
+
+/// C / sqrt(1 + 8/3 u^2) of the bins of a line, of C^2.
+SONO_SIMD_CLONES void findGrowth(const float* __restrict sent, const float* __restrict doubled,
+                                 const double* __restrict amounts2, int bins, float* __restrict growth)
+{
+  for (int bin = 0; bin < bins; ++bin)
+  {
+    const double i2 = doubled[bin];
+    const double i1 = std::max(double(sent[bin]), i2);
+    const double ofSent2 = amounts2[bin] * i2 / std::max(i1, 1e-300);
+    growth[bin] = float(std::sqrt(amounts2[bin] / (1.0 + depletion * ofSent2)));
+  }
+}
+
+/// Of each sample of the boundary echoes, the bin whose harmonic it has: that of half of its range.
+std::vector<int> binsOfEchoes(const TracedLines& lines)
+{
+  std::vector<int> bins;
+  bins.reserve(std::size_t(lines.echoCount));
+  for (int s = 0; s < lines.echoCount; ++s)
+  {
+    bins.push_back(std::min(int(0.5 * s * lines.echoSampleMm / lines.binMm), lines.binCount - 1));
+  }
+  return bins;
+}
+
 /// What reverberates has been reflected, a first multiple about halfway to where it is shown: behind that it is too
 /// weak to let its harmonic grow.
-void growReverberation(const std::vector<float>& growth, int line, TracedLines& doubled)
+void growReverberation(const std::vector<float>& growth, const std::vector<int>& binOfEcho, int line,
+                       TracedLines& doubled)
 {
   const auto bins = std::size_t(doubled.binCount);
   for (std::size_t bin = 0; bin < bins && !doubled.reverberation.empty(); ++bin)
@@ -26,10 +68,10 @@ void growReverberation(const std::vector<float>& growth, int line, TracedLines& 
     doubled.reverberation[std::size_t(line) * bins + bin] *= growth[bin / 2];
     doubled.reverberationError[std::size_t(line) * bins + bin] *= growth[bin / 2];
   }
-  for (int s = 0; s < doubled.echoCount; ++s)
+  std::complex<float>* echo = doubled.boundaryEcho.data() + std::size_t(line) * binOfEcho.size();
+  for (const int bin : binOfEcho)
   {
-    const auto bin = std::min(std::size_t(0.5 * s * doubled.echoSampleMm / doubled.binMm), bins - 1);
-    doubled.boundaryEcho[std::size_t(line) * std::size_t(doubled.echoCount) + std::size_t(s)] *= growth[bin];
+    *echo++ *= growth[std::size_t(bin)];
   }
 }
 
@@ -53,27 +95,37 @@ std::vector<float> harmonicSources(const Scene& scene, const std::vector<ScanLin
   const auto bins = std::size_t(settings.binCount());
   const SentSound sent{ settings.frequencyMHz, settings.facePressureKPa };
   const Vec3i size = scene.placement().size;
+  const std::vector<Tissue>& tissues = scene.tissues();
+  std::vector<float> perMm; // by the tissue at the face and the one there
+  for (const Tissue& face : tissues)
+  {
+    for (const Tissue& tissue : tissues)
+    {
+      perMm.push_back(float(harmonicSourcePerMm(tissue, face.impedanceMRayl, sent)));
+    }
+  }
   std::vector<float> sources(lines.size() * bins, 0.0f);
   parallelFor(int(lines.size()), {}, [&](int l) {
     const ScanLine& line = lines[std::size_t(l)];
-    double faceMRayl = 0.0;
+    const float* ofFace = nullptr;
+    // From corners, where places in the volume are not negative.
+    const Vec3d first = scene.placement().indexFromWorld(line.originMm) + 0.5;
+    const Vec3d step = scene.placement().indexFromWorld(line.originMm + line.axis) + 0.5 - first;
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
-      const Vec3d place = line.originMm + (double(bin) + 0.5) * settings.radialBinMm * line.axis;
-      const Vec3d voxel = glm::floor(scene.placement().indexFromWorld(place) + 0.5);
-      if (!glm::all(glm::greaterThanEqual(voxel, Vec3d(0.0))) || !glm::all(glm::lessThan(voxel, Vec3d(size))))
+      const Vec3d place = first + (double(bin) + 0.5) * settings.radialBinMm * step;
+      if (!glm::all(glm::greaterThanEqual(place, Vec3d(0.0))) || !glm::all(glm::lessThan(place, Vec3d(size))))
       {
         continue;
       }
-      const Vec3i v(voxel);
+      const Vec3i v(place);
       const int index = scene.tissueVoxels()[v.x + std::size_t(size.x) * (v.y + std::size_t(size.y) * v.z)];
       if (index == scene.outsideIndex())
       {
         continue;
       }
-      const Tissue& tissue = scene.tissues()[std::size_t(index)];
-      faceMRayl = faceMRayl > 0.0 ? faceMRayl : tissue.impedanceMRayl;
-      sources[std::size_t(l) * bins + bin] = float(harmonicSourcePerMm(tissue, faceMRayl, sent));
+      ofFace = ofFace ? ofFace : perMm.data() + std::size_t(index) * tissues.size();
+      sources[std::size_t(l) * bins + bin] = ofFace[index];
     }
   });
   return sources;
@@ -93,33 +145,33 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
                            const std::vector<std::complex<double>>& gains)
 {
   const auto bins = std::size_t(doubled.binCount);
+  const std::vector<int> binOfEcho = binsOfEchoes(doubled);
   parallelFor(doubled.lineCount, {}, [&](int l) {
+    const std::size_t first = std::size_t(l) * bins;
+    std::vector<double> amounts(bins); // first what a bin adds
+    std::vector<float> growth(bins);
+    findStrengths(sent.intensity.data() + first, doubled.intensity.data() + first, sourcesPerMm.data() + first,
+                  doubled.binMm, doubled.binCount, amounts.data());
     std::complex<double> grown;
-    std::vector<float> growth; // of each bin
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
-      const std::size_t at = std::size_t(l) * bins + bin;
-      const double i2 = doubled.intensity[at];
-      const double i1 = std::max(double(sent.intensity[at]), i2);
-      std::complex<double> here;
-      if (doubled.intensity[at] > leastIntensity)
-      {
-        here = double(sourcesPerMm[at]) * std::min(i1 / std::sqrt(i2), 1.0) * gains[bin] * doubled.binMm;
-      }
-      else
+      if (!(doubled.intensity[first + bin] > leastIntensity))
       {
         // What the next bin, which may be lit, must not be blended with: it would be lifted by tens of decibels.
-        doubled.attenuationNpPerMHz[at] = 0.0f;
+        doubled.attenuationNpPerMHz[first + bin] = 0.0f;
       }
-      const double amount = std::abs(grown + 0.5 * here); // in the middle of the bin
+      const std::complex<double> here = amounts[bin] * gains[bin];
+      amounts[bin] = std::norm(grown + 0.5 * here); // in the middle of the bin, squared
       grown += here;
-      const double ofSent2 = i1 > 0.0 ? amount * amount * i2 / i1 : 0.0;
-      const auto factor = float(amount / std::sqrt(1.0 + depletion * ofSent2));
-      doubled.intensity[at] *= factor;
-      doubled.standardError[at] *= factor;
-      growth.push_back(factor);
     }
-    growReverberation(growth, l, doubled);
+    findGrowth(sent.intensity.data() + first, doubled.intensity.data() + first, amounts.data(), doubled.binCount,
+               growth.data());
+    for (std::size_t bin = 0; bin < bins; ++bin)
+    {
+      doubled.intensity[first + bin] *= growth[bin];
+      doubled.standardError[first + bin] *= growth[bin];
+    }
+    growReverberation(growth, binOfEcho, l, doubled);
   });
   doubled.segments += sent.segments;
   return doubled;

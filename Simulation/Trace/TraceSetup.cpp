@@ -165,6 +165,23 @@ VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const Tr
            Vec3i(glm::clamp(glm::ceil(high / spacing) + 1.0, Vec3d(0.0), size)) };
 }
 
+FanReach fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
+{
+  const StartSpread spread = startSpread(settings);
+  const double asideMm = std::hypot(spread.lateralMm, spread.elevationalMm); // from where a path starts to its line
+  FanReach reach{ Vec3d(0.0), 0.0 };
+  for (const ScanLine& line : lines)
+  {
+    reach.middleMm += scene.localFromWorld(line.originMm) / double(lines.size());
+  }
+  for (const ScanLine& line : lines)
+  {
+    const double fromMiddleMm = glm::distance(scene.localFromWorld(line.originMm), reach.middleMm);
+    reach.mm = std::max(reach.mm, fromMiddleMm + asideMm + settings.pathDepthMm());
+  }
+  return reach;
+}
+
 TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,
                        const std::vector<TargetSurface>& targetSurfaces, const Progress& progress, Records records)
 {
@@ -174,13 +191,21 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
     throw Error("the probe has no scan lines: set the number of lines to 1 or more");
   }
   const VoxelBox box = fanBox(scene, worldLines, settings);
-  const bool bakesAll = records == Records::All || settings.march == March::NanoVDB;
-  const Progress layingOut = partOf(progress, 0.0, bakesAll ? 0.25 : 1.0);
+  const bool bakesAll = settings.march == March::NanoVDB || (records == Records::All && settings.interactive);
+  const bool bakes = bakesAll || records == Records::All;
+  const Progress layingOut = partOf(progress, 0.0, bakes ? 0.25 : 1.0);
   cells = settings.interactive ? scene.interactiveRegion(box, layingOut) : scene.regionOnDemand(box, layingOut);
   region = { cells, &cells->region() };
   if (bakesAll)
   {
     cells->bakeAll(partOf(progress, 0.25, 1.0));
+  }
+  else if (bakes)
+  {
+    // Poses nearby find theirs: what is baked anew goes up to the device again.
+    constexpr double besideMm = 15.0;
+    const FanReach reach = fanReach(scene, worldLines, settings);
+    cells->bakeAround(reach.middleMm, reach.mm + besideMm, partOf(progress, 0.25, 1.0));
   }
   const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
   cornerWorldMm = scene.worldFromLocal(corner);

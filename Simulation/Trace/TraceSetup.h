@@ -16,12 +16,21 @@ struct NanoSpace;
 /// Which of the region's records are baked beforehand.
 enum class Records
 {
-  All,     ///< for whoever takes the region elsewhere
+  All,     ///< that paths may meet, for whoever takes the region elsewhere
   OnDemand ///< none: space() bakes those that paths meet
 };
 
 /// What the lines' fan, from wherever its paths start, can reach of the scene, in voxels.
 VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
+
+/// A ball that holds all that its paths can reach: local mm.
+struct FanReach
+{
+  Vec3d middleMm;
+  double mm;
+};
+
+FanReach fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
 
 /// Everything that tracing needs, made once from the scene and the settings and held while paths run.
 struct TraceSetup

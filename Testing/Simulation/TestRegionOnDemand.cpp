@@ -108,6 +108,28 @@ TEST(RegionOnDemand, PathsMeetAFewOfTheRecordsAndGiveTheSameBits)
   expectSameBits(trace(*scene, lines, settings), onDemand);
 }
 
+/// What goes to a device is baked as far as paths reach: a path that met a record elsewhere would bake it.
+TEST(RegionOnDemand, PathsMeetNoRecordBeyondTheReachOfTheirFan)
+{
+  for (const double depthMm : { 20.0, 30.0, 40.0 })
+  {
+    const auto scene = makeBusyScene();
+    TraceSettings settings = busySettings();
+    settings.depthMm = depthMm;
+    settings.aperture.apertureMm = 10.0; // paths start beside the lines
+    const auto lines = fan(9);
+    const TraceSetup setup(*scene, lines, settings, {}, {}, Records::OnDemand);
+    const FanReach reach = fanReach(*scene, lines, settings);
+    setup.cells->bakeAround(reach.middleMm, reach.mm);
+    const int baked = setup.cells->bakedBlocks();
+    EXPECT_GT(baked, 0);
+    trace(*scene, lines, settings);
+    EXPECT_EQ(setup.cells->bakedBlocks(), baked) << depthMm << " mm deep";
+    setup.cells->bakeAll();
+    EXPECT_LT(baked, setup.cells->bakedBlocks());
+  }
+}
+
 TEST(RegionOnDemand, LayingItOutTellsOfItsProgressAndCanBeStopped)
 {
   const auto lines = fan(5);

@@ -2,6 +2,7 @@
 #include "Labels/AssignTissues.h"
 #include "Phantoms/CheckThorax.h"
 #include "Phantoms/DrawThorax.h"
+#include "Phantoms/ThoraxBody.h"
 #include "Phantoms/ThoraxLandmarks.h"
 #include "Phantoms/ThoraxPhantom.h"
 
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -60,6 +62,64 @@ TEST(ThoraxBodies, TheDefaultIsTheBundledThorax)
   for (std::size_t chamber = 0; chamber < 4; ++chamber)
   {
     EXPECT_NEAR(now[chamber], before[chamber], 0.002);
+  }
+}
+
+/// Rows share what is worked out once, and leave out what is far away.
+TEST(ThoraxBodies, TheLabelsOfAGridAreThoseOfItsPoints)
+{
+  for (int seed = 0; seed <= 6; ++seed)
+  {
+    const ThoraxParameters parameters = seed == 0 ? ThoraxParameters{} : drawThoraxParameters(std::uint64_t(seed));
+    const ThoraxBody body(parameters);
+    const LabelVolume volume = makeThoraxPhantom(3.0, parameters);
+    const Vec3i n = volume.placement.size;
+    int differ = 0;
+    for (std::size_t i = 0; i < volume.voxels.size(); ++i)
+    {
+      const Vec3d index(double(i % n.x), double(i / n.x % n.y), double(i / n.x / n.y));
+      differ += body.sample(volume.placement.worldFromIndex(index)) == volume.voxels[i] ? 0 : 1;
+    }
+    EXPECT_EQ(differ, 0) << "of " << volume.voxels.size() << " voxels, seed " << seed;
+  }
+}
+
+TEST(ThoraxBodies, BoundsOfTheDistanceToAHeartHoldAroundAPoint)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> side(-1.0, 1.0);
+  const auto drawn = [&] { return Vec3d(side(random), side(random), side(random)); };
+  for (int seed = 1; seed <= 10; ++seed)
+  {
+    const Heart heart(ThoraxBody(drawThoraxParameters(std::uint64_t(seed))).heart());
+    int isOutside = 0;
+    int isInside = 0;
+    for (int n = 0; n < 20000; ++n)
+    {
+      const Vec3d p = heartSphereCentreMm() + 130.0 * drawn();
+      const double aroundMm = 5.0 * (side(random) + 1.0);
+      const DistanceBounds bounds = heart.outsideMm(p, aroundMm);
+      const Vec3d offset = drawn();
+      const double length = glm::length(offset);
+      const double outsideMm = heart.sample(p + aroundMm * (length > 1.0 ? offset / length : offset)).outsideMm;
+      ASSERT_LE(bounds.leastMm, outsideMm);
+      ASSERT_GE(bounds.mostMm, outsideMm);
+      isOutside += bounds.leastMm > 0.0 ? 1 : 0;
+      isInside += bounds.mostMm <= 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(isOutside, 12000); // they say something
+    EXPECT_GT(isInside, 200);
+  }
+}
+
+TEST(ThoraxBodies, SinesAreThoseOfTheLibrary)
+{
+  for (int n = -200000; n <= 200000; ++n)
+  {
+    for (const double x : { 0.005 * n, 1.5707963267948966 * (n % 600) })
+    {
+      ASSERT_NEAR(shapes::sine(x), std::sin(x), 1e-13);
+    }
   }
 }
 
