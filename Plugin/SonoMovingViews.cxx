@@ -159,11 +159,11 @@ void SonoMovingViews::unmute()
   this->Muted.clear();
 }
 
-void SonoMovingViews::markModified(pqView* view)
+void SonoMovingViews::markModified(pqView* view, Marked which)
 {
   for (const auto& shown : this->Shown.value(view))
   {
-    if (shown && !this->Anatomy->holds(shown))
+    if (shown && (which == Marked::All || !this->Anatomy->holds(shown)))
     {
       sonoTell(shown->getProxy(), "MarkModified");
     }
@@ -192,12 +192,9 @@ void SonoMovingViews::drawInFull()
   this->unmute();
   for (pqView* view : this->Views)
   {
-    for (const auto& shown : view ? this->Shown.value(view) : QList<QPointer<pqDataRepresentation>>())
+    if (view && this->Shown.contains(view))
     {
-      if (shown)
-      {
-        sonoTell(shown->getProxy(), "MarkModified"); // the proxies take it that they have said so and not been heard
-      }
+      this->markModified(view, Marked::All); // their proxies take it that this was said and not yet heard
     }
   }
   this->Shown.clear();
@@ -236,13 +233,13 @@ void SonoMovingViews::draw()
     {
       if (picture % 2 == 0 || this->Views.size() == 1)
       {
-        this->markModified(view);
+        this->markModified(view, Marked::ButAnatomy);
         drawLightly(view->getViewProxy());
       }
     }
     else if (view && (isSolid || this->Slow.empty()))
     {
-      this->markModified(view);
+      this->markModified(view, Marked::ButAnatomy);
       view->forceRender();
     }
   }

@@ -56,7 +56,12 @@ private:
   void take(pqView* view);
   void mute(vtkSMProxy* representation);
   void unmute();
-  void markModified(pqView* view);
+  enum class Marked
+  {
+    All,
+    ButAnatomy
+  };
+  void markModified(pqView* view, Marked which);
   void lighten();
 
   vtkSmartPointer<vtkSMProxy> Source;
