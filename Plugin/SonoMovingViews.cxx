@@ -90,6 +90,9 @@ SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
   {
     this->take(view);
   }
+  // So that the first picture does not wait for those.
+  std::stable_partition(this->Views.begin(), this->Views.end(),
+                        [&](pqView* view) { return !this->Slow.contains(view); });
   if (!this->Slow.empty())
   {
     this->lighten();

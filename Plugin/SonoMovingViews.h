@@ -65,8 +65,8 @@ private:
   void lighten();
 
   vtkSmartPointer<vtkSMProxy> Source;
-  std::unique_ptr<SonoKeptAnatomy> Anatomy; // until drawInFull
-  QList<QPointer<pqView>> Views;
+  std::unique_ptr<SonoKeptAnatomy> Anatomy;                     // until drawInFull
+  QList<QPointer<pqView>> Views;                                // the slow ones last
   QList<QPointer<pqView>> Slow;                                 // of them
   QMap<pqView*, QList<QPointer<pqDataRepresentation>>> Shown;   // by the views
   QList<QPair<vtkWeakPointer<vtkObject>, unsigned long>> Muted; // with their observers

@@ -44,7 +44,7 @@
 namespace {
 
 constexpr int restMs = 300;
-constexpr int idleMs = 200;
+constexpr int idleMs = 500; // more than the steps of a setting take, which come to rest like a probe
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
 
 /// Which has an anatomy.
