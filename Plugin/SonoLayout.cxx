@@ -61,8 +61,8 @@ void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controlle
 {
   {
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
-    constexpr double fewTriangles =
-      0.1; // while the view is turned or a probe moves: ParaView's 0.5 takes twice as long to make
+    // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
+    constexpr double fewTriangles = 0.1;
     vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
     view->UpdateVTKObjects();
   }

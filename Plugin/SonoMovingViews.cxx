@@ -108,14 +108,11 @@ SonoMovingViews::~SonoMovingViews()
   this->drawInFull();
 }
 
-void SonoMovingViews::prepare()
+void SonoMovingViews::prepare(pqView* view)
 {
-  for (pqView* view : visibleViews())
+  if (isSlow(view))
   {
-    if (isSlow(view))
-    {
-      sonoTell(view->getProxy(), "UpdateLOD"); // which makes what is not made
-    }
+    sonoTell(view->getProxy(), "UpdateLOD"); // which makes what is not made
   }
 }
 

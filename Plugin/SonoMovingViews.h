@@ -42,8 +42,8 @@ public:
   /// Unless drawInFull was called, all is made anew with the next picture, the anatomy as well.
   ~SonoMovingViews();
 
-  /// Makes the few triangles of slow views beforehand, so that the first picture on the way need not wait for them.
-  static void prepare();
+  /// Makes the few triangles of a slow view beforehand, so that the first picture on the way need not wait for them.
+  static void prepare(pqView* view);
 
   /// Runs the pipeline and shows a picture on the way.
   void draw();

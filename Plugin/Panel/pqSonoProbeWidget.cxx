@@ -44,7 +44,7 @@
 namespace {
 
 constexpr int restMs = 300;
-constexpr int idleMs = 500; // more than the steps of a setting take, which come to rest like a probe
+constexpr int idleMs = 500; // more than settings take to come to rest
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
 
 /// Which has an anatomy.
@@ -491,7 +491,10 @@ void pqSonoProbeWidget::prepare()
   {
     this->findSkin();
     this->probe()->GetSkin()->Prepare();
-    SonoMovingViews::prepare();
+    if (this->view())
+    {
+      SonoMovingViews::prepare(this->view());
+    }
   }
 }
 
