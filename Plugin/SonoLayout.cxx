@@ -59,6 +59,13 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
 /// Anatomy, probe and image from the patient's front, a little from the left and from above.
 void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
+    // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
+    constexpr double fewTriangles = 0.1;
+    vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
+    view->UpdateVTKObjects();
+  }
   for (unsigned int port : { vtkSonoUltrasound::ANATOMY, vtkSonoUltrasound::PROBE, vtkSonoUltrasound::IMAGE })
   {
     showQuietly(ultrasound, port, view, controller);

@@ -1,42 +1,67 @@
 #include "SonoMovingViews.h"
 
+#include "SonoTell.h"
+
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
-#include "pqOutputPort.h"
-#include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
-#include "vtkClientServerStream.h"
-#include "vtkPVView.h"
+#include "vtkCommand.h"
+#include "vtkNew.h"
+#include "vtkPVDataRepresentation.h"
 #include "vtkRenderer.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMPropertyIterator.h"
 #include "vtkSMRenderViewProxy.h"
-#include "vtkSMSession.h"
-#include "vtkSonoUltrasound.h"
+#include "vtkSmartPointer.h"
 
 #include <QWidget>
 
-#include <cstring>
+#include <algorithm>
+#include <set>
 
 namespace {
 
 constexpr double slowS = 0.1;
 
-/// Sets what nobody is to see in a panel, undo or find in a state file.
-template<class Value>
-void tell(vtkSMProxy* proxy, const char* method, Value value)
+/// Keeps an event from those that listen with the usual priority.
+class NotPassedOn : public vtkCommand
 {
-  vtkClientServerStream stream;
-  stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << method << value << vtkClientServerStream::End;
-  proxy->GetSession()->ExecuteStream(proxy->GetLocation(), stream);
+public:
+  static NotPassedOn* New() { return new NotPassedOn; }
+  void Execute(vtkObject*, unsigned long, void*) override { this->AbortFlagOn(); }
+};
+
+/// A representation and those that it is made of.
+std::set<vtkObject*> partsOf(vtkSMProxy* representation)
+{
+  std::set<vtkObject*> parts;
+  const auto each = vtkSmartPointer<vtkSMPropertyIterator>::Take(representation->NewPropertyIterator());
+  for (each->Begin(); !each->IsAtEnd(); each->Next())
+  {
+    if (auto* part = vtkPVDataRepresentation::SafeDownCast(each->GetProperty()->GetParent()->GetClientSideObject()))
+    {
+      parts.insert(part);
+    }
+  }
+  return parts;
 }
 
-bool isAnatomy(const pqDataRepresentation* shown, vtkSMProxy* source)
+QList<pqView*> visibleViews()
 {
-  const pqOutputPort* port = shown && shown->isVisible() ? shown->getOutputPortFromInput() : nullptr;
-  return port && port->getSource()->getProxy() == source && port->getPortNumber() == vtkSonoUltrasound::ANATOMY &&
-         std::strcmp(source->GetXMLName(), "SonoUltrasound") == 0;
+  QList<pqView*> views = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>();
+  views.erase(std::remove_if(views.begin(), views.end(), [](pqView* view) { return !view->widget()->isVisible(); }),
+              views.end());
+  return views;
+}
+
+/// Of what was drawn last.
+bool isSlow(pqView* view)
+{
+  auto* render = vtkSMRenderViewProxy::SafeDownCast(view->getProxy());
+  return render && render->GetRenderer()->GetLastRenderTimeInSeconds() > slowS;
 }
 
 void drawOnInteraction(pqView* view, bool wanted)
@@ -49,9 +74,9 @@ void drawOnInteraction(pqView* view, bool wanted)
 /// An interactive picture alone would miss images, which have no light version.
 void drawLightly(vtkSMViewProxy* view)
 {
-  tell(view, "SetSuppressRendering", 1);
+  sonoTell(view, "SetSuppressRendering", 1);
   view->StillRender();
-  tell(view, "SetSuppressRendering", 0);
+  sonoTell(view, "SetSuppressRendering", 0);
   view->InteractiveRender();
 }
 
@@ -59,27 +84,16 @@ void drawLightly(vtkSMViewProxy* view)
 
 SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
   : Source(source)
+  , Anatomy(std::make_unique<SonoKeptAnatomy>(source))
 {
-  for (pqView* view : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>())
+  for (pqView* view : visibleViews())
   {
-    if (view->widget()->isVisible())
-    {
-      this->Views.append(view);
-    }
+    this->take(view);
   }
-  for (pqView* view : this->Views)
-  {
-    auto* render = vtkSMRenderViewProxy::SafeDownCast(view->getProxy());
-    if (render && render->GetRenderer()->GetLastRenderTimeInSeconds() > slowS)
-    {
-      this->Slow.append(view);
-    }
-  }
-  if (this->Slow.empty())
-  {
-    this->keepAnatomy();
-  }
-  else
+  // So that the first picture does not wait for those.
+  std::stable_partition(this->Views.begin(), this->Views.end(),
+                        [&](pqView* view) { return !this->Slow.contains(view); });
+  if (!this->Slow.empty())
   {
     this->lighten();
   }
@@ -87,38 +101,74 @@ SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
 
 SonoMovingViews::~SonoMovingViews()
 {
+  if (this->Anatomy)
+  {
+    this->Anatomy->drop(); // it may be another one by now
+  }
   this->drawInFull();
-  this->letGo();
 }
 
-void SonoMovingViews::keepAnatomy()
+void SonoMovingViews::prepare(pqView* view)
 {
-  for (pqView* view : this->Views)
+  if (isSlow(view))
   {
-    auto* drawn = view ? vtkPVView::SafeDownCast(view->getProxy()->GetClientSideObject()) : nullptr;
-    for (pqRepresentation* each : drawn ? view->getRepresentations() : QList<pqRepresentation*>())
+    sonoTell(view->getProxy(), "UpdateLOD"); // which makes what is not made
+  }
+}
+
+void SonoMovingViews::take(pqView* view)
+{
+  this->Views.append(view);
+  if (isSlow(view))
+  {
+    this->Slow.append(view);
+  }
+  for (pqRepresentation* each : view->getRepresentations())
+  {
+    auto* shown = qobject_cast<pqDataRepresentation*>(each);
+    if (shown && shown->isVisible())
     {
-      auto* shown = qobject_cast<pqDataRepresentation*>(each);
-      if (isAnatomy(shown, this->Source))
-      {
-        tell(shown->getProxy(), "SetForcedCacheKey", drawn->GetCacheKey());
-        tell(shown->getProxy(), "SetForceUseCache", 1);
-        this->Kept.append(shown);
-      }
+      this->mute(shown->getProxy());
+      this->Shown[view].append(shown);
     }
   }
 }
 
-void SonoMovingViews::letGo()
+void SonoMovingViews::mute(vtkSMProxy* representation)
 {
-  for (const auto& shown : this->Kept)
+  constexpr float first = 1000.0F;
+  vtkNew<NotPassedOn> quiet;
+  for (vtkObject* part : partsOf(representation))
   {
-    if (shown)
+    for (const int event : { int(vtkCommand::UpdateDataEvent), int(vtkPVDataRepresentation::SkippedUpdateDataEvent) })
     {
-      tell(shown->getProxy(), "SetForceUseCache", 0);
+      this->Muted.append({ part, part->AddObserver(event, quiet, first) });
     }
   }
-  this->Kept.clear();
+}
+
+void SonoMovingViews::unmute()
+{
+  for (const auto& [part, observer] : this->Muted)
+  {
+    if (part)
+    {
+      part->RemoveObserver(observer);
+    }
+  }
+  this->Muted.clear();
+}
+
+void SonoMovingViews::markModified(pqView* view, Marked which)
+{
+  for (const auto& shown : this->Shown.value(view))
+  {
+    if (shown && (which == Marked::All || !this->Anatomy->holds(shown)))
+    {
+      sonoTell(shown->getProxy(), "MarkModified");
+    }
+  }
+  view->getProxy()->MarkDirty(view->getProxy());
 }
 
 void SonoMovingViews::lighten()
@@ -127,9 +177,8 @@ void SonoMovingViews::lighten()
   {
     if (vtkSMRenderViewProxy::SafeDownCast(view->getProxy()))
     {
-      tell(view->getProxy(), "SetUseDepthPeeling", 0);
-      tell(view->getProxy(), "SetUseFXAA", 0);
-      tell(view->getProxy(), "SetLODResolution", 0.0);
+      sonoTell(view->getProxy(), "SetUseDepthPeeling", 0);
+      sonoTell(view->getProxy(), "SetUseFXAA", 0);
     }
   }
   for (pqView* view : this->Slow)
@@ -140,13 +189,23 @@ void SonoMovingViews::lighten()
 
 void SonoMovingViews::drawInFull()
 {
+  this->unmute();
+  for (pqView* view : this->Views)
+  {
+    if (view && this->Shown.contains(view))
+    {
+      this->markModified(view, Marked::All); // their proxies take it that this was said and not yet heard
+    }
+  }
+  this->Shown.clear();
+  this->Anatomy.reset();
   if (this->Slow.empty())
   {
     return; // nothing was lightened
   }
   for (pqView* view : this->Views)
   {
-    for (const char* name : { "DepthPeeling", "UseFXAA", "LODResolution" })
+    for (const char* name : { "DepthPeeling", "UseFXAA" })
     {
       if (view && view->getProxy()->GetProperty(name))
       {
@@ -161,7 +220,6 @@ void SonoMovingViews::drawInFull()
       drawOnInteraction(view, true);
     }
   }
-  this->letGo(); // so that the few triangles are replaced
   this->Slow.clear();
 }
 
@@ -175,20 +233,15 @@ void SonoMovingViews::draw()
     {
       if (picture % 2 == 0 || this->Views.size() == 1)
       {
+        this->markModified(view, Marked::ButAnatomy);
         drawLightly(view->getViewProxy());
-      }
-      else
-      {
-        view->getViewProxy()->Update();
       }
     }
     else if (view && (isSolid || this->Slow.empty()))
     {
+      this->markModified(view, Marked::ButAnatomy);
       view->forceRender();
     }
   }
-  if (!this->Slow.empty() && picture == 0)
-  {
-    this->keepAnatomy(); // now that its few triangles are made
-  }
+  this->Source->InvokeEvent(PictureShownEvent);
 }

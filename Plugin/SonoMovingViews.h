@@ -1,28 +1,49 @@
 #pragma once
 
+#include "SonoKeptAnatomy.h"
+
 #include <QList>
+#include <QMap>
+#include <QPair>
 #include <QPointer>
+
+#include "vtkCommand.h"
+#include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
+
+#include <memory>
 
 class pqDataRepresentation;
 class pqView;
+class vtkObject;
 class vtkSMProxy;
 
 /**
- * How the visible views are drawn while a probe moves.
+ * How the visible views are drawn while a probe moves or a setting of the display is being turned.
  *
- * ParaView takes it that whatever a filter shows changes with each of its settings. The anatomy that Simulate
- * Ultrasound passes on does not change with the pose, but making millions of triangles ready to be drawn takes longer
- * than the simulation. So what was drawn of it is kept as long as this object lives. Where drawing itself is slow, as
- * in software, a slow view shows few triangles, without peeling and without smoothed edges, at every second picture
- * only, and charts wait until drawInFull.
+ * After each picture ParaView gathers what there is to choose from in panels, from all that is shown; that takes longer
+ * than to draw it. So the proxies of representations do not learn that these ran, and find out what there is to choose
+ * from when all rests. Nor does the anatomy run, which does not change with the pose (SonoKeptAnatomy).
+ *
+ * Where drawing itself is slow, as in software, a slow view shows fewer triangles, as when it is turned, without
+ * peeling and without smoothed edges, at every second picture only, and charts wait until drawInFull.
  */
 class SonoMovingViews
 {
 public:
-  /// Of the visible views, keeps the anatomy that this source passes on if it is Simulate Ultrasound.
+  /// Of the source's proxy, at each picture on the way: its own UpdateDataEvent does not come before all rests.
+  enum
+  {
+    PictureShownEvent = vtkCommand::UserEvent + 532
+  };
+
+  /// The visible views. To be called before the source changes.
   explicit SonoMovingViews(vtkSMProxy* source);
-  /// What the source makes from now on is drawn again; what it was marked with before is not.
+  /// Unless drawInFull was called, all is made anew with the next picture, the anatomy as well.
   ~SonoMovingViews();
+
+  /// Makes the few triangles of a slow view beforehand, so that the first picture on the way need not wait for them.
+  static void prepare(pqView* view);
 
   /// Runs the pipeline and shows a picture on the way.
   void draw();
@@ -32,13 +53,22 @@ public:
 private:
   Q_DISABLE_COPY(SonoMovingViews)
 
-  void keepAnatomy();
-  void letGo();
+  void take(pqView* view);
+  void mute(vtkSMProxy* representation);
+  void unmute();
+  enum class Marked
+  {
+    All,
+    ButAnatomy
+  };
+  void markModified(pqView* view, Marked which);
   void lighten();
 
-  vtkSMProxy* Source;
-  QList<QPointer<pqDataRepresentation>> Kept;
-  QList<QPointer<pqView>> Views;
-  QList<QPointer<pqView>> Slow; // of them
-  int Pictures = 0;             // on the way so far
+  vtkSmartPointer<vtkSMProxy> Source;
+  std::unique_ptr<SonoKeptAnatomy> Anatomy;                     // until drawInFull
+  QList<QPointer<pqView>> Views;                                // the slow ones last
+  QList<QPointer<pqView>> Slow;                                 // of them
+  QMap<pqView*, QList<QPointer<pqDataRepresentation>>> Shown;   // by the views
+  QList<QPair<vtkWeakPointer<vtkObject>, unsigned long>> Muted; // with their observers
+  int Pictures = 0;                                             // on the way so far
 };

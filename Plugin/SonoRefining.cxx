@@ -1,8 +1,10 @@
 #include "SonoRefining.h"
 
+#include "SonoKeptAnatomy.h"
+#include "SonoTell.h"
+
 #include "pqApplicationCore.h"
 #include "pqUndoStack.h"
-#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSession.h"
 #include "vtkSonoUltrasound.h"
@@ -29,9 +31,7 @@ vtkSonoUltrasound* SonoRefining::filter() const
 
 void SonoRefining::setProgressive(bool progressive)
 {
-  SCOPED_UNDO_EXCLUDE();
-  vtkSMPropertyHelper(this->Source, "Progressive", true).Set(progressive ? 1 : 0);
-  this->Source->UpdateVTKObjects();
+  sonoTell(this->Source, "SetProgressive", progressive ? 1 : 0);
 }
 
 void SonoRefining::begin()
@@ -59,6 +59,7 @@ void SonoRefining::look()
   if (this->filter()->HasBetter())
   {
     SCOPED_UNDO_EXCLUDE();
+    const SonoKeptAnatomy anatomy(this->Source);
     this->Source->MarkModified(this->Source);
     pqApplicationCore::instance()->render();
   }

@@ -1,5 +1,8 @@
 #include "pqSonoCine.h"
 
+#include "SonoMovingViews.h"
+
+#include "pqCoreUtilities.h"
 #include "pqPipelineSource.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -71,15 +74,14 @@ void pqSonoCine::follow(pqPipelineSource* source)
 {
   if (source_)
   {
-    source_->disconnect(this);
+    source_->getProxy()->RemoveObserver(shown_);
   }
   source_ = source;
   poses_.clear();
   times_.clear();
   if (source_)
   {
-    QObject::connect(source_, QOverload<pqPipelineSource*>::of(&pqPipelineSource::dataUpdated), this,
-                     [this] { look(); });
+    shown_ = pqCoreUtilities::connect(source_->getProxy(), SonoMovingViews::PictureShownEvent, this, SLOT(look()));
   }
   this->showState();
 }
@@ -90,7 +92,6 @@ void pqSonoCine::setFrozen(bool frozen)
   this->showState();
 }
 
-/// Several times for a picture that several views show.
 void pqSonoCine::look()
 {
   if (!source_ || frozen_ || vtkSMPropertyHelper(source_->getProxy(), "Preview").GetAsInt() != 1)

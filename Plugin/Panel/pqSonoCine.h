@@ -30,11 +30,14 @@ Q_SIGNALS:
   /// By hand, to a pose and its depth.
   void scrubbed(const SonoWindow& at);
 
-private:
+private Q_SLOTS:
   void look();
+
+private:
   void showState();
 
   QPointer<pqPipelineSource> source_;
+  unsigned long shown_ = 0; // the observer of its pictures
   std::deque<SonoWindow> poses_;
   std::deque<qint64> times_; // of the last pictures, ms
   QElapsedTimer clock_;

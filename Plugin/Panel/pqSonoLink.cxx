@@ -197,6 +197,10 @@ void pqSonoLink::rest()
     setPreview(this->Probe->getProxy(), false);
     this->Probe->getProxy()->UpdateVTKObjects();
   }
+  if (this->Shown)
+  {
+    this->Shown->drawInFull();
+  }
   this->Shown.reset();
   this->Probe = nullptr;
   pqApplicationCore::instance()->render();

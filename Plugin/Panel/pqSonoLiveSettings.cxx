@@ -209,6 +209,7 @@ void pqSonoLiveSettings::rest()
   {
     shown->drawInFull();
   }
+  const SonoKeptAnatomy anatomy(this->Proxy);
   this->IsSetting = true;
   this->BeforePicture();
   {

@@ -44,7 +44,7 @@
 namespace {
 
 constexpr int restMs = 300;
-constexpr int idleMs = 200;
+constexpr int idleMs = 500; // more than settings take to come to rest
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
 
 /// Which has an anatomy.
@@ -247,6 +247,10 @@ void pqSonoProbeWidget::start()
       }
     }
     this->Moving = true;
+    if (!this->Shown && this->mayScan() && !this->proxy()->GetSession()->GetPendingProgress())
+    {
+      this->Shown = std::make_unique<SonoMovingViews>(this->proxy()); // before the probe itself is drawn
+    }
   }
   this->Rest.stop();
 }
@@ -421,13 +425,15 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
-  if (shown && sonoAnyWaits(this->proxy()))
+  std::unique_ptr<SonoKeptAnatomy> anatomy;
+  if (sonoAnyWaits(this->proxy()))
   {
     shown.reset(); // what is applied with the pose may change the anatomy
   }
   else if (shown)
   {
     shown->drawInFull();
+    anatomy = std::make_unique<SonoKeptAnatomy>(this->proxy());
   }
   const auto after = this->pose();
   this->Refining.begin();
@@ -485,6 +491,10 @@ void pqSonoProbeWidget::prepare()
   {
     this->findSkin();
     this->probe()->GetSkin()->Prepare();
+    if (this->view())
+    {
+      SonoMovingViews::prepare(this->view());
+    }
   }
 }
 

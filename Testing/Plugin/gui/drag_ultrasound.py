@@ -10,7 +10,7 @@ ultrasound = SimulateUltrasound(registrationName="ultrasound", Input=thorax, Lin
 Show(OutputPort(ultrasound, 0), view)
 anatomy = Show(OutputPort(ultrasound, 4), view).SMProxy.GetClientSideObject().GetActiveRepresentation()
 prepared = open(pathlib.Path.home() / "prepared.txt", "w", encoding="utf-8", buffering=1)
-anatomy.AddObserver("UpdateDataEvent", lambda *_: print(*ultrasound.PositionMm, file=prepared))
+anatomy.AddObserver("UpdateDataEvent", lambda *_: print(*ultrasound.PositionMm, file=prepared), 1e6)  # before others
 view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = (250, -650, 330), (20, 0, 0), (0, 0, 1)
 view.OrientationAxesVisibility = 0
 SetActiveSource(thorax)

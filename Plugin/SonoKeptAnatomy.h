@@ -1,0 +1,32 @@
+#pragma once
+
+#include <QList>
+#include <QPointer>
+
+class pqDataRepresentation;
+class vtkSMProxy;
+
+/**
+ * Keeps what is drawn of the anatomy of a Simulate Ultrasound while a setting changes that it does not depend on.
+ *
+ * ParaView takes it that whatever a filter passes on changes with each of its settings; making millions of triangles
+ * ready to be drawn takes longer than the simulation. What the source is marked with while this object lives does not
+ * make a representation of the anatomy run: it finds in the view what it has given it, by ParaView's cache of what was
+ * made for a view. What it is marked with afterwards does.
+ */
+class SonoKeptAnatomy
+{
+public:
+  /// In all views; nothing if the source is no Simulate Ultrasound. To be made before the source changes.
+  explicit SonoKeptAnatomy(vtkSMProxy* source);
+  ~SonoKeptAnatomy();
+
+  bool holds(const pqDataRepresentation* shown) const;
+  /// Makes it anew with the next picture.
+  void drop();
+
+private:
+  Q_DISABLE_COPY(SonoKeptAnatomy)
+
+  QList<QPointer<pqDataRepresentation>> Kept;
+};
