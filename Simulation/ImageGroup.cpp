@@ -35,7 +35,8 @@ int imagesThatFit(const ImageSettings& settings)
   const RfLines rf = rfLayout(lines, settings.echo);
   const PlaneImage pixels = planeImageLayout(settings.geometry, settings.pixelMm);
   // Without what a single launch of the tracer needs.
-  const double bytesPerLine = 32.0 * traced.echoCount + 20.0 * traced.binCount + 48.0 * rf.sampleCount;
+  const double tones = settings.tracing.imagingMode == ImagingMode::Harmonic ? 2.0 : 1.0;
+  const double bytesPerLine = tones * (32.0 * traced.echoCount + 20.0 * traced.binCount) + 48.0 * rf.sampleCount;
   return DeviceImager::instance().imagesThatFit(bytesPerLine * lines + 6.0 * pixels.width * pixels.height);
 }
 

@@ -8,6 +8,7 @@
 #include "SameSettings.h"
 #include "Simulator.h"
 #include "Trace/TraceSetup.h"
+#include "TraceByMode.h"
 
 #include <algorithm>
 #include <iterator>
@@ -23,7 +24,7 @@ bool canGoTogether(const Scene& scene, const ImageInput& input)
   const ImageSettings& settings = input.settings;
   // One that prepares a region of its own would have others share it, and be rounded otherwise than alone.
   return runsOnDevice(settings.tracing) && chooseDevice(settings.echo.device).cuda && !settings.tracing.refines() &&
-         settings.tracing.imagingMode == ImagingMode::Fundamental && input.targets.empty() && !input.points &&
+         input.targets.empty() && !input.points &&
          scene.sharesRegion(fanBox(scene, makeScanLines(settings.geometry, input.pose), settings.tracing));
 }
 
@@ -66,15 +67,9 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, poses);
   const RfLines rfOfOne = rfLayout(perImage, echo);
   DeviceImager& imager = DeviceImager::instance();
-  std::shared_ptr<const TraceJob> traceJob;
-  {
-    const TraceSetup setup(scene, lines, settings.tracing, {}, partOf(progress, 0.0, 0.3));
-    requireEachMeets(setup, group.size());
-    TraceJob job = makeTraceJob(setup, settings.tracing, perImage);
-    job.seeds = seeds;
-    traceJob = std::make_shared<const TraceJob>(std::move(job));
-  }
-  const auto traced = imager.trace(traceJob, { 0, int(lines.size()) }, partOf(progress, 0.3, 0.5));
+  const auto traced = traceOnDevice(
+    scene, lines, settings.tracing, {}, perImage, seeds,
+    [&](const TraceSetup& setup) { requireEachMeets(setup, group.size()); }, partOf(progress, 0.0, 0.5));
   const EchoSources sources{ &scene, nullptr, points, settings.tracing.model, nullptr };
   const EchoSetup setup(sources, lines, echo, perImage);
   const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));

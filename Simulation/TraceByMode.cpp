@@ -26,32 +26,14 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
   lines.segments = fetched.segments;
 }
 
-TracedResult traceOnDevice(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                           const std::vector<TargetSurface>& targets, const Progress& progress)
-{
-  const TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
-  TracedLines layout = tracedLayout(int(lines.size()), settings, targets);
-  const auto job = std::make_shared<const TraceJob>(makeTraceJob(setup, settings, layout.lineCount));
-  return { std::move(layout), DeviceImager::instance().trace(job, { 0, int(lines.size()) }, partOf(progress, 0.3, 1.0)),
-           fetchTraced };
-}
-
-/// One frequency's, whatever the mode.
-TracedResult traceTone(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
-                       const std::vector<TargetSurface>& targets, const Progress& progress)
-{
-  return runsOnDevice(settings) ? traceOnDevice(scene, lines, settings, targets, progress)
-                                : TracedResult(sono::trace(scene, lines, settings, progress, targets));
-}
-
-/// Both tones' traces meet on the host.
+/// Both tones' traces meet where they are made.
 TracedResult traceHarmonic(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                            const std::vector<TargetSurface>& targets, const Progress& progress)
 {
-  const TracedResult sent = traceTone(scene, lines, settings, targets, partOf(progress, 0.0, 0.5));
-  const TracedResult doubled = traceTone(scene, lines, doubledTone(settings), targets, partOf(progress, 0.5, 1.0));
+  const TracedLines sent = sono::trace(scene, lines, settings, partOf(progress, 0.0, 0.5), targets);
+  TracedLines doubled = sono::trace(scene, lines, doubledTone(settings), partOf(progress, 0.5, 1.0), targets);
   return TracedResult(
-    secondHarmonic(sent.host(), doubled.host(), harmonicSources(scene, lines, settings), sentGains(settings)));
+    secondHarmonic(sent, std::move(doubled), harmonicSources(scene, lines, settings), sentGains(settings)));
 }
 
 /// With what is known of its error.
@@ -105,6 +87,31 @@ PathRounds harmonicRounds(const Scene& scene, const std::vector<ScanLine>& lines
 
 } // namespace
 
+std::shared_ptr<const DeviceTraced> traceOnDevice(const Scene& scene, const std::vector<ScanLine>& lines,
+                                                  const TraceSettings& settings,
+                                                  const std::vector<TargetSurface>& targets, int linesPerImage,
+                                                  const std::vector<std::uint64_t>& seeds,
+                                                  const std::function<void(const TraceSetup&)>& look,
+                                                  const Progress& progress)
+{
+  const auto jobOf = [&](const TraceSettings& tone, const Progress& making) {
+    const TraceSetup setup(scene, lines, tone, targets, making);
+    look(setup);
+    TraceJob job = makeTraceJob(setup, tone, linesPerImage);
+    job.seeds = seeds.empty() ? job.seeds : seeds;
+    return std::make_shared<const TraceJob>(std::move(job));
+  };
+  DeviceImager& imager = DeviceImager::instance();
+  const auto job = jobOf(settings, partOf(progress, 0.0, 0.3));
+  const Progress tracing = partOf(progress, 0.3, 1.0);
+  if (settings.imagingMode == ImagingMode::Fundamental)
+  {
+    return imager.trace(job, { 0, int(lines.size()) }, tracing);
+  }
+  const HarmonicJob harmonic{ harmonicSources(scene, lines, settings), sentGains(settings) };
+  return imager.traceHarmonic(job, jobOf(doubledTone(settings), {}), harmonic, tracing);
+}
+
 PathRounds roundsByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                         const std::vector<TargetSurface>& targets, const Progress& progress)
 {
@@ -119,8 +126,16 @@ PathRounds roundsByMode(const Scene& scene, const std::vector<ScanLine>& lines, 
 TracedResult traceByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                          const std::vector<TargetSurface>& targets, const Progress& progress)
 {
-  const auto make = settings.imagingMode == ImagingMode::Harmonic ? traceHarmonic : traceTone;
-  return make(scene, lines, settings, targets, progress);
+  if (runsOnDevice(settings))
+  {
+    return TracedResult(tracedLayout(int(lines.size()), settings, targets),
+                        traceOnDevice(
+                          scene, lines, settings, targets, int(lines.size()), {}, [](const TraceSetup&) {}, progress),
+                        fetchTraced);
+  }
+  return settings.imagingMode == ImagingMode::Harmonic
+           ? traceHarmonic(scene, lines, settings, targets, progress)
+           : TracedResult(sono::trace(scene, lines, settings, progress, targets));
 }
 
 } // namespace sono

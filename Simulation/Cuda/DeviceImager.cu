@@ -3,6 +3,7 @@
 #include "Core/Policy.h"
 #include "Cuda/DeviceLabels.cuh"
 #include "Cuda/DeviceResults.cuh"
+#include "Cuda/HarmonicKernel.cuh"
 #include "Cuda/OwnImager.h"
 
 #include <algorithm>
@@ -124,6 +125,12 @@ struct DeviceImager::Work
     await(deviceStream());
     trimDeviceMemory();
   }
+
+  std::shared_ptr<DeviceTraced> trace(const std::shared_ptr<const TraceJob>& job, LineRange lines,
+                                      const Progress& progress, cudaStream_t stream);
+  /// Turns the trace of the doubled tone into that of the harmonic.
+  void grow(const HarmonicJob& job, float echoSampleMm, const DeviceTraced& sent, const DeviceTraced& doubled,
+            cudaStream_t stream);
 
   void prepare(const std::shared_ptr<const BModeJob>& job)
   {
@@ -261,34 +268,86 @@ auto DeviceImager::guarded(const Do& work)
   }
 }
 
+std::shared_ptr<DeviceTraced> DeviceImager::Work::trace(const std::shared_ptr<const TraceJob>& job, LineRange lines,
+                                                        const Progress& progress, cudaStream_t stream)
+{
+  if (traceJob != job)
+  {
+    traceJob = nullptr; // stays so when the upload fails
+    tracer->prepare(*job, job->linesPerImage, stream, traffic);
+    traceJob = job;
+  }
+  tracing.start();
+  tracer->run(lines.first, lines.count, progress, stream);
+  tracing.stop();
+  auto made = std::make_shared<DeviceTraced>();
+  made->arrays = tracer->take();
+  made->lineCount = lines.count;
+  made->view.intensity = made->arrays.bins[intensityArray].data();
+  made->view.attenuation = made->arrays.bins[attenuationArray].data();
+  made->view.depthOffset = job->rangeIsTime ? made->arrays.bins[depthOffsetArray].data() : nullptr;
+  made->view.reverberation =
+    job->rangeIsTime && job->view.reverberates ? made->arrays.bins[reverberationArray].data() : nullptr;
+  made->view.reverberationNp = made->view.reverberation ? made->arrays.bins[reverberationNpArray].data() : nullptr;
+  made->view.binCount = job->binCount;
+  made->view.binMm = job->binMm;
+  made->view.echoSums = made->arrays.echo.data();
+  made->view.echoCount = job->echoCount;
+  made->view.echoPerUnit = tracer->echoPerUnit();
+  return made;
+}
+
+void DeviceImager::Work::grow(const HarmonicJob& job, float echoSampleMm, const DeviceTraced& sent,
+                              const DeviceTraced& doubled, cudaStream_t stream)
+{
+  DeviceArray<float> sources;
+  DeviceArray<double2> gains;
+  sources.upload(job.sourcesPerMm, stream, traffic);
+  gains.upload(reinterpret_cast<const double2*>(job.gains.data()), job.gains.size(), stream, traffic);
+  HarmonicLaunch launch{};
+  launch.sent = sent.view.intensity;
+  launch.sourcesPerMm = sources.data();
+  launch.gains = gains.data();
+  for (int array = 0; array < binArrayCount; ++array)
+  {
+    launch.doubled[array] = doubled.arrays.bins[std::size_t(array)].data();
+  }
+  launch.doubled[reverberationArray] = doubled.view.reverberation ? launch.doubled[reverberationArray] : nullptr;
+  launch.echo = doubled.arrays.echo.data();
+  launch.binCount = doubled.view.binCount;
+  launch.echoCount = doubled.view.echoCount;
+  launch.binMm = double(doubled.view.binMm);
+  launch.echoSampleMm = double(echoSampleMm);
+  constexpr int threads = 256;
+  const std::size_t shared = std::size_t(launch.binCount) * (sizeof(double) + sizeof(float));
+  if (shared > sharedMemoryFor(growHarmonic))
+  {
+    throw Error("the trace has " + std::to_string(launch.binCount) +
+                " bins of depth, more than the GPU takes for a harmonic: use wider bins or the CPU");
+  }
+  growHarmonic<<<unsigned(doubled.lineCount), threads, shared, stream>>>(launch);
+  addSegments<<<1, 1, 0, stream>>>(sent.arrays.segments.data(), doubled.arrays.segments.data());
+  check(cudaGetLastError(), "computing");
+}
+
 std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<const TraceJob>& job, LineRange lines,
                                                         const Progress& progress)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
-    if (w.traceJob != job)
-    {
-      w.traceJob = nullptr; // stays so when the upload fails
-      w.tracer->prepare(*job, job->linesPerImage, stream, w.traffic);
-      w.traceJob = job;
-    }
-    w.tracing.start();
-    w.tracer->run(lines.first, lines.count, progress, stream);
-    w.tracing.stop();
-    const auto made = std::make_shared<DeviceTraced>();
-    made->arrays = w.tracer->take();
-    made->lineCount = lines.count;
-    made->view.intensity = made->arrays.bins[intensityArray].data();
-    made->view.attenuation = made->arrays.bins[attenuationArray].data();
-    made->view.depthOffset = job->rangeIsTime ? made->arrays.bins[depthOffsetArray].data() : nullptr;
-    made->view.reverberation =
-      job->rangeIsTime && job->view.reverberates ? made->arrays.bins[reverberationArray].data() : nullptr;
-    made->view.reverberationNp = made->view.reverberation ? made->arrays.bins[reverberationNpArray].data() : nullptr;
-    made->view.binCount = job->binCount;
-    made->view.binMm = job->binMm;
-    made->view.echoSums = made->arrays.echo.data();
-    made->view.echoCount = job->echoCount;
-    made->view.echoPerUnit = w.tracer->echoPerUnit();
-    return std::shared_ptr<const DeviceTraced>(made);
+    return std::shared_ptr<const DeviceTraced>(w.trace(job, lines, progress, stream));
+  });
+}
+
+std::shared_ptr<const DeviceTraced> DeviceImager::traceHarmonic(const std::shared_ptr<const TraceJob>& sent,
+                                                                const std::shared_ptr<const TraceJob>& doubled,
+                                                                const HarmonicJob& harmonic, const Progress& progress)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const LineRange all{ 0, int(sent->lines.size()) };
+    const auto ofSent = w.trace(sent, all, partOf(progress, 0.0, 0.5), stream);
+    const auto ofDoubled = w.trace(doubled, all, partOf(progress, 0.5, 1.0), stream);
+    w.grow(harmonic, doubled->echoSampleMm, *ofSent, *ofDoubled, stream);
+    return std::shared_ptr<const DeviceTraced>(ofDoubled);
   });
 }
 

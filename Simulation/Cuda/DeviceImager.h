@@ -89,6 +89,10 @@ public:
   /// Throws Aborted when asked to stop.
   std::shared_ptr<const DeviceTraced> trace(const std::shared_ptr<const TraceJob>& job, LineRange lines,
                                             const Progress& progress = {});
+  /// All lines of both jobs, which are the same, and of the tone sent and twice it: what secondHarmonic makes of them.
+  std::shared_ptr<const DeviceTraced> traceHarmonic(const std::shared_ptr<const TraceJob>& sent,
+                                                    const std::shared_ptr<const TraceJob>& doubled,
+                                                    const HarmonicJob& harmonic, const Progress& progress = {});
   /// `traced` holds the same lines, or is null, where the job's own `given` is taken. The IQ, if it is wanted, beside
   /// the envelope.
   std::shared_ptr<const DeviceRf> formRf(const std::shared_ptr<const EchoJob>& job, LineRange lines,

@@ -54,6 +54,13 @@ struct TraceJob
   float radPerMm = 0.0f; ///< 2 k of the boundary echoes' phases
 };
 
+/// What the harmonic of two traces of the same lines grows by (Trace/SecondHarmonic.h).
+struct HarmonicJob
+{
+  std::vector<float> sourcesPerMm;         ///< lines x bins
+  std::vector<std::complex<double>> gains; ///< bins
+};
+
 /// A field in place of a Gaussian beam.
 struct FieldJob
 {

@@ -35,6 +35,13 @@ std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<co
   return nullptr;
 }
 
+std::shared_ptr<const DeviceTraced> DeviceImager::traceHarmonic(const std::shared_ptr<const TraceJob>&,
+                                                                const std::shared_ptr<const TraceJob>&,
+                                                                const HarmonicJob&, const Progress&)
+{
+  return nullptr;
+}
+
 std::shared_ptr<const DeviceRf> DeviceImager::formRf(const std::shared_ptr<const EchoJob>&, LineRange,
                                                      const DeviceTraced*, bool)
 {

@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
+#include "Kernel/HarmonicGrowth.h"
 #include "Probe/BeamAperture.h"
 
 #include <algorithm>
@@ -13,52 +14,38 @@ namespace sono {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double depletion = 8.0 / 3.0;
-/// Below it, -200 dB, nothing is heard that grows there, and the quotient is of noise.
-constexpr float leastIntensity = 1e-10f;
-
-/// S I1 / sqrt(I2) dz of the bins of a line.
+/// What the bins of a line add (see harmonicStrength).
 SONO_SIMD_CLONES void findStrengths(const float* __restrict sent, const float* __restrict doubled,
                                     const float* __restrict sourcesPerMm, double binMm, int bins,
                                     double* __restrict strengths)
 {
   for (int bin = 0; bin < bins; ++bin)
   {
-    const double i2 = doubled[bin];
-    const double i1 = std::max(double(sent[bin]), i2);
-    const double root = std::sqrt(std::max(i2, double(leastIntensity)));
-    const double strength = double(sourcesPerMm[bin]) * std::min(i1 / root, 1.0) * binMm;
-    strengths[bin] = doubled[bin] > leastIntensity ? strength : 0.0;
+    strengths[bin] = harmonicStrength(sent[bin], doubled[bin], sourcesPerMm[bin], binMm);
   }
 }
 
-/// C / sqrt(1 + 8/3 u^2) of the bins of a line, of C^2.
 SONO_SIMD_CLONES void findGrowth(const float* __restrict sent, const float* __restrict doubled,
                                  const double* __restrict amounts2, int bins, float* __restrict growth)
 {
   for (int bin = 0; bin < bins; ++bin)
   {
-    const double i2 = doubled[bin];
-    const double i1 = std::max(double(sent[bin]), i2);
-    const double ofSent2 = amounts2[bin] * i2 / std::max(i1, 1e-300);
-    growth[bin] = float(std::sqrt(amounts2[bin] / (1.0 + depletion * ofSent2)));
+    growth[bin] = harmonicGrowth(sent[bin], doubled[bin], amounts2[bin]);
   }
 }
 
-/// Of each sample of the boundary echoes, the bin whose harmonic it has: that of half of its range.
 std::vector<int> binsOfEchoes(const TracedLines& lines)
 {
   std::vector<int> bins;
   bins.reserve(std::size_t(lines.echoCount));
   for (int s = 0; s < lines.echoCount; ++s)
   {
-    bins.push_back(std::min(int(0.5 * s * lines.echoSampleMm / lines.binMm), lines.binCount - 1));
+    bins.push_back(binOfEchoSample(s, lines.echoSampleMm, lines.binMm, lines.binCount));
   }
   return bins;
 }
 
-/// What reverberates has been reflected, a first multiple about halfway to where it is shown: behind that it is too
-/// weak to let its harmonic grow.
+/// See binOfEchoSample.
 void growReverberation(const std::vector<float>& growth, const std::vector<int>& binOfEcho, int line,
                        TracedLines& doubled)
 {
@@ -155,7 +142,7 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
     std::complex<double> grown;
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
-      if (!(doubled.intensity[first + bin] > leastIntensity))
+      if (!(doubled.intensity[first + bin] > leastDoubledIntensity))
       {
         // What the next bin, which may be lit, must not be blended with: it would be lifted by tens of decibels.
         doubled.attenuationNpPerMHz[first + bin] = 0.0f;
