@@ -19,7 +19,7 @@ std::vector<ImageInput> exam()
     input.settings.geometry.lineCount = 48; // whose beams overlap at the focus
     input.settings.tracing.pathsPerLine = i % 3 == 2 ? 120 : 80;
     input.settings.tracing.seed = 100u + std::uint64_t(i);
-    input.settings.echo.imagingMode = i % 3 == 0 ? ImagingMode::Harmonic : ImagingMode::Fundamental;
+    input.settings.echo.imagingMode = i % 3 == 1 ? ImagingMode::Harmonic : ImagingMode::Fundamental;
     input.settings.echo.aperture = namedAperture();
     input.settings.setDevice(Device::Cuda);
     input.settings.matchStages();
