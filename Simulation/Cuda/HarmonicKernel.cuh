@@ -46,13 +46,10 @@ __global__ void growHarmonic(HarmonicLaunch launch)
   __syncthreads();
   if (threadIdx.x == 0)
   {
-    double2 grown{ 0.0, 0.0 };
+    HarmonicSum sum;
     for (int b = 0; b < launch.binCount; ++b)
     {
-      const double2 here{ amounts[b] * launch.gains[b].x, amounts[b] * launch.gains[b].y };
-      const double2 middle{ grown.x + 0.5 * here.x, grown.y + 0.5 * here.y };
-      amounts[b] = middle.x * middle.x + middle.y * middle.y;
-      grown = { grown.x + here.x, grown.y + here.y };
+      amounts[b] = sum.add(amounts[b], launch.gains[b].x, launch.gains[b].y);
     }
   }
   __syncthreads();

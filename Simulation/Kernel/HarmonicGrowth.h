@@ -28,6 +28,25 @@ SONO_HD inline double harmonicStrength(float sent, float doubled, float sourcePe
   return doubled > leastDoubledIntensity ? strength : 0.0;
 }
 
+/// The integral of (14.5) along a line, bin by bin from the face on.
+struct HarmonicSum
+{
+  double re = 0.0;
+  double im = 0.0;
+
+  /// Adds a bin of this strength and gain; returns C squared in its middle.
+  SONO_HD double add(double strength, double gainRe, double gainIm)
+  {
+    const double hereRe = strength * gainRe;
+    const double hereIm = strength * gainIm;
+    const double middleRe = re + 0.5 * hereRe;
+    const double middleIm = im + 0.5 * hereIm;
+    re += hereRe;
+    im += hereIm;
+    return middleRe * middleRe + middleIm * middleIm;
+  }
+};
+
 /// C / sqrt(1 + 8/3 u^2) (14.5), of C squared.
 SONO_HD inline float harmonicGrowth(float sent, float doubled, double amount2)
 {

@@ -139,7 +139,7 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
     std::vector<float> growth(bins);
     findStrengths(sent.intensity.data() + first, doubled.intensity.data() + first, sourcesPerMm.data() + first,
                   doubled.binMm, doubled.binCount, amounts.data());
-    std::complex<double> grown;
+    HarmonicSum sum;
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
       if (!(doubled.intensity[first + bin] > leastDoubledIntensity))
@@ -147,9 +147,7 @@ TracedLines secondHarmonic(const TracedLines& sent, TracedLines doubled, const s
         // What the next bin, which may be lit, must not be blended with: it would be lifted by tens of decibels.
         doubled.attenuationNpPerMHz[first + bin] = 0.0f;
       }
-      const std::complex<double> here = amounts[bin] * gains[bin];
-      amounts[bin] = std::norm(grown + 0.5 * here); // in the middle of the bin, squared
-      grown += here;
+      amounts[bin] = sum.add(amounts[bin], gains[bin].real(), gains[bin].imag());
     }
     findGrowth(sent.intensity.data() + first, doubled.intensity.data() + first, amounts.data(), doubled.binCount,
                growth.data());
