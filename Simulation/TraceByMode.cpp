@@ -3,6 +3,7 @@
 #include "Cuda/DeviceImager.h"
 #include "Cuda/MakeImageJob.h"
 #include "Cuda/RunOnDevice.h"
+#include "ImageGroup.h"
 #include "Trace/SecondHarmonic.h"
 #include "Trace/TraceSetup.h"
 
@@ -90,13 +91,15 @@ PathRounds harmonicRounds(const Scene& scene, const std::vector<ScanLine>& lines
 std::shared_ptr<const DeviceTraced> traceOnDevice(const Scene& scene, const std::vector<ScanLine>& lines,
                                                   const TraceSettings& settings,
                                                   const std::vector<TargetSurface>& targets, int linesPerImage,
-                                                  const std::vector<std::uint64_t>& seeds,
-                                                  const std::function<void(const TraceSetup&)>& look,
-                                                  const Progress& progress)
+                                                  const std::vector<std::uint64_t>& seeds, const Progress& progress)
 {
+  const std::size_t images = lines.size() / std::size_t(linesPerImage);
   const auto jobOf = [&](const TraceSettings& tone, const Progress& making) {
     const TraceSetup setup(scene, lines, tone, targets, making);
-    look(setup);
+    if (images > 1)
+    {
+      requireEachMeets(setup, images);
+    }
     TraceJob job = makeTraceJob(setup, tone, linesPerImage);
     job.seeds = seeds.empty() ? job.seeds : seeds;
     return std::make_shared<const TraceJob>(std::move(job));
@@ -129,9 +132,7 @@ TracedResult traceByMode(const Scene& scene, const std::vector<ScanLine>& lines,
   if (runsOnDevice(settings))
   {
     return TracedResult(tracedLayout(int(lines.size()), settings, targets),
-                        traceOnDevice(
-                          scene, lines, settings, targets, int(lines.size()), {}, [](const TraceSetup&) {}, progress),
-                        fetchTraced);
+                        traceOnDevice(scene, lines, settings, targets, int(lines.size()), {}, progress), fetchTraced);
   }
   return settings.imagingMode == ImagingMode::Harmonic
            ? traceHarmonic(scene, lines, settings, targets, progress)

@@ -13,7 +13,6 @@
 namespace sono {
 
 struct DeviceTraced;
-struct TraceSetup;
 
 /// The traced lines of the settings' imaging mode, on the device that they name: of the harmonic from two traces, which
 /// meet where they are made. Throws as trace().
@@ -21,13 +20,11 @@ TracedResult traceByMode(const Scene& scene, const std::vector<ScanLine>& lines,
                          const std::vector<TargetSurface>& targets, const Progress& progress);
 
 /// The same on a GPU, of images side by side, each of so many lines and with paths of its own seed, or where there are
-/// no seeds the settings'. What was set up is shown to `look`, which may throw, before anything is traced.
+/// no seeds the settings'. Throws Error naming the first of several images of which no line meets the label map.
 std::shared_ptr<const DeviceTraced> traceOnDevice(const Scene& scene, const std::vector<ScanLine>& lines,
                                                   const TraceSettings& settings,
                                                   const std::vector<TargetSurface>& targets, int linesPerImage,
-                                                  const std::vector<std::uint64_t>& seeds,
-                                                  const std::function<void(const TraceSetup&)>& look,
-                                                  const Progress& progress);
+                                                  const std::vector<std::uint64_t>& seeds, const Progress& progress);
 
 /// How exact a picture of these lines is, dB.
 using ErrorOf = std::function<double(const TracedLines&)>;

@@ -62,19 +62,14 @@ std::string peersSection(const std::filesystem::path& folder)
     return text.str();
   }
   text << htmlParagraph(
-    "What every element hears of focused waves from points in water, by each program's own call, against a direct sum "
-    "in "
-    "double precision over pieces of the elements (peers/reference.py). Each scene is one that its programs can do, "
-    "with "
-    "their pulse, which ours takes from a file. 'plane': two dimensions, soft baffle. 'lens': elements 14 mm high "
-    "behind a "
-    "lens. 'array': elements so low (0.5 mm) that points lie in their far field, as zea wants it. 'waves': a grid of "
-    "waves "
-    "in two dimensions, 32 line sources and 24 weak points. The others have 64 elements, three transmits and 1000 "
-    "points. "
-    "One factor for each transmit is free, and for theirs one delay. Seconds are of a call after the first, so that "
-    "what "
-    "is compiled at run time is not counted; the table has the first call, too. Ours has no setting of accuracy.");
+    "What every element hears of focused waves from points in water, by each program's own call, against a direct"
+    " sum in double precision over pieces of the elements (peers/reference.py). Each scene is one that its "
+    "programs can do, with their pulse, which ours takes from a file. 'plane': two dimensions, soft baffle. "
+    "'lens': elements 14 mm high behind a lens. 'array': elements so low (0.5 mm) that points lie in their far "
+    "field, as zea wants it. 'waves': a grid of waves in two dimensions, 32 line sources and 24 weak points. The "
+    "others have 64 elements, three transmits and 1000 points. One factor for each transmit is free, and for "
+    "theirs one delay. Seconds are of a call after the first, so that what is compiled at run time is not "
+    "counted; the table has the first call, too. Ours has no setting of accuracy.");
   std::vector<std::string> scenes;
   for (const CsvFile::Row& row : csv->rows)
   {

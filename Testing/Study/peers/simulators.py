@@ -16,6 +16,12 @@ def with_numpy_2(numpy):
     numpy.concat = getattr(numpy, "concat", numpy.concatenate)
 
 
+def padded(rf):
+    """Signals of each transmit, elements x samples, as one array: zeros behind the shorter ones."""
+    longest = max(signals.shape[1] for signals in rf)
+    return np.array([np.pad(signals, ((0, 0), (0, longest - signals.shape[1]))) for signals in rf])
+
+
 class PyMust:
     name, package, scenes = "PyMUST", "PyMUST", ("plane", "lens")
     device = "CPU"
@@ -47,9 +53,7 @@ class PyMust:
             for delays in scene["delays"]:
                 out = pymust.simus(*places, points[:, 3][None], 1e-6 * np.array(delays)[None], param.copy(), options)
                 rf.append(out[0].T)
-            longest = max(len(signals[0]) for signals in rf)
-            rf = [np.pad(signals, ((0, 0), (0, longest - signals.shape[1]))) for signals in rf]
-            return np.array(rf), scene["sampling"], 0.0
+            return padded(rf), scene["sampling"], 0.0
 
         whole = dict(FullFrequencyDirectivity=True)
         for choice in (dict(), whole) if lens else (dict(), whole, dict(ElementSplitting=2, **whole)):
@@ -88,9 +92,7 @@ class FastSimus:
                         compiled[n] = jax.jit(lambda places, amplitude, d, plan=plan: simus_compute(
                             places, amplitude, d, plan, params, full_frequency_directivity=full).rf)
                     rf.append(np.asarray(compiled[n](places, amplitude, d)).T)
-                longest = max(signals.shape[1] for signals in rf)
-                rf = [np.pad(signals, ((0, 0), (0, longest - signals.shape[1]))) for signals in rf]
-                return np.array(rf), scene["sampling"], 0.0
+                return padded(rf), scene["sampling"], 0.0
             yield words + " (compiled before)", run
 
 
