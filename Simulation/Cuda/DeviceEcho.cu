@@ -12,11 +12,7 @@
 
 namespace sono {
 
-DeviceEcho::DeviceEcho()
-  : pieces_(std::make_unique<DevicePieces>())
-{
-}
-
+DeviceEcho::DeviceEcho() = default;
 DeviceEcho::~DeviceEcho() = default;
 
 TracedOnDevice DeviceEcho::given(int first) const

@@ -28,6 +28,7 @@ struct TracedOnDevice
 };
 
 struct SurfaceGroup;
+struct PieceList;
 class DevicePieces;
 
 /// Surfaces: pieces of boundaries, or points of targets.
@@ -53,6 +54,7 @@ class DeviceEcho
 {
 public:
   DeviceEcho();
+  /// Nothing that it was asked for may still be going on.
   ~DeviceEcho();
   void prepare(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   /// Forms the lines [first, first + count) of the job: their envelopes, and IQ where it is wanted.
@@ -145,7 +147,8 @@ private:
   float nestedScale_ = 1.0f;
 
   bool surfaces_ = false;
-  std::unique_ptr<DevicePieces> pieces_;
+  std::shared_ptr<DevicePieces> pieces_; ///< of the scene
+  std::shared_ptr<const PieceList> heardPieces_;
   DeviceArray<SurfaceRow> surfaceRows_;
   DeviceArray<float> diffuseL_, diffuseE_;
   SurfaceSet pieceSet_{};

@@ -118,6 +118,7 @@ struct DeviceImager::Work
     echoJob = nullptr;
     bmodeJob = nullptr;
     mask = nullptr;
+    await(deviceStream());
     tracer = std::make_unique<DeviceTracer>();
     echo = std::make_unique<DeviceEcho>();
     display = std::make_unique<DeviceDisplay>();

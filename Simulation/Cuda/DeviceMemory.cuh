@@ -130,6 +130,15 @@ void trimDeviceMemory();
 /// Zeros, by a kernel.
 void clearOnDevice(void* memory, std::size_t bytes, cudaStream_t stream);
 
+template<class T>
+void copyOnDevice(const T* from, std::size_t count, T* to, cudaStream_t stream)
+{
+  if (count > 0)
+  {
+    check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToDevice, stream), "copying");
+  }
+}
+
 /// Uploads without waiting, unless it is much; `from` may go afterwards.
 void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t stream);
 
@@ -200,10 +209,7 @@ public:
     {
       DeviceArray larger;
       larger.resize(2 * count);
-      if (size_ > 0)
-      {
-        check(cudaMemcpyAsync(larger.data(), data(), size_ * sizeof(T), cudaMemcpyDeviceToDevice, stream), "copying");
-      }
+      copyOnDevice(data(), size_, larger.data(), stream);
       *this = std::move(larger);
     }
     size_ = count;

@@ -9,7 +9,9 @@
 #include <thrust/iterator/counting_iterator.h>
 
 #include <algorithm>
+#include <map>
 #include <new>
+#include <utility>
 
 namespace sono {
 
@@ -50,7 +52,10 @@ struct FaceSearch
   const Vec3i* firstBrick; // of each block
 };
 
-/// A block of threads takes a block of bricks; visit(face) for each face, in any order.
+/// So many blocks of threads take a block of bricks together: there are few of those.
+constexpr int searchers = 8;
+
+/// visit(face) for each face of the searchers' block of bricks, in any order.
 template<class Visit>
 __device__ void forFaces(const FaceSearch& search, const Visit& visit)
 {
@@ -58,7 +63,8 @@ __device__ void forFaces(const FaceSearch& search, const Visit& visit)
   const Vec3i to = glm::min(from + SurfacePieces::blockBricks, search.bricks);
   const BrickVoxels voxels(from, to, search.edgeMm, search.spacingMm, search.volume.size);
   const Vec3i count = voxels.last - voxels.first;
-  for (int n = int(threadIdx.x); n < count.x * count.y * count.z; n += int(blockDim.x))
+  for (int n = int(blockIdx.y * blockDim.x + threadIdx.x); n < count.x * count.y * count.z;
+       n += int(searchers * blockDim.x))
   {
     const Vec3i voxel = voxels.first + Vec3i(n % count.x, n / count.x % count.y, n / (count.x * count.y));
     for (int axis = 0; axis < 3; ++axis)
@@ -197,42 +203,139 @@ __global__ void boundGroups(const SurfacePiece* pieces, float longestStepMm, Sur
   group.radiusMm = 0.5f * glm::length(high - low);
 }
 
+/// The windows' tables, on a device as long as the process.
+class DeviceWindows
+{
+public:
+  /// Those of the thread's device.
+  static const Window* all(Traffic& traffic)
+  {
+    static std::mutex mutex;
+    static auto* const known = new std::map<int, DeviceWindows>;
+    int device = 0;
+    check(cudaGetDevice(&device), "asking for its number");
+    const std::lock_guard<std::mutex> lock(mutex);
+    DeviceWindows& here = (*known)[device];
+    if (!here.isThere_)
+    {
+      const cudaStream_t stream = deviceStream();
+      const WindowTables& tables = windowTables();
+      here.weight_.upload(tables.weight, stream, traffic);
+      here.strictness_.upload(tables.strictness, stream, traffic);
+      here.windows_.upload(tables.windows(here.weight_.data(), here.strictness_.data()), stream, traffic);
+      check(await(stream), "uploading");
+      here.isThere_ = true;
+    }
+    return here.windows_.data();
+  }
+
+private:
+  DeviceArray<float> weight_, strictness_;
+  DeviceArray<Window> windows_;
+  bool isThere_ = false;
+};
+
+/// Lanes that nobody works in, by device: lanes stay.
+class IdleLanes
+{
+public:
+  static DeviceLane* take(int device)
+  {
+    {
+      const std::lock_guard<std::mutex> lock(all().mutex_);
+      const auto found = all().lanes_.find(device);
+      if (found != all().lanes_.end())
+      {
+        DeviceLane* const lane = found->second;
+        all().lanes_.erase(found);
+        return lane;
+      }
+    }
+    return openLane(device, Waiting::Asleep);
+  }
+  static void give(int device, DeviceLane* lane)
+  {
+    const std::lock_guard<std::mutex> lock(all().mutex_);
+    all().lanes_.emplace(device, lane);
+  }
+
+private:
+  static IdleLanes& all()
+  {
+    static auto* const lanes = new IdleLanes;
+    return *lanes;
+  }
+
+  std::mutex mutex_;
+  std::multimap<int, DeviceLane*> lanes_;
+};
+
 } // namespace
 
-void DevicePieces::prepare(const SurfaceJob& job, const std::uint8_t* voxels, const PieceHearers& hearers,
-                           cudaStream_t stream, Traffic& traffic)
+std::shared_ptr<DevicePieces> DevicePieces::of(const SurfacePieces& pieces)
 {
-  if (windows_.size() == 0)
+  static std::mutex mutex;
+  static auto* const known = new std::map<std::pair<int, std::uint64_t>, std::weak_ptr<DevicePieces>>;
+  int device = 0;
+  check(cudaGetDevice(&device), "asking for its number");
+  const std::lock_guard<std::mutex> lock(mutex);
+  for (auto it = known->begin(); it != known->end();)
   {
-    const WindowTables& tables = windowTables();
-    weight_.upload(tables.weight, stream, traffic);
-    strictness_.upload(tables.strictness, stream, traffic);
-    windows_.upload(tables.windows(weight_.data(), strictness_.data()), stream, traffic);
+    it = it->second.expired() ? known->erase(it) : std::next(it);
   }
-  if (id_ != job.pieces->id())
+  std::weak_ptr<DevicePieces>& here = (*known)[{ device, pieces.id() }];
+  std::shared_ptr<DevicePieces> shared = here.lock();
+  if (!shared)
+  {
+    shared.reset(new DevicePieces(device));
+    here = shared;
+  }
+  return shared;
+}
+
+DevicePieces::DevicePieces(int device)
+  : device_(device)
+  , lane_(IdleLanes::take(device))
+{
+}
+
+DevicePieces::~DevicePieces()
+{
+  IdleLanes::give(device_, lane_);
+}
+
+std::shared_ptr<const PieceList> DevicePieces::heardBy(const SurfaceJob& job, const std::uint8_t* voxels,
+                                                       const PieceHearers& hearers, cudaStream_t stream,
+                                                       Traffic& traffic)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const OnLane lane(lane_);
+  follow(deviceStream(), stream);
+  if (!isWhole_)
   {
     blocks_.assign(std::size_t(job.pieces->blockCount()), false);
     faces_.resize(0);
     brickOfFace_.resize(0);
     state_.resize(0);
-    pieces_.resize(0);
+    list_ = std::make_shared<PieceList>();
     brickOfPiece_.resize(0);
-    groups_.resize(0);
   }
-  id_ = 0; // stays so when something fails
-  takeFaces(job, voxels, stream, traffic);
-  const int count = faces_.size() > 0 ? markHeard(job, hearers, stream, traffic) : 0;
+  isWhole_ = false; // stays so when something fails
+  takeFaces(job, voxels, traffic);
+  const int count = faces_.size() > 0 ? markHeard(job, hearers, traffic) : 0;
   if (count > 0)
   {
-    fit(job, voxels, count, stream, traffic);
-    group(job, stream, traffic);
+    fit(job, voxels, count, traffic);
   }
-  id_ = job.pieces->id();
+  check(await(deviceStream()), "fitting surfaces");
+  isWhole_ = true;
+  return list_;
 }
 
 /// Of blocks that are new.
-void DevicePieces::takeFaces(const SurfaceJob& job, const std::uint8_t* voxels, cudaStream_t stream, Traffic& traffic)
+void DevicePieces::takeFaces(const SurfaceJob& job, const std::uint8_t* voxels, Traffic& traffic)
 {
+  const cudaStream_t stream = deviceStream();
   const SurfacePieces& scene = *job.pieces;
   std::vector<Vec3i> firstBrick;
   for (const int block : job.blocks)
@@ -255,25 +358,25 @@ void DevicePieces::takeFaces(const SurfaceJob& job, const std::uint8_t* voxels, 
   };
   const auto beginAt = [&](int first) { count_.upload({ first }, stream, traffic); };
   beginAt(0);
-  countFaces<<<unsigned(firstBrick.size()), threads, 0, stream>>>(search, count_.data());
+  countFaces<<<dim3(unsigned(firstBrick.size()), searchers), threads, 0, stream>>>(search, count_.data());
   check(cudaGetLastError(), "looking for surfaces");
-  const int count = bring(count_.data(), stream, traffic);
+  const int count = bring(count_.data(), traffic);
   const int before = int(faces_.size());
   faces_.grow(std::size_t(before + count), stream);
   brickOfFace_.grow(std::size_t(before + count), stream);
   state_.grow(std::size_t(before + count), stream);
   beginAt(before);
-  listFaces<<<unsigned(firstBrick.size()), threads, 0, stream>>>(search, count_.data(), faces_.data(),
-                                                                 brickOfFace_.data());
+  listFaces<<<dim3(unsigned(firstBrick.size()), searchers), threads, 0, stream>>>(search, count_.data(), faces_.data(),
+                                                                                  brickOfFace_.data());
   check(cudaGetLastError(), "looking for surfaces");
   check(cudaMemsetAsync(state_.data() + before, unheard, std::size_t(count), stream), "clearing memory");
 }
 
 /// Of the numbers from 0 to count - 1 those that are wanted, in their order; how many.
 template<class IsWanted>
-int DevicePieces::select(int count, const IsWanted& isWanted, DeviceArray<int>& to, cudaStream_t stream,
-                         Traffic& traffic)
+int DevicePieces::select(int count, const IsWanted& isWanted, DeviceArray<int>& to, Traffic& traffic)
 {
+  const cudaStream_t stream = deviceStream();
   to.resize(std::size_t(count));
   count_.resize(1);
   const thrust::counting_iterator<int> numbers(0);
@@ -285,63 +388,67 @@ int DevicePieces::select(int count, const IsWanted& isWanted, DeviceArray<int>& 
   run(nullptr, bytes);
   scratch_.resize(bytes);
   run(scratch_.data(), bytes);
-  return bring(count_.data(), stream, traffic);
+  return bring(count_.data(), traffic);
 }
 
 /// How many faces there are to fit.
-int DevicePieces::markHeard(const SurfaceJob& job, const PieceHearers& hearers, cudaStream_t stream, Traffic& traffic)
+int DevicePieces::markHeard(const SurfaceJob& job, const PieceHearers& hearers, Traffic& traffic)
 {
+  const cudaStream_t stream = deviceStream();
   const int count = int(faces_.size());
   withKind(hearers.kind, [&](auto kind) {
     markHeardFaces<kind.value><<<blocksFor(count), threads, 0, stream>>>(
       hearers, faces_.data(), count, job.pieces->spacingMm(), 2.0f * job.longestStepMm, state_.data());
   });
   check(cudaGetLastError(), "looking for surfaces");
-  return select(count, IsHeard{ state_.data() }, list_, stream, traffic);
+  return select(count, IsHeard{ state_.data() }, selected_, traffic);
 }
 
-/// The list's faces, behind the pieces before.
-void DevicePieces::fit(const SurfaceJob& job, const std::uint8_t* voxels, int count, cudaStream_t stream,
-                       Traffic& traffic)
+/// The selected faces, with the pieces before.
+void DevicePieces::fit(const SurfaceJob& job, const std::uint8_t* voxels, int count, Traffic& traffic)
 {
+  const cudaStream_t stream = deviceStream();
   DeviceArray<SurfacePiece> made;
   DeviceArray<int> kept;
   made.resize(std::size_t(count));
-  fitFaces<<<unsigned(count), lanes, 0, stream>>>(voxels, job.voxels.size, job.voxels.spacing, windows_.data(),
-                                                  faces_.data(), list_.data(), state_.data(), made.data());
+  const Window* windows = DeviceWindows::all(traffic);
+  fitFaces<<<unsigned(count), lanes, 0, stream>>>(voxels, job.voxels.size, job.voxels.spacing, windows, faces_.data(),
+                                                  selected_.data(), state_.data(), made.data());
   check(cudaGetLastError(), "fitting surfaces");
-  const int keptCount = select(count, HasShare{ made.data() }, kept, stream, traffic);
+  const int keptCount = select(count, HasShare{ made.data() }, kept, traffic);
   if (keptCount > 0)
   {
-    const std::size_t before = pieces_.size();
-    pieces_.grow(before + std::size_t(keptCount), stream);
-    brickOfPiece_.grow(before + std::size_t(keptCount), stream);
-    appendPieces<<<blocksFor(keptCount), threads, 0, stream>>>(kept.data(), keptCount, made.data(), list_.data(),
-                                                               brickOfFace_.data(), pieces_.data() + before,
-                                                               brickOfPiece_.data() + before);
+    const std::size_t before = list_->pieces.size();
+    DeviceArray<SurfacePiece> pieces;
+    DeviceArray<int> brickOf;
+    pieces.resize(before + std::size_t(keptCount));
+    brickOf.resize(pieces.size());
+    copyOnDevice(list_->pieces.data(), before, pieces.data(), stream);
+    copyOnDevice(brickOfPiece_.data(), before, brickOf.data(), stream);
+    appendPieces<<<blocksFor(keptCount), threads, 0, stream>>>(kept.data(), keptCount, made.data(), selected_.data(),
+                                                               brickOfFace_.data(), pieces.data() + before,
+                                                               brickOf.data() + before);
     check(cudaGetLastError(), "fitting surfaces");
+    list_ = inGroups(job, pieces, brickOf, traffic);
   }
 }
 
-/// Brings all pieces into the order of their bricks, and those of a brick into groups.
-void DevicePieces::group(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic)
+/// In the order of their bricks, and those of a brick in groups.
+std::shared_ptr<const PieceList> DevicePieces::inGroups(const SurfaceJob& job, const DeviceArray<SurfacePiece>& pieces,
+                                                        const DeviceArray<int>& brickOf, Traffic& traffic)
 {
-  const int count = int(pieces_.size());
-  if (count == 0)
-  {
-    return;
-  }
+  const cudaStream_t stream = deviceStream();
+  const int count = int(pieces.size());
+  const auto list = std::make_shared<PieceList>();
   DeviceArray<int> numbers;
   DeviceArray<int> order;
-  DeviceArray<int> sortedBricks;
-  DeviceArray<SurfacePiece> sorted;
-  numbers.resize(std::size_t(count));
-  order.resize(std::size_t(count));
-  sortedBricks.resize(std::size_t(count));
-  sorted.resize(std::size_t(count));
+  numbers.resize(pieces.size());
+  order.resize(pieces.size());
+  brickOfPiece_.resize(pieces.size());
+  list->pieces.resize(pieces.size());
   countUp<<<blocksFor(count), threads, 0, stream>>>(numbers.data(), count);
   const auto sort = [&](void* scratch, std::size_t& bytes) {
-    check(cub::DeviceRadixSort::SortPairs(scratch, bytes, brickOfPiece_.data(), sortedBricks.data(), numbers.data(),
+    check(cub::DeviceRadixSort::SortPairs(scratch, bytes, brickOf.data(), brickOfPiece_.data(), numbers.data(),
                                           order.data(), count, 0, 32, stream),
           "ordering surfaces");
   };
@@ -349,21 +456,20 @@ void DevicePieces::group(const SurfaceJob& job, cudaStream_t stream, Traffic& tr
   sort(nullptr, bytes);
   scratch_.resize(bytes);
   sort(scratch_.data(), bytes);
-  takeInOrder<<<blocksFor(count), threads, 0, stream>>>(pieces_.data(), order.data(), count, sorted.data());
+  takeInOrder<<<blocksFor(count), threads, 0, stream>>>(pieces.data(), order.data(), count, list->pieces.data());
   check(cudaGetLastError(), "ordering surfaces");
-  pieces_ = std::move(sorted);
-  brickOfPiece_ = std::move(sortedBricks);
 
-  std::vector<int> brickOf(std::size_t(count), 0);
-  download(brickOfPiece_.data(), std::size_t(count), brickOf.data(), stream, traffic);
+  const std::shared_ptr<void> memory = pinnedMemory(pieces.size() * sizeof(int));
+  const int* const ordered = static_cast<const int*>(memory.get());
+  download(brickOfPiece_.data(), pieces.size(), static_cast<int*>(memory.get()), stream, traffic);
   check(await(stream), "ordering surfaces");
   const Vec3i bricks = job.pieces->bricks();
   std::vector<SurfaceGroup> groups;
   for (int first = 0; first < count;)
   {
-    const int brick = brickOf[std::size_t(first)];
+    const int brick = ordered[first];
     int end = first + 1;
-    while (end < count && end < first + warpLanes && brickOf[std::size_t(end)] == brick)
+    while (end < count && end < first + warpLanes && ordered[end] == brick)
     {
       ++end;
     }
@@ -371,18 +477,20 @@ void DevicePieces::group(const SurfaceJob& job, cudaStream_t stream, Traffic& tr
     groups.push_back({ (Vec3f(at) + 0.5f) * job.pieces->edgeMm(), Vec3f(0.0f), 0.0f, first, end - first });
     first = end;
   }
-  groups_.upload(groups, stream, traffic);
-  boundGroups<<<blocksFor(int(groups.size())), threads, 0, stream>>>(pieces_.data(), job.longestStepMm, groups_.data(),
-                                                                     int(groups.size()));
+  list->groups.upload(groups, stream, traffic);
+  boundGroups<<<blocksFor(int(groups.size())), threads, 0, stream>>>(list->pieces.data(), job.longestStepMm,
+                                                                     list->groups.data(), int(groups.size()));
   check(cudaGetLastError(), "ordering surfaces");
+  return list;
 }
 
-int DevicePieces::bring(const int* count, cudaStream_t stream, Traffic& traffic)
+/// Through pinned memory: a copy to any other keeps a core busy until the device gets there.
+int DevicePieces::bring(const int* count, Traffic& traffic)
 {
-  int value = 0;
-  download(count, 1, &value, stream, traffic);
-  check(await(stream), "looking for surfaces");
-  return value;
+  const std::shared_ptr<void> memory = pinnedMemory(sizeof(int));
+  download(count, 1, static_cast<int*>(memory.get()), deviceStream(), traffic);
+  check(await(deviceStream()), "looking for surfaces");
+  return *static_cast<const int*>(memory.get());
 }
 
 } // namespace sono

@@ -8,6 +8,8 @@
 #include "Scene/StepWindows.h"
 #include "Scene/SurfaceFace.h"
 
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace sono {
@@ -33,40 +35,53 @@ struct PieceHearers
   int media;
 };
 
+/// Pieces brick by brick, and their groups. Stays as it is.
+struct PieceList
+{
+  DeviceArray<SurfacePiece> pieces;
+  DeviceArray<SurfaceGroup> groups;
+};
+
 /// The smooth pieces of a scene's boundaries (SurfacePieces) that some beam may have heard so far, each fitted by a
-/// warp. The others, most of them seen too slantingly, are left until one may.
+/// warp. The others, most of them seen too slantingly, are left until one may. All imagers of a device share those of a
+/// scene: several threads may ask, one after the other.
 class DevicePieces
 {
 public:
-  /// Adds those that these beams may hear of the job's blocks. `voxels` are its tissues on the device. Waits.
-  void prepare(const SurfaceJob& job, const std::uint8_t* voxels, const PieceHearers& hearers, cudaStream_t stream,
-               Traffic& traffic);
+  /// Those of the scene's on the thread's device, which live as long as somebody holds them.
+  static std::shared_ptr<DevicePieces> of(const SurfacePieces& pieces);
+  ~DevicePieces();
+  DevicePieces(const DevicePieces&) = delete;
+  DevicePieces& operator=(const DevicePieces&) = delete;
 
-  const SurfacePiece* pieces() const { return pieces_.data(); }
-  const SurfaceGroup* groups() const { return groups_.data(); }
-  int groupCount() const { return int(groups_.size()); }
+  /// All so far, after those that these beams may hear of the job's blocks have been added. `voxels` are its tissues on
+  /// the device. Waits until all is done that `stream` was asked for.
+  std::shared_ptr<const PieceList> heardBy(const SurfaceJob& job, const std::uint8_t* voxels,
+                                           const PieceHearers& hearers, cudaStream_t stream, Traffic& traffic);
 
 private:
-  void takeFaces(const SurfaceJob& job, const std::uint8_t* voxels, cudaStream_t stream, Traffic& traffic);
-  int markHeard(const SurfaceJob& job, const PieceHearers& hearers, cudaStream_t stream, Traffic& traffic);
-  void fit(const SurfaceJob& job, const std::uint8_t* voxels, int count, cudaStream_t stream, Traffic& traffic);
-  void group(const SurfaceJob& job, cudaStream_t stream, Traffic& traffic);
+  explicit DevicePieces(int device);
+  void takeFaces(const SurfaceJob& job, const std::uint8_t* voxels, Traffic& traffic);
+  int markHeard(const SurfaceJob& job, const PieceHearers& hearers, Traffic& traffic);
+  void fit(const SurfaceJob& job, const std::uint8_t* voxels, int count, Traffic& traffic);
+  std::shared_ptr<const PieceList> inGroups(const SurfaceJob& job, const DeviceArray<SurfacePiece>& pieces,
+                                            const DeviceArray<int>& brickOf, Traffic& traffic);
   template<class IsWanted>
-  int select(int count, const IsWanted& isWanted, DeviceArray<int>& to, cudaStream_t stream, Traffic& traffic);
-  int bring(const int* count, cudaStream_t stream, Traffic& traffic);
+  int select(int count, const IsWanted& isWanted, DeviceArray<int>& to, Traffic& traffic);
+  int bring(const int* count, Traffic& traffic);
 
-  DeviceArray<float> weight_, strictness_;
-  DeviceArray<stepfit::Window> windows_;
-  std::uint64_t id_ = 0;             ///< of the scene's pieces
-  std::vector<bool> blocks_;         ///< whose faces are here
-  DeviceArray<SurfaceFace> faces_;   ///< of those
-  DeviceArray<int> brickOfFace_;     ///< its number
-  DeviceArray<std::uint8_t> state_;  ///< of each face, see FaceState
-  DeviceArray<SurfacePiece> pieces_; ///< brick by brick
-  DeviceArray<int> brickOfPiece_;    ///< ascending
-  DeviceArray<SurfaceGroup> groups_;
+  int device_;
+  DeviceLane* lane_;
+  std::mutex mutex_;
+  bool isWhole_ = false;            ///< false: what follows is to be forgotten
+  std::vector<bool> blocks_;        ///< whose faces are here
+  DeviceArray<SurfaceFace> faces_;  ///< of those
+  DeviceArray<int> brickOfFace_;    ///< its number
+  DeviceArray<std::uint8_t> state_; ///< of each face, see FaceState
+  std::shared_ptr<const PieceList> list_;
+  DeviceArray<int> brickOfPiece_; ///< of the list's, ascending
   // For a while.
-  DeviceArray<int> list_, count_;
+  DeviceArray<int> selected_, count_;
   DeviceArray<std::uint8_t> scratch_;
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 
 // Loops over rows of numbers, from one source: g++ computes a vector's lanes at a time, and with nvcc a warp shares a
@@ -42,6 +44,28 @@ SONO_LANES inline void countFrom(float first, Floats& to)
 SONO_LANES inline void load(const float* from, Floats& to)
 {
   to = from[lane()];
+}
+
+SONO_LANES inline void load(const std::int8_t* from, Floats& to)
+{
+  to = float(from[lane()]);
+}
+
+SONO_LANES inline void rootOf(const Floats& v, Floats& to)
+{
+  to = sqrtf(v);
+}
+
+/// Calls f(n) for the numbers of a vector that the thread has, for numberOf().
+template<class F>
+SONO_LANES inline void forNumbers(const F& f)
+{
+  f(lane());
+}
+
+SONO_LANES inline float numberOf(const Floats& v, int)
+{
+  return v;
 }
 
 /// The lane's part of the sum.
@@ -96,6 +120,45 @@ inline void countFrom(float first, Floats& to)
 inline void load(const float* from, Floats& to)
 {
   std::memcpy(&to, from, sizeof to);
+}
+
+inline void load(const std::int8_t* from, Floats& to)
+{
+  using Bytes = std::int8_t __attribute__((vector_size(8)));
+  Bytes bytes;
+  std::memcpy(&bytes, from, sizeof bytes);
+  to = __builtin_convertvector(bytes, Floats);
+}
+
+inline void store(const Floats& v, float* to)
+{
+  std::memcpy(to, &v, sizeof v);
+}
+
+inline void rootOf(const Floats& v, Floats& to)
+{
+  float roots[lanes];
+  store(v, roots);
+  for (float& root : roots)
+  {
+    root = std::sqrt(root);
+  }
+  load(roots, to);
+}
+
+/// Calls f(n) for the numbers of a vector that the thread has, for numberOf().
+template<class F>
+inline void forNumbers(const F& f)
+{
+  for (int n = 0; n < lanes; ++n)
+  {
+    f(n);
+  }
+}
+
+inline float numberOf(const Floats& v, int n)
+{
+  return v[n];
 }
 
 inline double sumOf(const Floats& v)

@@ -48,6 +48,29 @@ struct RowSums
   }
 };
 
+/// Of columns of cells, a lane's, row by row: sums of weight y^n, and of weight height y^n.
+struct ColumnSums
+{
+  Floats y[5] = {};
+  Floats height[3] = {};
+
+  SONO_LANES void add(float at, const Floats& w, const Floats& wh)
+  {
+    const Floats w1 = w * at;
+    const Floats w2 = w1 * at;
+    const Floats w3 = w2 * at;
+    const Floats wh1 = wh * at;
+    y[0] += w;
+    y[1] += w1;
+    y[2] += w2;
+    y[3] += w3;
+    y[4] += w3 * at;
+    height[0] += wh;
+    height[1] += wh1;
+    height[2] += wh1 * at;
+  }
+};
+
 /// c0 + c1 i + c2 j + c3 i^2 + c4 j^2 + c5 i j, voxels.
 struct Quadratic
 {
@@ -61,23 +84,39 @@ constexpr int terms = 6;
 class NormalEquations
 {
 public:
-  /// A row of data at this y: sums of weight x^n, n = 0 to 4, and of weight height x^n, n = 0 to 2.
-  SONO_LANES_CALLED void addRow(double y, const double* x, const double* height)
+  /// Data in columns at these x.
+  SONO_LANES void addColumns(const Floats& x, const ColumnSums& sums)
   {
-    const double y2 = y * y;
-    const double m[15] = { x[0],      x[1],     y * x[0],  x[2],          y * x[1],
-                           y2 * x[0], x[3],     y * x[2],  y2 * x[1],     y2 * y * x[0],
-                           x[4],      y * x[3], y2 * x[2], y2 * y * x[1], y2 * y2 * x[0] };
-    for (int i = 0; i < 15; ++i)
-    {
-      moment_[i] += m[i];
-    }
-    const double r[terms] = { height[0], height[1], y * height[0], height[2], y * height[1], y2 * height[0] };
-    for (int i = 0; i < terms; ++i)
-    {
-      right_[i] += r[i];
-    }
+    forNumbers([&](int n) {
+      const double x1 = numberOf(x, n);
+      const double x2 = x1 * x1;
+      double y[5];
+      double height[3];
+      for (int i = 0; i < 5; ++i)
+      {
+        y[i] = numberOf(sums.y[i], n);
+      }
+      for (int i = 0; i < 3; ++i)
+      {
+        height[i] = numberOf(sums.height[i], n);
+      }
+      const double m[15] = { y[0],           x1 * y[0],      y[1],      x2 * y[0], x1 * y[1],
+                             y[2],           x2 * x1 * y[0], x2 * y[1], x1 * y[2], y[3],
+                             x2 * x2 * y[0], x2 * x1 * y[1], x2 * y[2], x1 * y[3], y[4] };
+      for (int i = 0; i < 15; ++i)
+      {
+        moment_[i] += m[i];
+      }
+      const double r[terms] = { height[0], x1 * height[0], height[1], x2 * height[0], x1 * height[1], height[2] };
+      for (int i = 0; i < terms; ++i)
+      {
+        right_[i] += r[i];
+      }
+    });
   }
+
+  /// Of all data.
+  SONO_LANES double weight() const { return wholeSum(moment_[0]); }
 
   /// Data on the line (x, y) = (a, b) t: sums of weight t^n, n = 0 to 4, and of weight height t^n, n = 0 to 2.
   SONO_LANES void addLine(double a, double b, const double* t, const double* height)
@@ -207,42 +246,63 @@ public:
   {
   }
 
-  /// Data at one y: `count` places x from `first` on, a step of 1 apart: the heights of z^2, weights, and products of
-  /// weight and the height to fit. The arrays go on to a multiple of `lanes` with weights of 0.
-  SONO_LANES_CALLED void addRow(float first, float y, int count, const float* height, const float* weight,
-                                const float* weighted)
+  /// Columns' sums, row by row, of w, w y, w y^2, w q, w y q, w q^2, w h, w y h, w q h with q = y^2 + h^2: `along` is h
+  /// of the z^2, `height` the one to fit.
+  class Columns
   {
-    Floats s[9] = {}; // sums of w, w x, w x^2, w q, w x q, w q^2, w h, w x h, w q h with q = x^2 + h^2
-    Floats x;
-    countFrom(first, x);
-    const float u2 = float(u_ * u_);
-    for (int n = 0; n < count; n += lanes, x += float(lanes))
+  public:
+    SONO_LANES explicit Columns(double v)
+      : v2_(float(v * v))
     {
-      Floats h;
-      Floats w;
-      Floats wh;
-      load(height + n, h);
-      load(weight + n, w);
-      load(weighted + n, wh);
-      const Floats q = x * x * u2 + h * h;
-      const Floats wx = w * x;
+    }
+    SONO_LANES void add(float at, const Floats& along, const Floats& w, const Floats& wh)
+    {
+      const Floats q = along * along + at * at * v2_;
+      const Floats wy = w * at;
       const Floats wq = w * q;
-      s[0] += w;
-      s[1] += wx;
-      s[2] += wx * x;
-      s[3] += wq;
-      s[4] += wx * q;
-      s[5] += wq * q;
-      s[6] += wh;
-      s[7] += wh * x;
-      s[8] += wh * q;
+      sum_[0] += w;
+      sum_[1] += wy;
+      sum_[2] += wy * at;
+      sum_[3] += wq;
+      sum_[4] += wq * at;
+      sum_[5] += wq * q;
+      sum_[6] += wh;
+      sum_[7] += wh * at;
+      sum_[8] += wh * q;
     }
-    double t[9];
-    for (int i = 0; i < 9; ++i)
-    {
-      t[i] = sumOf(s[i]);
-    }
-    addSums(t, y * v_);
+    SONO_LANES const Floats* sums() const { return sum_; }
+
+  private:
+    float v2_;
+    Floats sum_[9] = {};
+  };
+
+  /// Data in columns at these x.
+  SONO_LANES void addColumns(const Floats& at, const Columns& columns)
+  {
+    forNumbers([&](int n) {
+      double t[9];
+      for (int i = 0; i < 9; ++i)
+      {
+        t[i] = numberOf(columns.sums()[i], n);
+      }
+      const double x = u_ * double(numberOf(at, n));
+      const double x2 = x * x;
+      a_[0][0] += t[0];
+      a_[0][1] += x * t[0];
+      a_[0][2] += v_ * t[1];
+      a_[0][3] += t[3] + x2 * t[0];
+      a_[0][4] += t[6];
+      a_[1][1] += x2 * t[0];
+      a_[1][2] += x * v_ * t[1];
+      a_[1][3] += x * (t[3] + x2 * t[0]);
+      a_[1][4] += x * t[6];
+      a_[2][2] += v_ * v_ * t[2];
+      a_[2][3] += v_ * (t[4] + x2 * t[1]);
+      a_[2][4] += v_ * t[7];
+      a_[3][3] += t[5] + x2 * (2.0 * t[3] + x2 * t[0]);
+      a_[3][4] += t[8] + x2 * t[6];
+    });
   }
 
   SONO_LANES_CALLED bool solve(Shape& out)
@@ -293,56 +353,36 @@ public:
   }
 
 private:
-  /// Of one y; x in columns.
-  SONO_LANES void addSums(const double* t, double y)
-  {
-    const double y2 = y * y;
-    a_[0][0] += t[0];
-    a_[0][1] += u_ * t[1];
-    a_[0][2] += y * t[0];
-    a_[0][3] += t[3] + y2 * t[0];
-    a_[0][4] += t[6];
-    a_[1][1] += u_ * u_ * t[2];
-    a_[1][2] += u_ * y * t[1];
-    a_[1][3] += u_ * (t[4] + y2 * t[1]);
-    a_[1][4] += u_ * t[7];
-    a_[2][2] += y2 * t[0];
-    a_[2][3] += y * (t[3] + y2 * t[0]);
-    a_[2][4] += y * t[6];
-    a_[3][3] += t[5] + y2 * (2.0 * t[3] + y2 * t[0]);
-    a_[3][4] += t[8] + y2 * t[6];
-  }
-
   double u_;
   double v_;
   double a_[4][5] = {};
 };
 
-/// How the steps of a row pull at a shape, with stiffness and force: a step is no measurement with noise, it says for
-/// certain that the surface lies within half a voxel. So least squares of the distances follow the rounding, which of a
-/// plane is a wave as long as a window; the barrier -log(1 - e^2), e the distance over half a voxel, does not. Beyond
-/// `wall` it goes on as a parabola, so that a shape may start outside. A ball is linear in its terms by the height of
-/// the step in place of its own.
-SONO_LANES_CALLED inline void pull(const Shape& shape, int radius, int j, const float* height, const float* weight,
-                                   float* stiffness, float* force)
+/// How steps at places x of a row, with heights h and weights w, pull at a shape: with stiffness and force. A step is
+/// no measurement with noise, it says for certain that the surface lies within half a voxel. So least squares of the
+/// distances follow the rounding, which of a plane is a wave as long as a window; the barrier -log(1 - e^2), e the
+/// distance over half a voxel, does not. Beyond `wall` it goes on as a parabola, so that a shape may start outside. A
+/// ball is linear in its terms by the height of the step in place of its own.
+SONO_LANES inline void pull(const Shape& shape, const Floats& x, float y, const Floats& h, const Floats& w,
+                            Floats& stiffness, Floats& force)
 {
   constexpr float wall = 0.95f;
-  const float k0 = shape.q.at(0.0f, float(j));
-  const float k1 = shape.q.c1 + shape.q.c5 * float(j);
+  const float k0 = shape.q.at(0.0f, y);
+  const float k1 = shape.q.c1 + shape.q.c5 * y;
   const float k2 = shape.q.c3;
   const float bulge = shape.bulge;
-  forEach(2 * radius + 1, [=](int n) {
-    const float i = float(n - radius);
-    const float h = height[n];
-    const float perHalf = 1.0f / std::max(0.1f, 0.5f - bulge * h);
-    const float e = (h - (k0 + i * (k1 + i * k2) + bulge * h * h)) * perHalf;
-    const float within = std::min(wall, std::fabs(e));
-    const float perRoom = 1.0f / (1.0f - within * within);
-    const float second = 2.0f * (1.0f + within * within) * perRoom * perRoom;
-    const float first = 2.0f * within * perRoom + second * (std::fabs(e) - within);
-    stiffness[n] = weight[n] * second * perHalf * perHalf;
-    force[n] = weight[n] * std::copysign(first, e) * perHalf;
-  });
+  const Floats least = Floats{} + 0.1f;
+  const Floats room = 0.5f - bulge * h;
+  const Floats perHalf = 1.0f / (room > least ? room : least);
+  const Floats e = (h - (k0 + x * (k1 + x * k2) + bulge * h * h)) * perHalf;
+  const Floats far = e < 0.0f ? -e : e;
+  const Floats most = Floats{} + wall;
+  const Floats within = far < most ? far : most;
+  const Floats perRoom = 1.0f / (1.0f - within * within);
+  const Floats second = 2.0f * (1.0f + within * within) * perRoom * perRoom;
+  const Floats first = 2.0f * within * perRoom + second * (far - within);
+  stiffness = w * second * perHalf * perHalf;
+  force = w * (e < 0.0f ? -first : first) * perHalf;
 }
 
 SONO_LANES inline float smoothStep(float from, float to, float at)

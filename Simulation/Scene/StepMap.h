@@ -120,7 +120,9 @@ public:
       const int radius = windowRadius(count);
       gather(voxel, axis, gathered + 1, radius);
       gathered = radius;
-      seen[count] = smoothStep(fewestSeen, enoughSeen, knownShare(radius));
+      sumSteps(radius, starts[count].equations);
+      const double known = starts[count].equations.weight() / double(window_[radius].total);
+      seen[count] = smoothStep(fewestSeen, enoughSeen, float(known));
       if (!(seen[count] > 0.0f) || !leastSquares(radius, u, v, starts[count]))
       {
         break;
@@ -153,23 +155,6 @@ public:
   }
 
 private:
-  /// Of a window's weight.
-  SONO_LANES_CALLED float knownShare(int radius)
-  {
-    Floats known{};
-    for (int j = -radius; j <= radius; ++j)
-    {
-      loadRow(radius, j);
-      for (int n = 0; n < 2 * radius + 1; n += lanes)
-      {
-        Floats w;
-        load(row_.weight + n, w);
-        known += w;
-      }
-    }
-    return float(wholeSum(sumOf(known))) / window_[radius].total;
-  }
-
   enum class Kind
   {
     Plane,
@@ -187,10 +172,9 @@ private:
     Kind kind;
   };
 
-  /// False where there are too few data.
+  /// Of the start's equations. False where there are too few data.
   SONO_LANES bool leastSquares(int radius, float u, float v, Start& start)
   {
-    sumSteps(radius, start.equations);
     Shape plane{};
     if (!start.equations.solve(3, plane.q))
     {
@@ -272,45 +256,50 @@ private:
     return agrees(shape, radius);
   }
 
-  /// A row of columns of a window, on to whole vectors; weights are 0 where there is no step.
-  struct Row
+  /// Calls f(x, first) for the window's columns, as many at a time as there are lanes: from `first` on, each lane's at
+  /// its x. They may go on beyond the window.
+  template<class F>
+  SONO_LANES static void forStrips(int radius, const F& f)
   {
-    float height[allColumns + lanes];
-    float weight[allColumns + lanes];
-    float stiffness[allColumns + lanes];
-    float force[allColumns + lanes];
-    float excess[allColumns + lanes];
-  };
+    for (int first = -radius; first <= radius; first += lanes)
+    {
+      Floats x;
+      countFrom(float(first), x);
+      f(x, first);
+    }
+  }
 
-  SONO_LANES_CALLED void loadRow(int radius, int j)
+  /// Steps of a strip's columns in a row, and their weights, which are 0 where there is none and beyond the window.
+  SONO_LANES void load(int radius, const Floats& x, int first, int j, Floats& height, Floats& weight) const
   {
-    const int pitch = 2 * radius + 1;
-    const std::int8_t* steps = stepsOf(radius, j);
-    const float* weight = window_[radius].weight + pitch * (j + radius);
-    float* heights = row_.height;
-    float* weights = row_.weight;
-    forEach(pitch, [=](int n) {
-      const bool isKnown = steps[n] != unknown;
-      heights[n] = isKnown ? float(steps[n]) : 0.0f;
-      weights[n] = isKnown ? weight[n] : 0.0f;
-    });
-    forEach(lanes, [&](int n) {
-      const int at = pitch + n;
-      row_.height[at] = row_.weight[at] = row_.stiffness[at] = row_.force[at] = 0.0f;
-    });
+    stepfit::load(stepsOf(first, j), height);
+    stepfit::load(window_[radius].weight + (2 * radius + 1) * (j + radius) + first + radius, weight);
+    const Floats none{};
+    const auto isKnown = (x <= float(radius)) & (height != float(unknown));
+    height = isKnown ? height : none;
+    weight = isKnown ? weight : none;
   }
 
   /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
   SONO_LANES_CALLED float settleQuadratic(int radius, int count, Shape& shape)
   {
     NormalEquations equations;
-    for (int j = -radius; j <= radius; ++j)
-    {
-      loadRow(radius, j);
-      pull(shape, radius, j, row_.height, row_.weight, row_.stiffness, row_.force);
-      const RowSums sums(-radius, 2 * radius + 1, row_.stiffness, row_.force);
-      equations.addRow(j, sums.x, sums.height);
-    }
+    const Shape from = shape;
+    forStrips(radius, [&](const Floats& x, int first) {
+      ColumnSums sums;
+      SONO_ROLLED
+      for (int j = -radius; j <= radius; ++j)
+      {
+        Floats height;
+        Floats weight;
+        Floats stiffness;
+        Floats force;
+        load(radius, x, first, j, height, weight);
+        pull(from, x, float(j), height, weight, stiffness, force);
+        sums.add(float(j), stiffness, force);
+      }
+      equations.addColumns(x, sums);
+    });
     Quadratic d{};
     if (!equations.solve(count, d))
     {
@@ -330,24 +319,40 @@ private:
   SONO_LANES_CALLED bool fitBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
-    for (int j = -radius; j <= radius; ++j)
-    {
-      loadRow(radius, j);
-      weigh(2 * radius + 1);
-      equations.addRow(-radius, j, 2 * radius + 1, row_.height, row_.weight, row_.force);
-    }
+    forStrips(radius, [&](const Floats& x, int first) {
+      BallEquations::Columns columns(v);
+      SONO_ROLLED
+      for (int j = -radius; j <= radius; ++j)
+      {
+        Floats height;
+        Floats weight;
+        load(radius, x, first, j, height, weight);
+        columns.add(float(j), height, weight, weight * height);
+      }
+      equations.addColumns(x, columns);
+    });
     return equations.solve(ball);
   }
 
   SONO_LANES_CALLED float settleBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
-    for (int j = -radius; j <= radius; ++j)
-    {
-      loadRow(radius, j);
-      pull(ball, radius, j, row_.height, row_.weight, row_.stiffness, row_.force);
-      equations.addRow(-radius, j, 2 * radius + 1, row_.height, row_.stiffness, row_.force);
-    }
+    const Shape from = ball;
+    forStrips(radius, [&](const Floats& x, int first) {
+      BallEquations::Columns columns(v);
+      SONO_ROLLED
+      for (int j = -radius; j <= radius; ++j)
+      {
+        Floats height;
+        Floats weight;
+        Floats stiffness;
+        Floats force;
+        load(radius, x, first, j, height, weight);
+        pull(from, x, float(j), height, weight, stiffness, force);
+        columns.add(float(j), height, stiffness, force);
+      }
+      equations.addColumns(x, columns);
+    });
     Shape d{};
     if (!equations.solve(d))
     {
@@ -361,18 +366,20 @@ private:
   /// Least squares of the steps alone.
   SONO_LANES_CALLED void sumSteps(int radius, NormalEquations& equations)
   {
-    for (int j = -radius; j <= radius; ++j)
-    {
-      loadRow(radius, j);
-      weigh(2 * radius + 1);
-      const RowSums sums(-radius, 2 * radius + 1, row_.weight, row_.force);
-      equations.addRow(j, sums.x, sums.height);
-    }
-  }
-
-  SONO_LANES void weigh(int count)
-  {
-    forEach(count, [this](int n) { row_.force[n] = row_.weight[n] * row_.height[n]; });
+    NormalEquations all;
+    forStrips(radius, [&](const Floats& x, int first) {
+      ColumnSums sums;
+      SONO_ROLLED
+      for (int j = -radius; j <= radius; ++j)
+      {
+        Floats height;
+        Floats weight;
+        load(radius, x, first, j, height, weight);
+        sums.add(float(j), weight, weight * height);
+      }
+      all.addColumns(x, sums);
+    });
+    equations = all;
   }
 
   /// 1 where no column's step lies further from the fit than its rounding, less to 0 where one does; smoothly.
@@ -385,32 +392,36 @@ private:
   SONO_LANES_CALLED float excess(const Shape& shape, int radius, float enough)
   {
     const int pitch = 2 * radius + 1;
+    const Shape from = shape;
+    const Floats none{};
     Floats largest{};
+    SONO_ROLLED
     for (int n = 0; n < pitch; ++n)
     {
       const int j = (n & 1) ? -(n + 1) / 2 : n / 2; // the middle first, where most misfits show
-      const float* strictness = window_[radius].strictness + pitch * (j + radius);
-      const std::int8_t* steps = stepsOf(radius, j);
-      const float k0 = shape.q.at(0.0f, float(j));
-      const float k1 = shape.q.c1 + shape.q.c5 * float(j);
-      const float k2 = shape.q.c3;
-      const float bulge = shape.bulge;
-      float* row = row_.excess;
-      forEach(pitch, [=](int m) {
-        const float i = float(m - radius);
-        const float k = k0 + i * (k1 + i * k2);
-        const float z = 2.0f * k / (1.0f + std::sqrt(std::max(0.0f, 1.0f - 4.0f * bulge * k)));
-        const float e = (std::fabs(float(steps[m]) - z) - 0.5f) * strictness[m];
-        row[m] = steps[m] == unknown ? 0.0f : e;
+      const float k0 = from.q.at(0.0f, float(j));
+      const float k1 = from.q.c1 + from.q.c5 * float(j);
+      const float k2 = from.q.c3;
+      forStrips(radius, [&](const Floats& x, int first) {
+        Floats height;
+        Floats strictness;
+        stepfit::load(stepsOf(first, j), height);
+        stepfit::load(window_[radius].strictness + pitch * (j + radius) + first + radius, strictness);
+        const Floats k = k0 + x * (k1 + x * k2);
+        Floats z = k;
+        if (from.bulge != 0.0f)
+        {
+          const Floats square = 1.0f - 4.0f * from.bulge * k;
+          Floats root;
+          rootOf(square > none ? square : none, root);
+          z = 2.0f * k / (1.0f + root);
+        }
+        const Floats off = height - z;
+        const Floats e = ((off < none ? -off : off) - 0.5f) * strictness;
+        const auto counts = (x <= float(radius)) & (height != float(unknown)) & (e > largest);
+        largest = counts ? e : largest;
       });
-      forEach(lanes, [=](int m) { row[pitch + m] = 0.0f; });
-      for (int m = 0; m < pitch; m += lanes)
-      {
-        Floats e;
-        load(row + m, e);
-        largest = e > largest ? e : largest;
-      }
-      if (largestOf(largest) >= enough)
+      if ((n & 7) == 7 && largestOf(largest) >= enough)
       {
         break;
       }
@@ -420,15 +431,15 @@ private:
 
   SONO_LANES static std::size_t indexOf(int i, int j) { return std::size_t(i + widest + allColumns * (j + widest)); }
   SONO_LANES std::int8_t& step(int i, int j) { return steps_[indexOf(i, j)]; }
-  /// Of a window's row, from its first column on.
-  SONO_LANES const std::int8_t* stepsOf(int radius, int j) const { return &steps_[indexOf(-radius, j)]; }
+  /// Of a row, from a column on.
+  SONO_LANES const std::int8_t* stepsOf(int i, int j) const { return &steps_[indexOf(i, j)]; }
 
   const std::uint8_t* tissues_;
   Vec3i size_;
   const Window* window_; ///< by radius
   std::ptrdiff_t pitch_[3];
-  Row row_;                                                             ///< that is looked at
-  std::array<std::int8_t, std::size_t(allColumns) * allColumns> steps_; // what is not gathered is not read
+  /// What has not been gathered counts for nothing; there is as much behind the last as a strip goes beyond a window.
+  std::array<std::int8_t, std::size_t(allColumns) * allColumns + lanes> steps_;
 };
 
 } // namespace SONO_LANES_NAMESPACE

@@ -319,7 +319,21 @@ private:
     for (int line = 0; line < lines; ++line)
     {
       Row& row = rows_[line];
-      pull({ along(height, line) }, row.reach, 0, row.height, row.weight, row.stiffness, row.force);
+      const Shape shape{ along(height, line) };
+      Floats t;
+      countFrom(float(-row.reach), t);
+      for (int n = 0; n < row.count(); n += lanes, t += float(lanes))
+      {
+        Floats h;
+        Floats w;
+        Floats stiffness;
+        Floats force;
+        load(row.height + n, h);
+        load(row.weight + n, w);
+        pull(shape, t, 0.0f, h, w, stiffness, force);
+        store(stiffness, row.stiffness + n);
+        store(force, row.force + n);
+      }
       const RowSums sums(float(-row.reach), row.count(), row.stiffness, row.force);
       equations.addLine(stepU(line), stepV(line), sums.x, sums.height);
     }

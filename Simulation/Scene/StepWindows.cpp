@@ -22,6 +22,8 @@ WindowTables::WindowTables()
     }
     total.push_back(sum);
   }
+  weight.resize(weight.size() + mostLanes);
+  strictness.resize(weight.size());
 }
 
 std::vector<Window> WindowTables::windows(const float* weights, const float* strictnesses) const

@@ -17,7 +17,11 @@ struct Window
   float total;             ///< of the weights
 };
 
-/// All windows' numbers one after the other, and where those of a radius, 0 to `widest`, begin.
+/// Whoever takes columns as lanes do reads so far beyond a window at most.
+constexpr int mostLanes = 32;
+
+/// All windows' numbers one after the other, and where those of a radius, 0 to `widest`, begin. `mostLanes` zeros end
+/// them.
 struct WindowTables
 {
   std::vector<float> weight;
