@@ -20,6 +20,8 @@ namespace {
 using namespace stepfit;
 
 constexpr int threads = 128;
+// Warps that fit faces on a multiprocessor, for which registers are shared out: as many as find room for their maps.
+constexpr int fittingWarps = 24;
 
 /// Of a face.
 enum FaceState : std::uint8_t
@@ -136,7 +138,7 @@ __global__ void __launch_bounds__(threads) markHeardFaces(PieceHearers hearers, 
   }
 }
 
-__global__ void __launch_bounds__(lanes)
+__global__ void __launch_bounds__(lanes, fittingWarps)
   fitFaces(const std::uint8_t* tissues, Vec3i size, Vec3f spacingMm, const Window* windows, const SurfaceFace* faces,
            const int* list, std::uint8_t* state, SurfacePiece* pieces)
 {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int launchWarps = 4096; // few lines of many paths are cut into so many warps, to fill a device
 constexpr int fewWarps = 2048;    // of a launch: all at once on a large device, however many registers they take
+constexpr int fullWarps = 512;    // of a launch: with fewer, lanes that idle cost less than a device that does
 constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
 constexpr double binsPerLaunch = 6.25e7;       // 1 GB of sums
 constexpr int fewPaths = 1024;                 // of a line: nothing is lost of their sums, so nothing need be folded
@@ -44,18 +45,32 @@ int ceilDiv(int a, int b)
   return (a + b - 1) / b;
 }
 
-std::size_t sharedBesideBins(const TraceView& view, int warps)
+std::size_t sharedBesideBins(const TraceView& view, int warps, int batches)
 {
   return std::size_t(warps * warpLanes) * sizeof(StagedSegment) +
-         std::size_t(scrambleCount(view)) * sizeof(BounceScramble);
+         std::size_t(batches * scrambleCount(view)) * sizeof(BounceScramble);
+}
+
+/// How many batches of so many paths at most a warp takes at once; `fits` tells for how many there is room. What they
+/// leave does not depend on it.
+template<class Fits>
+int batchesOfWarp(int lines, int batches, int longest, const Fits& fits)
+{
+  int together = std::min(batches, std::max(1, warpLanes / longest));
+  while (together > 1 && (lines * ceilDiv(batches, together) < fullWarps || !fits(together)))
+  {
+    --together;
+  }
+  return together;
 }
 
 template<class Targets>
 void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
-  const std::size_t bytes = sharedBesideBins(launch.view, launch.warps) +
-                            (inShared ? launch.warps * launch.binCount * sizeof(BinSums<float>) : 0);
-  const int blocks = launch.batches * launch.slices;
+  const int batchRows = launch.warps * launch.batchesTogether;
+  const std::size_t bytes = sharedBesideBins(launch.view, launch.warps, launch.batchesTogether) +
+                            (inShared ? batchRows * launch.binCount * sizeof(BinSums<float>) : 0);
+  const int blocks = ceilDiv(launch.batches, launch.batchesTogether) * launch.slices;
   const bool few = lines * blocks * launch.warps <= fewWarps;
   const auto kernel = !inShared   ? tracePaths<false, true, blocksOfMany, Targets>
                       : manyPaths ? tracePaths<true, true, blocksOfMany, Targets>
@@ -163,7 +178,7 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const std::size_t binBytes = warps * bins * sizeof(BinSums<float>);
   const std::size_t sharedLimit =
     std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, blocksOfMany, BvhTargets>));
-  const bool inShared = binBytes + sharedBesideBins(view_, warps) <= sharedLimit;
+  const bool inShared = binBytes + sharedBesideBins(view_, warps, 1) <= sharedLimit;
   const bool manyPaths = !inShared || paths_ > fewPaths;
   const int parts = manyPaths ? slices * warps : slices;
 
@@ -198,6 +213,11 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const double fitting = std::min(
     { 32768.0, bouncesPerLaunch / (double(paths_) * std::max(1, view_.maxCollisions)), binsPerLaunch / partsOfLine });
   const int perLaunch = std::max(1, std::min(count, int(fitting)));
+  const auto fitTogether = [&](int together) {
+    return !manyPaths && slices == 1 && warps == 1 &&
+           together * binBytes + sharedBesideBins(view_, warps, together) <= sharedLimit;
+  };
+  const int together = batchesOfWarp(perLaunch, batches, longest, fitTogether);
   sums_.resize(std::size_t(perLaunch) * batches * parts * bins);
   bins_.resize(inShared ? 0 : sums_.size());
   shared_.clear(stream);
@@ -225,6 +245,8 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                    batches,
                    slices,
                    warps,
+                   together,
+                   together > 1 ? longest : warpLanes,
                    binCount_,
                    binMm_,
                    frequencyMHz_,

@@ -42,8 +42,10 @@ struct TraceLaunch
   int linesPerImage;
   int paths;
   int batches;
-  int slices; // of a batch, each traced by one block
-  int warps;  // of a block: no more than have paths
+  int slices;          // of a batch, each traced by one block
+  int warps;           // of a block: no more than have paths
+  int batchesTogether; // in a warp, where they are small; 1: a batch has warps of its own
+  int batchLanes;      // of a warp, that each of those has
   int binCount;
   float binMm;
   double frequencyMHz;
@@ -277,30 +279,34 @@ __device__ inline void foldBins(int binCount, int lane, BinSums<float>* bins, Bi
   }
 }
 
-/// One block traces one slice of a batch of a line, each lane one path after the other. The paths of a warp step
-/// together, each to its next boundary, and lanes whose paths have ended begin the next ones together; what they leave
-/// is added to the warp's bins by all its lanes, one segment after the other. As on the CPU (LineTally), a long sum of
-/// floats would lose its last digits: where there are many paths, warps fold their bins into doubles of their own,
-/// which are added up in the end, and keep what rounding leaves of echoes. No sum depends on which warp is first.
+/// One block traces one slice of a batch of a line, or some small batches whole, each lane one path after the other.
+/// The paths of a warp step together, each to its next boundary, and lanes whose paths have ended begin the next ones
+/// together; what they leave is added to the warp's bins by all its lanes, one segment after the other. As on the CPU
+/// (LineTally), a long sum of floats would lose its last digits: where there are many paths, warps fold their bins into
+/// doubles of their own, which are added up in the end, and keep what rounding leaves of echoes. No sum depends on
+/// which warp is first.
 template<bool BinsInShared, bool ManyPaths, int Blocks, class Targets>
 __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Targets> launch)
 {
   extern __shared__ BinSums<float> dynamic[];
   const int slice = blockIdx.x % launch.slices;
-  const int batch = blockIdx.x / launch.slices;
   const int line = blockIdx.y;
   const int lane = threadIdx.x % warpLanes;
   const int warp = threadIdx.x / warpLanes;
+  const int firstBatch = blockIdx.x / launch.slices * launch.batchesTogether;
+  const int batches = min(launch.batchesTogether, launch.batches - firstBatch);
+  const int ofBatches = lane / launch.batchLanes; // in the warp
+  const int batch = firstBatch + ofBatches;
 
   // Bins of the block's warps, then their segments, then the batch's scrambles.
-  const int slots = BinsInShared ? launch.warps : 0;
+  const int slots = BinsInShared ? launch.warps * launch.batchesTogether : 0;
   auto* segmentsOfWarps = reinterpret_cast<StagedSegment*>(dynamic + std::size_t(slots) * launch.binCount);
   auto* scrambles = reinterpret_cast<BounceScramble*>(segmentsOfWarps + launch.warps * warpLanes);
   StagedSegment* staged = segmentsOfWarps + warp * warpLanes;
-  const std::size_t row = (std::size_t(line) * launch.batches + batch) * launch.slices + slice;
+  const std::size_t row = (std::size_t(line) * launch.batches + firstBatch) * launch.slices + slice;
   const std::size_t warpRow = (row * launch.warps + warp) * launch.binCount;
   BinSums<float>* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
-  for (int b = lane; b < launch.binCount; b += warpLanes)
+  for (int b = lane; b < launch.batchesTogether * launch.binCount; b += warpLanes)
   {
     bins[b] = {};
     if (ManyPaths)
@@ -311,21 +317,25 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   const std::uint32_t lineKey = launch.keyOf(line);
   const std::uint64_t seed = launch.seedOf(line);
   const std::size_t lineBins = std::size_t(line) * launch.binCount;
-  const ReverberationRow reverberation{ launch.batchReverberation(line, batch), launch.absorbedByTissue + 2 * lineBins,
-                                        launch.cellMm + lineBins, lineKey, launch.tissueBins() };
-  for (int b = threadIdx.x; b < scrambleCount(launch.view); b += blockDim.x)
+  const ReverberationRow reverberation{ launch.batchReverberation(line, firstBatch),
+                                        launch.batchLanes,
+                                        launch.absorbedByTissue + 2 * lineBins,
+                                        launch.cellMm + lineBins,
+                                        lineKey,
+                                        launch.tissueBins() };
+  const int scrambled = scrambleCount(launch.view);
+  for (int b = threadIdx.x; b < batches * scrambled; b += blockDim.x)
   {
-    scrambles[b] = makeScramble(launch.view, seed, lineKey, std::uint32_t(batch), b);
+    scrambles[b] = makeScramble(launch.view, seed, lineKey, std::uint32_t(firstBatch + b / scrambled), b % scrambled);
   }
   __syncthreads();
 
-  const PathRange range = batchRange(launch.paths, launch.batches, batch);
-  const int end = range.last - range.first;
+  const int end = ofBatches < batches ? batchRange(launch.paths, launch.batches, batch).count() : 0;
   const int step = launch.slices * int(blockDim.x);
+  const int place = slice * int(blockDim.x) + int(threadIdx.x) - ofBatches * launch.batchLanes;
   TraceLine beam = launch.lines[line];
   LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, beam, staged[lane]);
-  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(slice * int(blockDim.x) + int(threadIdx.x) - step), seed,
-               scrambles };
+  PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(place - step), seed, scrambles + ofBatches * scrambled };
   PathState path;
   bool walks = false;
   bool active = launch.view.startsApart || launch.starts[line].meets; // until the lane has no more paths
@@ -350,7 +360,8 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     const unsigned reverberating = waiting & __ballot_sync(allLanes, staged[lane].reverberates != 0u);
     for (waiting &= ~reverberating; waiting; waiting &= waiting - 1)
     {
-      depositByWarp(staged[__ffs(int(waiting)) - 1], launch.binMm, lane, bins);
+      const int from = __ffs(int(waiting)) - 1;
+      depositByWarp(staged[from], launch.binMm, lane, bins + from / launch.batchLanes * launch.binCount);
     }
     reverberateByWarp<false>(staged, reverberating, reverberation, launch.echoScale, lane);
     const unsigned straightBack = __ballot_sync(allLanes, sink.holdsStraightBack());
@@ -386,7 +397,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
     return;
   }
   __syncthreads();
-  for (int b = threadIdx.x; b < launch.binCount; b += blockDim.x)
+  for (int b = threadIdx.x; b < batches * launch.binCount; b += blockDim.x)
   {
     BinSums<double> sum{};
     for (int g = 0; g < launch.warps; ++g)

@@ -125,7 +125,8 @@ __device__ inline void addAbsorbed(unsigned long long* sums, float weightUnits, 
 /// Where a line's reverberation goes.
 struct ReverberationRow
 {
-  unsigned long long* batch;            ///< TissueBins x ReverberationSum
+  unsigned long long* batch;            ///< batches x TissueBins x ReverberationSum
+  int batchLanes;                       ///< of the warp, that each batch has
   unsigned long long* absorbedByTissue; ///< bins x (weight, weight times Np)
   const float* cellMm;                  ///< bins: see resolutionCell
   std::uint32_t lineKey;
@@ -140,8 +141,10 @@ constexpr int echoBins = 2;
 /// What reverberates of a segment, on its own way or straight back, by range, by a group's lane. Sums of integers,
 /// since warps share them.
 template<bool StraightBack>
-__device__ inline void reverberateByLanes(const StagedSegment& s, const ReverberationRow& row, float scale, int lane)
+__device__ inline void reverberateByLanes(const StagedSegment& s, const ReverberationRow& row, int batch, float scale,
+                                          int lane)
 {
+  unsigned long long* const sums = row.batch + batch * reverberationSumCount * row.bins.count;
   const DepthSpan span{ s.low, s.high };
   for (int first = int(s.binLow) + lane; first <= s.binHigh; first += echoLanes * echoBins)
   {
@@ -171,7 +174,7 @@ __device__ inline void reverberateByLanes(const StagedSegment& s, const Reverber
         break;
       }
       const float units = scale * inBin[i].level * inBin[i].share;
-      addUnits(row.batch[reverberationSumCount * b + sum[i]], StraightBack ? units * inBin[i].level : units);
+      addUnits(sums[reverberationSumCount * b + sum[i]], StraightBack ? units * inBin[i].level : units);
       if (b == row.bins.absorptionBin(b))
       {
         addAbsorbed(row.absorbedByTissue + 2 * b, units, inBin[i].absorbedNp);
@@ -196,7 +199,7 @@ __device__ inline void reverberateByWarp(const StagedSegment* staged, unsigned w
     }
     if (mine >= 0)
     {
-      reverberateByLanes<StraightBack>(staged[mine], row, scale, lane % echoLanes);
+      reverberateByLanes<StraightBack>(staged[mine], row, mine / row.batchLanes, scale, lane % echoLanes);
     }
   }
 }
