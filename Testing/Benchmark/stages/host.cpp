@@ -199,10 +199,13 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
   costs.of("look", [&] { return maskSufficiency(*body.scene, body.groups, set.masks, settings, pose); });
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, pose);
   costs.of("trace_tables", [&] {
-    const TraceSetup setup(*body.scene, lines, settings.tracing, {}, {});
-    const TraceSetup doubled(*body.scene, lines, doubledTone(settings.tracing), {}, {});
-    return makeTraceJob(setup, settings.tracing, int(lines.size())).binCount +
-           makeTraceJob(doubled, settings.tracing, int(lines.size())).binCount;
+    TraceSetup setup(*body.scene, lines, settings.tracing, {}, {});
+    TraceJob job = makeTraceJob(setup, settings.tracing, int(lines.size()));
+    const TraceJob sent = job;
+    const TraceSettings doubled = doubledTone(settings.tracing);
+    setup.tune(*body.scene, doubled, {});
+    tuneTraceJob(setup, doubled, job);
+    return job.binCount + sent.binCount;
   });
   TracedLines traced = tracedLayout(int(lines.size()), settings.tracing, {});
   const std::size_t bins = lines.size() * std::size_t(traced.binCount);
