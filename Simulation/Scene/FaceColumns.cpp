@@ -11,8 +11,16 @@ namespace sono {
 namespace {
 
 using Bytes = std::int8_t __attribute__((vector_size(16)));
-using Masks = std::int32_t __attribute__((vector_size(64)));
-using Sums = float __attribute__((vector_size(64)));
+// Not wider than AVX2's: the compiler keeps what is wider on the stack there, which takes several times as long.
+using Masks = std::int32_t __attribute__((vector_size(32)));
+using Sums = float __attribute__((vector_size(32)));
+
+/// Of the columns that a vector of bytes has.
+struct ColumnSums
+{
+  Sums first{};
+  Sums last{};
+};
 
 inline void load(const std::uint8_t* from, Bytes& to)
 {
@@ -27,9 +35,12 @@ inline bool isAny(const Bytes& mask)
 }
 
 /// The weight where the mask's byte is set.
-inline void addWhere(const Bytes& mask, const Masks& weight, Sums& sum)
+inline void addWhere(const Bytes& mask, const Masks& weight, ColumnSums& sum)
 {
-  sum += (Sums)(__builtin_convertvector(mask, Masks) & weight);
+  const auto first = __builtin_shufflevector(mask, mask, 0, 1, 2, 3, 4, 5, 6, 7);
+  const auto last = __builtin_shufflevector(mask, mask, 8, 9, 10, 11, 12, 13, 14, 15);
+  sum.first += (Sums)(__builtin_convertvector(first, Masks) & weight);
+  sum.last += (Sums)(__builtin_convertvector(last, Masks) & weight);
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* corner, const std::ptrdiff_t* pitch,
@@ -37,8 +48,8 @@ SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* 
                                                             const float* weightY, const float* weightZ, FaceColumns& to)
 {
   const Bytes wanted = Bytes{} + std::int8_t(tissue);
-  Sums toward[3]{};
-  Sums away[3]{};
+  ColumnSums toward[3];
+  ColumnSums away[3];
   for (int k = 0; k < count.z; ++k)
   {
     for (int j = 0; j < count.y; ++j)
