@@ -151,7 +151,8 @@ void finishImage(const DataSetPlan& plan, const PlannedImage& planned, const Ima
   for (std::size_t i = 0; i < grey.size(); ++i)
   {
     mask[i] = body.groups[labels[i]];
-    grey[i] = std::uint8_t(drawSeed(1, DrawScope::Image, std::int64_t(i), 0) % 97);
+    // Packed, half as large as it is: as a picture's speckle.
+    grey[i] = std::uint8_t(40u * mask[i] + drawSeed(1, DrawScope::Image, std::int64_t(i), 0) % 12);
   }
   DataSetFacts facts;
   facts.image = planned;
@@ -209,15 +210,14 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
   });
   TracedLines traced = tracedLayout(int(lines.size()), settings.tracing, {});
   const std::size_t bins = lines.size() * std::size_t(traced.binCount);
-  TracedLines::visitBins(traced, [&](std::vector<float>& array, const char*) { array.assign(bins, 0.01f); });
+  traced.intensity.assign(bins, 0.01f);
   traced.depthOffsetMm.assign(bins, 0.0f);
-  traced.boundaryEcho.assign(lines.size() * std::size_t(traced.echoCount), {});
-  traced = costs.of("harmonic", [&] {
-    return secondHarmonic(traced, traced, harmonicSources(*body.scene, lines, settings.tracing),
-                          sentGains(settings.tracing));
+  costs.of("harmonic_tables", [&] {
+    const HarmonicJob job{ harmonicSources(*body.scene, lines, settings.tracing), sentGains(settings.tracing) };
+    return job.gains.size();
   });
   costs.of("echo_tables", [&] {
-    const EchoSources sources{ body.scene.get(), &traced, nullptr, settings.tracing.model, nullptr };
+    const EchoSources sources{ body.scene.get(), nullptr, nullptr, settings.tracing.model, nullptr };
     const EchoSetup setup(sources, lines, settings.echo);
     return makeEchoJob(setup, int(lines.size())).lineCount;
   });
