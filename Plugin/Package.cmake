@@ -40,7 +40,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries to simulate ultrasound from C++")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "sonovdb (= ${PROJECT_VERSION}), \
 libopenvdb-dev, libboost-iostreams-dev, libembree-dev, libtbb-dev, libglm-dev, libnifti-dev, libteem-dev, \
-libpugixml-dev, zlib1g-dev, libisal-dev, libdcmtk-dev, libhdf5-dev")
+libpugixml-dev, zlib1g-dev, libisal-dev, libdeflate-dev, libdcmtk-dev, libhdf5-dev")
 if(SONOVDB_IGTLINK AND IGTLINK_LIBRARY)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenigtlink-dev")
 endif()

@@ -94,25 +94,25 @@ std::shared_ptr<const DeviceTraced> traceOnDevice(const Scene& scene, const std:
                                                   const std::vector<std::uint64_t>& seeds, const Progress& progress)
 {
   const std::size_t images = lines.size() / std::size_t(linesPerImage);
-  const auto jobOf = [&](const TraceSettings& tone, const Progress& making) {
-    const TraceSetup setup(scene, lines, tone, targets, making);
-    if (images > 1)
-    {
-      requireEachMeets(setup, images);
-    }
-    TraceJob job = makeTraceJob(setup, tone, linesPerImage);
-    job.seeds = seeds.empty() ? job.seeds : seeds;
-    return std::make_shared<const TraceJob>(std::move(job));
-  };
+  TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
+  if (images > 1)
+  {
+    requireEachMeets(setup, images);
+  }
+  TraceJob job = makeTraceJob(setup, settings, linesPerImage);
+  job.seeds = seeds.empty() ? job.seeds : seeds;
   DeviceImager& imager = DeviceImager::instance();
-  const auto job = jobOf(settings, partOf(progress, 0.0, 0.3));
   const Progress tracing = partOf(progress, 0.3, 1.0);
   if (settings.imagingMode == ImagingMode::Fundamental)
   {
-    return imager.trace(job, { 0, int(lines.size()) }, tracing);
+    return imager.trace(std::make_shared<const TraceJob>(std::move(job)), { 0, int(lines.size()) }, tracing);
   }
+  const auto sent = std::make_shared<const TraceJob>(job);
+  const TraceSettings twice = doubledTone(settings);
+  setup.tune(scene, twice, targets);
+  tuneTraceJob(setup, twice, job);
   const HarmonicJob harmonic{ harmonicSources(scene, lines, settings), sentGains(settings) };
-  return imager.traceHarmonic(job, jobOf(doubledTone(settings), {}), harmonic, tracing);
+  return imager.traceHarmonic(sent, std::make_shared<const TraceJob>(std::move(job)), harmonic, tracing);
 }
 
 PathRounds roundsByMode(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,

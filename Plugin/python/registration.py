@@ -50,23 +50,27 @@ def register_phases(files, folder, reference=0, moving=None, say=print):
     if not changed:
         raise ValueError("no label of the phases changes: nothing moves")
     if moving is None:
-        moving = changed - _blood(images[reference])
+        moving = changed - _of_tissue(images[reference], "blood")
     absent = sorted(set(moving) - set(np.unique(labels[reference]).tolist()))
     if absent:
         raise ValueError(f"the reference phase has no label {absent[0]}: name labels that it has")
     if not moving:
         raise ValueError("only blood moves: name the labels that the speckle is to ride on")
-    followed = sorted(changed | set(moving))
+    # Leaflets swing: where they are says nothing of where the tissue around went, but for the blood that they part.
+    swinging = _of_tissue(images[reference], "valve")
+    followed = sorted((changed | set(moving)) - swinging)
+    if not followed:
+        raise ValueError("only valves move: name labels whose way their surfaces tell")
     box = _box(labels, followed, images[0].GetSpacing())
     os.makedirs(folder, exist_ok=True)
-    rest = _Edges(labels[reference][box], followed, images[0].GetSpacing())
+    rest = _Edges(labels[reference][box], followed, swinging, images[0].GetSpacing())
     paths, digits = [], max(2, len(str(len(images) - 1)))
     for phase, image in enumerate(images):
         field = np.zeros(labels[0].shape + (3,), np.float32)
         if phase != reference:
             now = labels[phase][box]
             near = _distance(~np.isin(now, list(moving)), image.GetSpacing()) <= NEAR_VOXELS * max(image.GetSpacing())
-            field[box] = _register(_Edges(now, followed, image.GetSpacing()), rest, image, box) * near[..., None]
+            field[box] = _register(_Edges(now, followed, swinging, image.GetSpacing()), rest, image, box) * near[..., None]
             say(f"Phase {phase}: " + _judge(field[box], now, labels[reference][box], moving, image))
         paths.append(os.path.join(folder, f"phase_{phase:0{digits}d}.vti"))
         _write(image, field, moving, paths[-1])
@@ -131,8 +135,8 @@ def _changed_labels(labels, reference):
     return changed - {0}
 
 
-def _blood(image):
-    """Labels that are blood, by their names."""
+def _of_tissue(image, tissue):
+    """Labels of a tissue, by their names."""
     scene = vtkSonoSceneBuilder()
     scene.SetBuildSurfaces(False)
     scene.SetInputData(image)
@@ -144,7 +148,7 @@ def _blood(image):
         raise ValueError(errors[0])
     rows = table.GetOutput()
     return {int(rows.GetValueByName(row, "id").ToInt()) for row in range(rows.GetNumberOfRows())
-            if rows.GetValueByName(row, "tissue").ToString() == "blood"}
+            if rows.GetValueByName(row, "tissue").ToString() == tissue}
 
 
 def _box(labels, followed, spacing):
@@ -176,12 +180,17 @@ def _distance(inside, spacing):
 
 
 class _Edges:
-    """Of each label that is there: reach * tanh(signed distance / reach), every so many voxels."""
+    """Of each label that is there: reach * tanh(signed distance / reach), every so many voxels; and where nothing swings."""
 
-    def __init__(self, labels, followed, spacing):
+    def __init__(self, labels, followed, swinging, spacing):
         self.spacing = spacing
         self.steps = tuple(max(1, round(WORKING_MM / mm)) for mm in spacing)
         self.label = {label: self._edge(labels == label) for label in followed if (labels == label).any()}
+        leaflets = np.isin(labels, list(swinging))
+        self.is_calm = self._thinned(_distance(~leaflets, spacing) > BAND_MM if leaflets.any() else ~leaflets)
+
+    def _thinned(self, values):
+        return values[::self.steps[2], ::self.steps[1], ::self.steps[0]]
 
     def _edge(self, inside):
         margin = [int(np.ceil(3 * REACH_MM / mm)) for mm in self.spacing[::-1]]
@@ -194,21 +203,23 @@ class _Edges:
         signed = np.where(part, half - _distance(part, self.spacing), _distance(~part, self.spacing) - half)
         edge = np.full(inside.shape, REACH_MM, np.float32)
         edge[tuple(around)] = REACH_MM * np.tanh(signed / REACH_MM)
-        return edge[::self.steps[2], ::self.steps[1], ::self.steps[0]]
+        return self._thinned(edge)
 
 
 def _register(now, rest, image, box):
     """u in mm at the voxels of the box."""
     both = [label for label in now.label if label in rest.label]
     edge = REACH_MM * np.tanh(BAND_MM / REACH_MM)
-    bands = {label: (np.abs(now.label[label]) < edge).astype(np.uint8) for label in both}
-    whole = sum(int(band.sum()) for band in bands.values())
+    near = {label: np.abs(now.label[label]) < edge for label in both}
+    bands = {label: (near[label] & now.is_calm).astype(np.uint8) for label in both}
+    smooth = np.logical_or.reduce(list(near.values())).astype(np.uint8)
+    both = [label for label in both if bands[label].any()]
+    whole = sum(int(bands[label].sum()) for label in both)
     pairs = [(now.label[label], rest.label[label], bands[label], int(bands[label].sum()) / whole) for label in both]
     spacing = np.array(image.GetSpacing())
     direction = _direction(image)
     origin = np.array(image.GetOrigin()) + direction @ (spacing * [part.start for part in box[::-1]])
-    way = elastix.displacement(pairs, np.maximum.reduce(list(bands.values())), (origin, spacing * now.steps, direction),
-                               GRID_MM, SMOOTHED_MM, BENDING, SAMPLES)
+    way = elastix.displacement(pairs, smooth, (origin, spacing * now.steps, direction), GRID_MM, SMOOTHED_MM, BENDING, SAMPLES)
     for axis, step in zip(range(3), now.steps[::-1]):
         way = _refined(way, axis, step, box[axis].stop - box[axis].start)
     return -way

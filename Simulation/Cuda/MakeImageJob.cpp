@@ -295,9 +295,7 @@ PointJob makePoints(const EchoSetup& setup)
 TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, int linesPerImage)
 {
   TraceJob job;
-  job.view = setup.view;
-  job.media = setup.media;
-  job.view.media = nullptr;
+  tuneTraceJob(setup, settings, job);
   job.lines = setup.lines;
   job.linesPerImage = linesPerImage;
   job.seeds.assign(setup.lines.size() / std::size_t(linesPerImage), setup.seed);
@@ -307,12 +305,19 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.paths = setup.paths;
   job.binCount = settings.binCount();
   job.binMm = float(settings.radialBinMm);
-  job.frequencyMHz = setup.frequencyMHz;
   job.rangeIsTime = settings.rangeIsTime();
   job.echoCount = settings.echoCount();
   job.echoSampleMm = float(settings.echoSampleMm);
-  job.radPerMm = float(4.0 * 3.14159265358979323846 * settings.frequencyMHz / assumedSoundSpeedMmPerUs);
   return job;
+}
+
+void tuneTraceJob(const TraceSetup& setup, const TraceSettings& settings, TraceJob& job)
+{
+  job.view = setup.view;
+  job.media = setup.media;
+  job.view.media = nullptr;
+  job.frequencyMHz = setup.frequencyMHz;
+  job.radPerMm = float(4.0 * 3.14159265358979323846 * settings.frequencyMHz / assumedSoundSpeedMmPerUs);
 }
 
 EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage)

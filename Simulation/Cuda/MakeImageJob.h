@@ -19,6 +19,9 @@ struct EchoSetup;
 /// The setup has checked that some line meets the volume.
 TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, int linesPerImage);
 
+/// The job once the setup it was made of has been tuned to these settings.
+void tuneTraceJob(const TraceSetup& setup, const TraceSettings& settings, TraceJob& job);
+
 /// `traced` is what the setup was given, or nothing when the job traces too.
 EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage);
 

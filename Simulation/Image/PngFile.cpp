@@ -1,12 +1,10 @@
 #include "Image/PngFile.h"
 
-#include <isa-l/crc.h>
-#include <isa-l/igzip_lib.h>
+#include <libdeflate.h>
 
 #include <cmath>
-#include <cstring>
 #include <memory>
-#include <stdexcept>
+#include <new>
 #include <vector>
 
 namespace sono {
@@ -28,31 +26,42 @@ void appendChunk(const char* type, const std::string& content, std::string& byte
   const std::size_t begin = bytes.size();
   bytes += type;
   bytes += content;
-  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data() + begin);
-  appendNumber(crc32_gzip_refl(0, from, bytes.size() - begin), bytes);
+  appendNumber(libdeflate_crc32(0, bytes.data() + begin, bytes.size() - begin), bytes);
 }
 
-std::string deflated(std::vector<std::uint8_t> raw)
+/// A row by filter 1, Sub (PNG specification, section 9): the filter's number, and of each pixel how much it is more
+/// than the one before.
+void subtractNeighbours(const std::uint8_t* __restrict grey, int width, std::uint8_t* __restrict row)
 {
-  std::vector<std::uint8_t> room(ISAL_DEF_LVL1_DEFAULT);
-  std::string out(raw.size() + raw.size() / 16 + 4096, '\0');
-  const auto stream = std::make_unique<isal_zstream>();
-  isal_deflate_init(stream.get());
-  stream->level = 1;
-  stream->level_buf = room.data();
-  stream->level_buf_size = std::uint32_t(room.size());
-  stream->gzip_flag = IGZIP_ZLIB;
-  stream->end_of_stream = 1;
-  stream->flush = NO_FLUSH;
-  stream->next_in = raw.data();
-  stream->avail_in = std::uint32_t(raw.size());
-  stream->next_out = reinterpret_cast<std::uint8_t*>(out.data());
-  stream->avail_out = std::uint32_t(out.size());
-  if (isal_deflate(stream.get()) != COMP_OK || stream->internal_state.state != ZSTATE_END)
+  row[0] = 1;
+  row[1] = grey[0];
+  for (int x = 1; x < width; ++x)
   {
-    throw std::logic_error("deflate was given too little room");
+    row[x + 1] = std::uint8_t(grey[x] - grey[x - 1]);
   }
-  out.resize(stream->total_out);
+}
+
+struct FreeCompressor
+{
+  void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+};
+
+/// The thread's own, since its tables take longer to get than to use; nothing of one stream stays for the next.
+libdeflate_compressor* compressor()
+{
+  constexpr int level = 1;
+  thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> own(libdeflate_alloc_compressor(level));
+  if (!own)
+  {
+    throw std::bad_alloc();
+  }
+  return own.get();
+}
+
+std::string deflated(const std::vector<std::uint8_t>& raw)
+{
+  std::string out(libdeflate_zlib_compress_bound(compressor(), raw.size()), '\0');
+  out.resize(libdeflate_zlib_compress(compressor(), raw.data(), raw.size(), out.data(), out.size()));
   return out;
 }
 
@@ -71,16 +80,15 @@ std::string pngBytes(const std::uint8_t* grey, int width, int height, double pix
   size += '\x01'; // metres
 
   const auto rowBytes = std::size_t(width) + 1;
-  std::vector<std::uint8_t> rows(rowBytes * std::size_t(height)); // each begins with its filter, 0: none
+  std::vector<std::uint8_t> rows(rowBytes * std::size_t(height));
   for (int y = 0; y < height; ++y)
   {
-    std::memcpy(rows.data() + std::size_t(y) * rowBytes + 1, grey + std::size_t(y) * std::size_t(width),
-                std::size_t(width));
+    subtractNeighbours(grey + std::size_t(y) * std::size_t(width), width, rows.data() + std::size_t(y) * rowBytes);
   }
   std::string bytes("\x89PNG\r\n\x1a\n", 8);
   appendChunk("IHDR", header, bytes);
   appendChunk("pHYs", size, bytes);
-  appendChunk("IDAT", deflated(std::move(rows)), bytes);
+  appendChunk("IDAT", deflated(rows), bytes);
   appendChunk("IEND", {}, bytes);
   return bytes;
 }

@@ -2,6 +2,7 @@
 
 #include "Core/Error.h"
 #include "Core/ParallelFor.h"
+#include "Probe/BestApart.h"
 #include "Probe/PlaneFit.h"
 #include "Probe/ProbeOnSkin.h"
 #include "Probe/ViewStructures.h"
@@ -98,9 +99,7 @@ public:
   {
     Vec3d normal;
     Vec3d straight; ///< to the structures' middle
-    double planeOffDeg;
-    double markOffMm;
-    double lookOffDeg;
+    double planeOffDeg, markOffMm, lookOffDeg;
   };
 
   Approach approachFrom(const Vec3d& localMm) const
@@ -116,29 +115,43 @@ public:
              offDeg(straight, look_) };
   }
 
+  /// What a view can come to there.
+  double mostScoreOf(const Approach& approach, double rockDeg) const
+  {
+    const double off = std::pow(approach.planeOffDeg / offDeg, 2.0) + std::pow(approach.markOffMm / offMm, 2.0);
+    const double look = std::pow(2.0 * approach.lookOffDeg / plan_.lookDeg, 2.0) + std::pow(rockDeg / rockedDeg, 2.0);
+    return std::exp(-0.5 * off) * std::exp(-0.5 * look);
+  }
+
+  /// However a probe is rocked there: how far it comes at most, if not to Shown, then in the end.
+  Outcome atMost(const Approach& approach) const
+  {
+    Outcome outcome;
+    outcome.view.planeOffDeg = approach.planeOffDeg;
+    outcome.view.markOffMm = approach.markOffMm;
+    if (approach.planeOffDeg <= atFirst * plan_.mostOffDeg && approach.markOffMm <= atFirst * plan_.mostOffMm)
+    {
+      outcome.stage = approach.lookOffDeg > plan_.lookDeg ? Outcome::OffLook : Outcome::Shown;
+    }
+    return outcome;
+  }
+
   /// What becomes of a trial; of one that cannot be better than `best`, only that it is not.
   Outcome tryAt(const Trial& trial, const Approach& approach, const Outcome& best) const
   {
-    Outcome outcome;
+    Outcome outcome = atMost(approach);
     StandardView& view = outcome.view;
-    view.planeOffDeg = approach.planeOffDeg;
-    view.markOffMm = approach.markOffMm;
-    if (view.planeOffDeg > atFirst * plan_.mostOffDeg || view.markOffMm > atFirst * plan_.mostOffMm)
-    {
-      return outcome;
-    }
-    outcome.stage = Outcome::OffLook;
     const Vec3d aside = glm::cross(approach.normal, approach.straight);
     const double rock = trial.rockDeg * degree;
     const Vec3d axis = std::cos(rock) * approach.straight + std::sin(rock) * aside;
-    if (approach.lookOffDeg > plan_.lookDeg || -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree))
+    const bool isSteep = -glm::dot(axis, trial.place.outward) < std::cos(steepestDeg * degree);
+    if (outcome.stage != Outcome::Shown || isSteep)
     {
+      outcome.stage = std::min(outcome.stage, Outcome::OffLook);
       return outcome;
     }
     outcome.stage = Outcome::OffSkin;
-    const double mostScore =
-      nearness(view) * std::exp(-0.5 * (std::pow(2.0 * approach.lookOffDeg / plan_.lookDeg, 2.0) +
-                                        std::pow(trial.rockDeg / rockedDeg, 2.0)));
+    const double mostScore = mostScoreOf(approach, trial.rockDeg);
     if (best.stage == Outcome::Shown && mostScore <= best.view.score)
     {
       return outcome;
@@ -157,6 +170,24 @@ public:
     view.score = mostScore;
     show(outcome.local, view);
     return outcome;
+  }
+
+  /// The best of a place, however the probe is rocked; `trial` becomes that.
+  Outcome tryRocked(Trial& trial) const
+  {
+    const Approach approach = approachFrom(trial.place.localMm);
+    Outcome best;
+    for (int rock = 0; rock <= 2 * mostRocks; ++rock)
+    {
+      const Trial rocked{ trial.place, (rock % 2 == 0 ? -1.0 : 1.0) * double((rock + 1) / 2) * rockStepDeg };
+      const Outcome outcome = tryAt(rocked, approach, best);
+      if (rock == 0 || isFurther(outcome, best))
+      {
+        trial = rocked;
+        best = outcome;
+      }
+    }
+    return best;
   }
 
   /// The best trial, by how far it came and then by its score, moved as long as that helps.
@@ -306,20 +337,13 @@ private:
     view.score *= sum * worst;
   }
 
-  static double nearness(const StandardView& view)
-  {
-    return std::exp(-0.5 * (std::pow(view.planeOffDeg / offDeg, 2.0) + std::pow(view.markOffMm / offMm, 2.0)));
-  }
-
   const ProbeOnSkin& probe_;
   const ViewPlan& plan_;
   const WindowGrid& grid_;
   ViewStructures structures_;
   IdealSection ideal_;
   Mat3d toLocal_;
-  Vec3d normal_;
-  Vec3d look_;
-  Vec3d mark_;
+  Vec3d normal_, look_, mark_;
   std::vector<Vec3d> points_;
   std::vector<double> weights_;
 };
@@ -372,32 +396,6 @@ std::string refusalOf(const Outcome& best, const ViewPlan& plan)
   return {};
 }
 
-/// The places that came furthest, no two of them neighbours.
-std::vector<std::size_t> bestApart(const std::vector<WindowGrid::SkinPlace>& places,
-                                   const std::vector<Outcome>& outcomes)
-{
-  std::vector<std::size_t> order(places.size());
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return ViewSearch::isFurther(outcomes[a], outcomes[b]); });
-  std::vector<std::size_t> best;
-  for (const std::size_t at : order)
-  {
-    const bool isNeighbour = std::any_of(best.begin(), best.end(), [&](std::size_t other) {
-      return glm::distance(places[at].localMm, places[other].localMm) < refinedApartMm;
-    });
-    if (!isNeighbour)
-    {
-      best.push_back(at);
-    }
-    if (best.size() == mostRefined)
-    {
-      break;
-    }
-  }
-  return best;
-}
-
 StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std::vector<WindowGrid::SkinPlace>& places)
 {
   const ViewSearch search(probe, plan);
@@ -408,28 +406,30 @@ StandardView findView(const ProbeOnSkin& probe, const ViewPlan& plan, const std:
     view.refusal = "Its plane does not meet the " + notMet + ".";
     return view;
   }
-  constexpr int rocks = 2 * mostRocks + 1;
+  // To look along all lines of a view takes long: only where a place may become one of the best.
   std::vector<Trial> trials(places.size());
   std::vector<Outcome> outcomes(places.size());
+  std::vector<char> isKnown(places.size());
   parallelFor(int(places.size()), {}, [&](int i) {
     const std::size_t at = std::size_t(i);
     const ViewSearch::Approach approach = search.approachFrom(places[at].localMm);
-    for (int rock = 0; rock < rocks; ++rock)
-    {
-      const Trial trial{ places[at], (rock % 2 == 0 ? -1.0 : 1.0) * double((rock + 1) / 2) * rockStepDeg };
-      const Outcome outcome = search.tryAt(trial, approach, outcomes[at]);
-      if (rock == 0 || ViewSearch::isFurther(outcome, outcomes[at]))
-      {
-        trials[at] = trial;
-        outcomes[at] = outcome;
-      }
-      if (outcome.stage == Outcome::OffPlane)
-      {
-        break; // however it is rocked
-      }
-    }
+    trials[at].place = places[at];
+    outcomes[at] = search.atMost(approach);
+    isKnown[at] = outcomes[at].stage == Outcome::Shown ? 0 : 1;
+    outcomes[at].view.score = isKnown[at] ? 0.0 : search.mostScoreOf(approach, 0.0);
   });
-  const std::vector<std::size_t> starts = bestApart(places, outcomes);
+  const auto learn = [&](const std::vector<std::size_t>& some) {
+    parallelFor(int(some.size()), {}, [&](int i) {
+      const std::size_t at = some[std::size_t(i)];
+      outcomes[at] = search.tryRocked(trials[at]);
+      isKnown[at] = 1;
+    });
+  };
+  const std::vector<std::size_t> starts = bestApart(
+    places.size(), mostRefined,
+    [&](std::size_t a, std::size_t b) { return ViewSearch::isFurther(outcomes[a], outcomes[b]); },
+    [&](std::size_t a, std::size_t b) { return glm::distance(places[a].localMm, places[b].localMm) < refinedApartMm; },
+    [&](std::size_t at) { return isKnown[at] != 0; }, learn);
   std::vector<Outcome> refined(starts.size());
   parallelFor(int(starts.size()), {}, [&](int i) {
     const std::size_t at = starts[std::size_t(i)];
@@ -471,8 +471,7 @@ std::vector<StandardView> findStandardViews(const Scene& scene, const ProbeByPre
     report(progress, double(i) / double(plans.size()));
     const ViewPlan& plan = plans[i];
     StandardView view;
-    const bool isWanted = names.empty() || names.count(plan.name) == 1;
-    view.refusal = isWanted ? plan.refusal : "It was not looked for.";
+    view.refusal = names.empty() || names.count(plan.name) == 1 ? plan.refusal : "It was not looked for.";
     if (view.refusal.empty())
     {
       view = findView(ProbeOnSkin(grid, probeOf(plan.preset)), plan, places);

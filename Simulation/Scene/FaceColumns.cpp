@@ -10,9 +10,11 @@ namespace sono {
 
 namespace {
 
-using Bytes = std::int8_t __attribute__((vector_size(16)));
-using Masks = std::int32_t __attribute__((vector_size(64)));
-using Sums = float __attribute__((vector_size(64)));
+// Not wider than AVX2's: the compiler keeps what is wider on the stack there, which takes several times as long.
+constexpr int lanes = 8;
+using Bytes = std::int8_t __attribute__((vector_size(lanes)));
+using Masks = std::int32_t __attribute__((vector_size(4 * lanes)));
+using Sums = float __attribute__((vector_size(4 * lanes)));
 
 inline void load(const std::uint8_t* from, Bytes& to)
 {
@@ -21,9 +23,9 @@ inline void load(const std::uint8_t* from, Bytes& to)
 
 inline bool isAny(const Bytes& mask)
 {
-  std::uint64_t halves[2];
-  std::memcpy(halves, &mask, sizeof mask);
-  return (halves[0] | halves[1]) != 0;
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &mask, sizeof mask);
+  return bits != 0;
 }
 
 /// The weight where the mask's byte is set.
@@ -32,9 +34,10 @@ inline void addWhere(const Bytes& mask, const Masks& weight, Sums& sum)
   sum += (Sums)(__builtin_convertvector(mask, Masks) & weight);
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* corner, const std::ptrdiff_t* pitch,
-                                                            std::uint8_t tissue, const Vec3i& count,
-                                                            const float* weightY, const float* weightZ, FaceColumns& to)
+/// Of the columns from `column` on, as many as there are lanes.
+SONO_SIMD_CLONES __attribute__((flatten)) void addColumns(const std::uint8_t* corner, const std::ptrdiff_t* pitch,
+                                                          std::uint8_t tissue, const Vec3i& count, const float* weightY,
+                                                          const float* weightZ, int column, FaceColumns& to)
 {
   const Bytes wanted = Bytes{} + std::int8_t(tissue);
   Sums toward[3]{};
@@ -43,7 +46,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* 
   {
     for (int j = 0; j < count.y; ++j)
     {
-      const std::uint8_t* row = corner + pitch[1] * j + pitch[2] * k;
+      const std::uint8_t* row = corner + column + pitch[1] * j + pitch[2] * k;
       Bytes own;
       load(row, own);
       const Bytes isOwn = own == wanted;
@@ -66,8 +69,8 @@ SONO_SIMD_CLONES __attribute__((flatten)) void addWholeRows(const std::uint8_t* 
   }
   for (int a = 0; a < 3; ++a)
   {
-    std::memcpy(to.toward[a], &toward[a], sizeof toward[a]);
-    std::memcpy(to.away[a], &away[a], sizeof away[a]);
+    std::memcpy(to.toward[a] + column, &toward[a], sizeof toward[a]);
+    std::memcpy(to.away[a] + column, &away[a], sizeof away[a]);
   }
 }
 
@@ -101,7 +104,10 @@ void sumFaces(const std::uint8_t* corner, const Vec3i& size, std::uint8_t tissue
   // The box's last row is not the volume's: a whole vector of it ends in the volume, unless that is narrower.
   if (size.x > FaceColumns::most)
   {
-    addWholeRows(corner, pitch, tissue, count, weightY, weightZ, to);
+    for (int column = 0; column < count.x; column += lanes)
+    {
+      addColumns(corner, pitch, tissue, count, weightY, weightZ, column, to);
+    }
   }
   else
   {

@@ -11,11 +11,12 @@ namespace sono {
 
 namespace {
 
-using Floats = float __attribute__((vector_size(4 * vectorWidth)));
-using Masks = std::int32_t __attribute__((vector_size(4 * vectorWidth)));
-
-using Bytes = std::uint8_t __attribute__((vector_size(vectorWidth)));
-using Words = std::uint16_t __attribute__((vector_size(2 * vectorWidth)));
+// Not wider than AVX2's: the compiler keeps what is wider on the stack there, which takes several times as long.
+constexpr int lanes = 8;
+using Floats = float __attribute__((vector_size(4 * lanes)));
+using Masks = std::int32_t __attribute__((vector_size(4 * lanes)));
+using Bytes = std::uint8_t __attribute__((vector_size(lanes)));
+using Words = std::uint16_t __attribute__((vector_size(2 * lanes)));
 
 /// Sums of so many vectors of numbers, in registers.
 template<int vectors>
@@ -27,7 +28,7 @@ inline void sumVectors(const float* in, std::ptrdiff_t stride, const float* weig
     for (int v = 0; v < vectors; ++v)
     {
       Floats row;
-      std::memcpy(&row, in + v * vectorWidth, sizeof row);
+      std::memcpy(&row, in + v * lanes, sizeof row);
       sum[v] += weight[k] * row;
     }
   }
@@ -39,17 +40,17 @@ SONO_SIMD_CLONES __attribute__((flatten)) void weightedSum(const float* in, std:
                                                            int taps, int length, float* out)
 {
   int i = 0;
-  for (; i + 4 * vectorWidth <= length; i += 4 * vectorWidth)
+  for (; i + 8 * lanes <= length; i += 8 * lanes)
   {
-    sumVectors<4>(in + i, stride, weight, taps, out + i);
+    sumVectors<8>(in + i, stride, weight, taps, out + i);
   }
-  for (; i + vectorWidth <= length; i += vectorWidth)
+  for (; i + lanes <= length; i += lanes)
   {
     sumVectors<1>(in + i, stride, weight, taps, out + i);
   }
-  if (i < length && length >= vectorWidth) // the rest with some of those before, once more
+  if (i < length && length >= lanes) // the rest with some of those before, once more
   {
-    sumVectors<1>(in + length - vectorWidth, stride, weight, taps, out + length - vectorWidth);
+    sumVectors<1>(in + length - lanes, stride, weight, taps, out + length - lanes);
     return;
   }
   for (; i < length; ++i)
@@ -77,13 +78,13 @@ inline void markRow(const Voxel* row, Voxel value, int count, float* out)
     std::memcpy(out + i, &isIt, sizeof isIt);
   };
   int i = 0;
-  for (; i + vectorWidth <= count; i += vectorWidth)
+  for (; i + lanes <= count; i += lanes)
   {
     markVector(i);
   }
-  if (i < count && count >= vectorWidth)
+  if (i < count && count >= lanes)
   {
-    markVector(count - vectorWidth);
+    markVector(count - lanes);
     return;
   }
   for (; i < count; ++i)

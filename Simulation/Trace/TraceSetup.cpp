@@ -212,22 +212,12 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   const Mat3d toLocal = scene.rotationToLocal();
   toWorld = scene.placement().direction;
   targets = std::make_unique<TargetScene>(localTriangles(targetSurfaces, toLocal, cornerWorldMm));
-  for (const Tissue& tissue : scene.tissues())
-  {
-    media.push_back(makeMedium(tissue, settings));
-  }
-  for (const TargetSurface& target : targetSurfaces)
-  {
-    TissueTable().add(target.tissue); // checks the ranges
-    media.push_back(makeMedium(target.tissue, settings));
-  }
   if (settings.march == March::NanoVDB)
   {
     labels = &scene.labelGrid(progress);
     tissueOfLabel = scene.tissueOfLabel().data();
   }
-  view = makeView(settings, scene);
-  view.media = media.data();
+  tune(scene, settings, targetSurfaces);
   lines.resize(worldLines.size());
   const StartSpread spread = startSpread(settings);
   forBlocks(worldLines, [&](int, std::size_t l) {
@@ -247,6 +237,23 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   }
   paths = settings.pathsAtMost();
   seed = settings.seed;
+}
+
+void TraceSetup::tune(const Scene& scene, const TraceSettings& settings,
+                      const std::vector<TargetSurface>& targetSurfaces)
+{
+  media.clear();
+  for (const Tissue& tissue : scene.tissues())
+  {
+    media.push_back(makeMedium(tissue, settings));
+  }
+  for (const TargetSurface& target : targetSurfaces)
+  {
+    TissueTable().add(target.tissue); // checks the ranges
+    media.push_back(makeMedium(target.tissue, settings));
+  }
+  view = makeView(settings, scene);
+  view.media = media.data();
   frequencyMHz = settings.frequencyMHz;
 }
 

@@ -12,7 +12,7 @@ import numpy as np
 import sonovdb
 from chain import listen
 from sonovdb.vtkSonoFilters import vtkSonoDataSet
-from TestPicture import read_png, read_tif
+from TestPicture import converted, read_png, read_tif
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 BUNDLED = pathlib.Path(__file__).resolve().parents[2] / "Data" / "datasets" / "apical.json"
@@ -121,6 +121,9 @@ class TestDataSet(unittest.TestCase):
         pixels = {name: read_channel(exr, name) for name in ("grey", "mask", "label", "tissue", "error")}
         image = read_png(target / "images" / "apical_0000002.png").astype(int)
         mask = read_png(target / "labels" / "apical_0000002.png")
+        for folder, values in (("images", image), ("labels", mask)):
+            as_tif = converted(target / folder / "apical_0000002.png", "uint8", "tif")
+            np.testing.assert_array_equal(read_tif(as_tif), values)
         inside = image > 0
         np.testing.assert_array_equal(np.maximum(1, np.floor(255 * pixels["grey"][inside] + 0.5)), image[inside])
         np.testing.assert_array_equal(pixels["mask"], mask)

@@ -3,10 +3,8 @@
 #include "TemporaryFolder.h"
 
 #include "DataSets/DataSetPlan.h"
-#include "Image/PngFile.h"
 
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 
 #include <gtest/gtest.h>
 
@@ -451,50 +449,4 @@ TEST_F(DataSetFile, AMillionImagesArePlannedQuickly)
   EXPECT_EQ(letters, 14000000u);
   EXPECT_NE(sum, 0.0);
   EXPECT_LT(seconds, 20.0); // a second on a quiet machine; this ends what is slower by orders
-}
-
-/// zlib, which is not what wrote it, reads the same pixels; the checksums are those of zlib.
-TEST(PngFile, HoldsThePixels)
-{
-  const int width = 301;
-  const int height = 77;
-  std::vector<std::uint8_t> grey(std::size_t(width) * height);
-  for (std::size_t i = 0; i < grey.size(); ++i)
-  {
-    grey[i] = std::uint8_t(i * i * 2654435761u >> 13);
-  }
-  const std::string bytes = pngBytes(grey.data(), width, height, 0.4);
-  ASSERT_EQ(bytes.substr(0, 8), std::string("\x89PNG\r\n\x1a\n", 8));
-  const auto number = [&](std::size_t at) {
-    const auto byte = [&](std::size_t n) { return std::uint32_t(std::uint8_t(bytes[at + n])); };
-    return byte(0) << 24 | byte(1) << 16 | byte(2) << 8 | byte(3);
-  };
-  std::string names;
-  std::vector<std::uint8_t> rows(std::size_t(width + 1) * height);
-  for (std::size_t at = 8; at < bytes.size();)
-  {
-    const std::uint32_t length = number(at);
-    const auto* content = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
-    EXPECT_EQ(number(at + 8 + length), crc32(0, content, length + 4));
-    names += bytes.substr(at + 4, 4) + " ";
-    if (bytes.compare(at + 4, 4, "IHDR") == 0)
-    {
-      EXPECT_EQ(number(at + 8), std::uint32_t(width));
-      EXPECT_EQ(number(at + 12), std::uint32_t(height));
-    }
-    if (bytes.compare(at + 4, 4, "IDAT") == 0)
-    {
-      uLongf size = rows.size();
-      ASSERT_EQ(uncompress(rows.data(), &size, content + 4, length), Z_OK);
-      ASSERT_EQ(size, rows.size());
-    }
-    at += 12 + length;
-  }
-  EXPECT_EQ(names, "IHDR pHYs IDAT IEND ");
-  for (int y = 0; y < height; ++y)
-  {
-    EXPECT_EQ(rows[std::size_t(y) * (width + 1)], 0);
-    EXPECT_TRUE(
-      std::equal(grey.begin() + y * width, grey.begin() + (y + 1) * width, rows.begin() + y * (width + 1) + 1));
-  }
 }

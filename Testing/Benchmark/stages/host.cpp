@@ -151,7 +151,8 @@ void finishImage(const DataSetPlan& plan, const PlannedImage& planned, const Ima
   for (std::size_t i = 0; i < grey.size(); ++i)
   {
     mask[i] = body.groups[labels[i]];
-    grey[i] = std::uint8_t(drawSeed(1, DrawScope::Image, std::int64_t(i), 0) % 97);
+    // Packed, half as large as it is: as a picture's speckle.
+    grey[i] = std::uint8_t(40u * mask[i] + drawSeed(1, DrawScope::Image, std::int64_t(i), 0) % 12);
   }
   DataSetFacts facts;
   facts.image = planned;
@@ -199,22 +200,24 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
   costs.of("look", [&] { return maskSufficiency(*body.scene, body.groups, set.masks, settings, pose); });
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, pose);
   costs.of("trace_tables", [&] {
-    const TraceSetup setup(*body.scene, lines, settings.tracing, {}, {});
-    const TraceSetup doubled(*body.scene, lines, doubledTone(settings.tracing), {}, {});
-    return makeTraceJob(setup, settings.tracing, int(lines.size())).binCount +
-           makeTraceJob(doubled, settings.tracing, int(lines.size())).binCount;
+    TraceSetup setup(*body.scene, lines, settings.tracing, {}, {});
+    TraceJob job = makeTraceJob(setup, settings.tracing, int(lines.size()));
+    const TraceJob sent = job;
+    const TraceSettings doubled = doubledTone(settings.tracing);
+    setup.tune(*body.scene, doubled, {});
+    tuneTraceJob(setup, doubled, job);
+    return job.binCount + sent.binCount;
   });
   TracedLines traced = tracedLayout(int(lines.size()), settings.tracing, {});
   const std::size_t bins = lines.size() * std::size_t(traced.binCount);
-  TracedLines::visitBins(traced, [&](std::vector<float>& array, const char*) { array.assign(bins, 0.01f); });
+  traced.intensity.assign(bins, 0.01f);
   traced.depthOffsetMm.assign(bins, 0.0f);
-  traced.boundaryEcho.assign(lines.size() * std::size_t(traced.echoCount), {});
-  traced = costs.of("harmonic", [&] {
-    return secondHarmonic(traced, traced, harmonicSources(*body.scene, lines, settings.tracing),
-                          sentGains(settings.tracing));
+  costs.of("harmonic_tables", [&] {
+    const HarmonicJob job{ harmonicSources(*body.scene, lines, settings.tracing), sentGains(settings.tracing) };
+    return job.gains.size();
   });
   costs.of("echo_tables", [&] {
-    const EchoSources sources{ body.scene.get(), &traced, nullptr, settings.tracing.model, nullptr };
+    const EchoSources sources{ body.scene.get(), nullptr, nullptr, settings.tracing.model, nullptr };
     const EchoSetup setup(sources, lines, settings.echo);
     return makeEchoJob(setup, int(lines.size())).lineCount;
   });

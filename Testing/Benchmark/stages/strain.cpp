@@ -205,21 +205,84 @@ double peak(double before, double at, double after)
   return curve < 0.0 ? std::clamp(0.5 * (before - after) / curve, -0.5, 0.5) : 0.0;
 }
 
-/// Where the speckle around a point is in the next frame, mm, with its likeness.
-std::pair<Vec2d, double> follow(const Frame& a, const Frame& b, const Vec2d& mm)
+/// Likeness of the kernel around a point to those around the places that it may have gone to, 0 where negative.
+struct LikenessMap
 {
-  const Vec2d place = a.placeOf(mm);
+  int halfDepths = 0;
+  std::vector<double> value;
+
+  /// Lines and depths that it went; 0 beyond the map.
+  double at(int lines, int depths) const
+  {
+    const bool isThere = std::abs(lines) <= halfSearchLines && std::abs(depths) <= halfDepths;
+    return isThere ? value[std::size_t((lines + halfSearchLines) * (2 * halfDepths + 1) + depths + halfDepths)] : 0.0;
+  }
+};
+
+LikenessMap likenessMap(const Frame& a, const Frame& b, const Vec2d& place)
+{
   const int line = int(std::lround(place.x));
   const int depth = int(std::lround(place.y));
-  const int half = int(halfKernelMm / a.depthMm);
-  const int search = int(halfSearchMm / a.depthMm);
-  const auto like = [&](int l, int d) { return likeness(a, line, depth, b, line + l, depth + d, half); };
-  double best = -2.0;
-  int bestLine = 0;
-  int bestDepth = 0;
+  LikenessMap map;
+  map.halfDepths = int(halfSearchMm / a.depthMm);
   for (int l = -halfSearchLines; l <= halfSearchLines; ++l)
   {
-    for (int d = -search; d <= search; ++d)
+    for (int d = -map.halfDepths; d <= map.halfDepths; ++d)
+    {
+      map.value.push_back(
+        std::max(0.0, likeness(a, line, depth, b, line + l, depth + d, int(halfKernelMm / a.depthMm))));
+    }
+  }
+  return map;
+}
+
+/// A round of the search for a wall's steps, each about what the one before has found.
+struct Round
+{
+  int neighbours; ///< to each side, whose maps are added to a point's
+  int lines;      ///< to each side
+  double mm;
+  int degree; ///< of the polynomial along the wall that the steps then are
+};
+constexpr int all = 1000;
+constexpr Round rounds[] = { { all, halfSearchLines, halfSearchMm, 0 },
+                             { 8, 3, 1.5, 2 },
+                             { 4, 2, 1.0, 2 },
+                             { 2, 2, 0.7, 2 } };
+
+struct Step
+{
+  Vec2d place; ///< lines and depths
+  double likeness = 0.0;
+};
+
+/// Where the maps of a point and its neighbours, each shifted by how much further that is to go, have their common
+/// peak.
+Step commonPeak(const std::vector<LikenessMap>& maps, const std::vector<Vec2d>& centres, int point, const Round& round,
+                double depthMm)
+{
+  const int first = std::max(0, point - round.neighbours);
+  const int last = std::min(int(maps.size()) - 1, point + round.neighbours);
+  const auto centreOf = [&](int n) {
+    const Vec2d& centre = centres[std::size_t(n)];
+    return std::pair(int(std::lround(centre.x)), int(std::lround(centre.y)));
+  };
+  const auto like = [&](int l, int d) {
+    double sum = 0.0;
+    for (int n = first; n <= last; ++n)
+    {
+      const auto [line, depth] = centreOf(n);
+      sum += maps[std::size_t(n)].at(line + l, depth + d);
+    }
+    return sum / double(last - first + 1);
+  };
+  const int halfDepths = int(round.mm / depthMm);
+  double best = -1.0;
+  int bestLine = 0;
+  int bestDepth = 0;
+  for (int l = -round.lines; l <= round.lines; ++l)
+  {
+    for (int d = -halfDepths; d <= halfDepths; ++d)
     {
       const double here = like(l, d);
       if (here > best)
@@ -230,26 +293,31 @@ std::pair<Vec2d, double> follow(const Frame& a, const Frame& b, const Vec2d& mm)
       }
     }
   }
-  const Vec2d found(bestLine + peak(like(bestLine - 1, bestDepth), best, like(bestLine + 1, bestDepth)),
-                    bestDepth + peak(like(bestLine, bestDepth - 1), best, like(bestLine, bestDepth + 1)));
-  return { a.mmOf(place + found), std::max(best, 0.0) };
+  const auto [line, depth] = centreOf(point);
+  return { { line + bestLine + peak(like(bestLine - 1, bestDepth), best, like(bestLine + 1, bestDepth)),
+             depth + bestDepth + peak(like(bestLine, bestDepth - 1), best, like(bestLine, bestDepth + 1)) },
+           best };
 }
 
-/// The points' steps as a parabola along the wall, weighted by how sure each is.
-std::vector<Vec2d> smoothed(const std::vector<Vec2d>& steps, const std::vector<double>& weights)
+/// The points' steps as a polynomial along the wall, 2nd degree at most, weighted by how sure each is.
+std::vector<Vec2d> smoothed(const std::vector<Step>& steps, int degree)
 {
   glm::dmat3 normal(0.0);
   Vec3d right[2] = { Vec3d(0.0), Vec3d(0.0) };
   const auto basis = [&](std::size_t i) {
     const double s = 2.0 * double(i) / double(steps.size() - 1) - 1.0;
-    return Vec3d(1.0, s, s * s);
+    return Vec3d(1.0, degree > 0 ? s : 0.0, degree > 1 ? s * s : 0.0);
   };
+  for (int unused = degree + 1; unused < 3; ++unused)
+  {
+    normal[unused][unused] = 1.0;
+  }
   for (std::size_t i = 0; i < steps.size(); ++i)
   {
-    const double w = std::pow(weights[i], 4) + 1e-6;
+    const double w = std::pow(steps[i].likeness, 4) + 1e-6;
     normal += w * glm::outerProduct(basis(i), basis(i));
-    right[0] += w * steps[i].x * basis(i);
-    right[1] += w * steps[i].y * basis(i);
+    right[0] += w * steps[i].place.x * basis(i);
+    right[1] += w * steps[i].place.y * basis(i);
   }
   const glm::dmat3 solve = glm::inverse(normal);
   std::vector<Vec2d> out;
@@ -258,6 +326,34 @@ std::vector<Vec2d> smoothed(const std::vector<Vec2d>& steps, const std::vector<d
     out.push_back({ glm::dot(basis(i), solve * right[0]), glm::dot(basis(i), solve * right[1]) });
   }
   return out;
+}
+
+/// Moves points, mm, to where their speckle is in the next frame; gives their mean likeness.
+double follow(const Frame& a, const Frame& b, std::vector<Vec2d>& points)
+{
+  std::vector<LikenessMap> maps;
+  for (const Vec2d& point : points)
+  {
+    maps.push_back(likenessMap(a, b, a.placeOf(point)));
+  }
+  std::vector<Vec2d> moved(points.size(), Vec2d(0.0));
+  double sum = 0.0;
+  for (const Round& round : rounds)
+  {
+    std::vector<Step> steps;
+    sum = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      steps.push_back(commonPeak(maps, moved, int(i), round, a.depthMm));
+      sum += steps.back().likeness;
+    }
+    moved = smoothed(steps, round.degree);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    points[i] = a.mmOf(a.placeOf(points[i]) + moved[i]);
+  }
+  return sum / double(points.size());
 }
 
 struct Tracked
@@ -271,8 +367,6 @@ struct Tracked
 Tracked track(const std::vector<Frame>& cine)
 {
   Tracked result;
-  double likenessSum = 0.0;
-  int likenessCount = 0;
   for (const double side : { -1.0, 1.0 })
   {
     const Wall wall = wallAt(side);
@@ -284,23 +378,12 @@ Tracked track(const std::vector<Frame>& cine)
     const double lengthBefore = lengthMm(points);
     for (int f = 1; f < frames; ++f)
     {
-      std::vector<Vec2d> steps;
-      std::vector<double> weights;
-      for (const Vec2d& p : points)
-      {
-        const auto [to, sure] = follow(cine[std::size_t(f - 1)], cine[std::size_t(f)], p);
-        steps.push_back(to - p);
-        weights.push_back(sure);
-        likenessSum += sure;
-        ++likenessCount;
-      }
-      const std::vector<Vec2d> along = smoothed(steps, weights);
+      result.likeness += follow(cine[std::size_t(f - 1)], cine[std::size_t(f)], points) / double(2 * (frames - 1));
       const ThoraxBody body(bodyAt(f));
       std::vector<Vec2d> truly;
-      for (std::size_t i = 0; i < points.size(); ++i)
+      for (const Vec3d& p : wall)
       {
-        points[i] += along[i];
-        truly.push_back(inPlane(body.placeMm(wall[i])));
+        truly.push_back(inPlane(body.placeMm(p)));
       }
       const double measured = 100.0 * (lengthMm(points) / lengthBefore - 1.0);
       const double truth = 100.0 * (lengthMm(truly) / lengthBefore - 1.0);
@@ -314,7 +397,6 @@ Tracked track(const std::vector<Frame>& cine)
       }
     }
   }
-  result.likeness = likenessSum / likenessCount;
   return result;
 }
 
