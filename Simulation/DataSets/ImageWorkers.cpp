@@ -59,16 +59,18 @@ std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange&
     }
     ofBodies.back().end = image + perExam;
   }
-  const auto parts = std::max<std::int64_t>(1, workers / std::max<std::int64_t>(1, std::int64_t(ofBodies.size())));
+  // Whole bodies as long as each worker gets as many of them.
+  const std::size_t whole = ofBodies.size() - ofBodies.size() % std::size_t(workers);
   std::vector<PlannedRange> units;
-  for (const PlannedRange& body : ofBodies)
+  for (std::size_t body = 0; body < ofBodies.size(); ++body)
   {
-    const std::int64_t exams = (body.end - body.first) / perExam;
+    const PlannedRange& all = ofBodies[body];
+    const std::int64_t exams = (all.end - all.first) / perExam;
+    const std::int64_t parts = body < whole ? 1 : workers / std::int64_t(ofBodies.size() - whole);
     const std::int64_t count = std::min(parts, exams);
     for (std::int64_t part = 0; part < count; ++part)
     {
-      units.push_back(
-        { body.first + exams * part / count * perExam, body.first + exams * (part + 1) / count * perExam });
+      units.push_back({ all.first + exams * part / count * perExam, all.first + exams * (part + 1) / count * perExam });
     }
   }
   return units;

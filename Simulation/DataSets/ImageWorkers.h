@@ -13,7 +13,7 @@ namespace sono {
 int imageWorkers(const DataSetImager& imager);
 
 /// Images that are made one after the other by one worker: those of a body, whose preparation takes as long as hundreds
-/// of its images, or of fewer bodies than workers equal parts. Of `images`, whole exams.
+/// of its images, and of the last bodies, fewer than there are workers, equal parts. Of `images`, whole exams.
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers);
 
 /// What is to be done for the images of an exam: calls `done` for each of them.

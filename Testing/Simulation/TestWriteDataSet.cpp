@@ -229,7 +229,7 @@ TEST_F(DataSetFolder, GoesOnWhereItWasCutOff)
   EXPECT_EQ(write("cut").made, 0);
 }
 
-/// A body is prepared by one worker, as long as there are bodies for all; of fewer each is shared alike.
+/// A body is prepared by one worker, as long as there are bodies for all; each of the last ones is shared alike.
 TEST_F(DataSetFolder, WorkersShareBodies)
 {
   const auto unitsOf = [&](const PlannedRange& images, int workers) {
@@ -245,6 +245,10 @@ TEST_F(DataSetFolder, WorkersShareBodies)
   EXPECT_EQ(unitsOf({ 0, 12 }, 3), (Units{ { 0, 6 }, { 6, 12 } }));
   EXPECT_EQ(unitsOf({ 0, 12 }, 4), (Units{ { 0, 2 }, { 2, 6 }, { 6, 8 }, { 8, 12 } }));
   EXPECT_EQ(unitsOf({ 4, 12 }, 8), (Units{ { 4, 6 }, { 6, 8 }, { 8, 10 }, { 10, 12 } }));
+  json_["patients"].push_back(json_["patients"][0]);
+  json_["patients"][2]["id"] = "third";
+  json_["exams"] = 9;
+  EXPECT_EQ(unitsOf({ 0, 18 }, 2), (Units{ { 0, 6 }, { 6, 12 }, { 12, 14 }, { 14, 18 } }));
 }
 
 /// Threads share the images: the folder is the same, an error is that of its image, and a stop leaves no half image.
