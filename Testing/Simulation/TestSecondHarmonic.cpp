@@ -1,9 +1,11 @@
+#include "Cuda/MakeImageJob.h"
 #include "ErrorText.h"
 #include "ImageSettings.h"
 #include "Probe/BeamAperture.h"
 #include "Simulator.h"
 #include "TestScenes.h"
 #include "Trace/SecondHarmonic.h"
+#include "Trace/TraceSetup.h"
 
 #include <gtest/gtest.h>
 
@@ -245,6 +247,63 @@ TEST(SecondHarmonic, GrowsInTissueAndNotInCoupling)
   EXPECT_NEAR(at(20.1), 6.2 * pi * 2.0 * 400.0 / (1450.0 * 1450.0 * 1.38), 1e-8);
   EXPECT_NEAR(at(40.1), 4.4 * pi * 2.0 * 400.0 / (1550.0 * 1550.0 * std::sqrt(1.65 * 1.38)), 1e-8);
   EXPECT_EQ(at(70.1), 0.0); // beyond the map
+}
+
+/// What a GPU gets of a setup that went over to the doubled tone is what it gets of one that was made for it.
+TEST(SecondHarmonic, ATunedSetupIsThatOfTheTone)
+{
+  Tissue fat = test::makeTissue("fat", 1.38, 1450.0, 0.6);
+  Tissue liver = test::makeTissue("liver", 1.65, 1550.0, 0.5);
+  liver.scattererProbability = 1.0;
+  liver.scattererSigma = 1.0;
+  liver.backscatterExponent = 1.3;
+  liver.roughnessMm = 0.2;
+  const auto scene =
+    test::makeScene({ 40, 40, 60 }, Vec3d(1.0), { fat, liver }, [](const Vec3d& p) { return p.z < 20.0 ? 0 : 1; });
+  const std::vector<ScanLine> lines{ test::makeLine({ 20.0, 20.0, 0.0 }, { 0.0, 0.0, 1.0 }),
+                                     test::makeLine({ 21.0, 20.0, 0.0 }, glm::normalize(Vec3d(0.1, 0.0, 1.0))) };
+  TraceSettings sent;
+  sent.frequencyMHz = 1.7;
+  sent.depthMm = 50.0;
+  sent.aperture.apertureMm = 18.0;
+  sent.aperture.elevationApertureMm = 12.0;
+  sent.aperture.transmitFocusMm = 60.0;
+  const TraceSettings twice = doubledTone(sent);
+
+  TraceSetup setup(*scene, lines, sent, {}, {});
+  TraceJob tuned = makeTraceJob(setup, sent, 1);
+  setup.tune(*scene, twice, {});
+  tuneTraceJob(setup, twice, tuned);
+  const TraceSetup fresh(*scene, lines, twice, {}, {});
+  const TraceJob made = makeTraceJob(fresh, twice, 1);
+
+  EXPECT_EQ(tuned.frequencyMHz, 3.4);
+  EXPECT_EQ(tuned.frequencyMHz, made.frequencyMHz);
+  EXPECT_EQ(tuned.radPerMm, made.radPerMm);
+  EXPECT_EQ(tuned.view.waveNumberAtOne, made.view.waveNumberAtOne);
+  EXPECT_EQ(tuned.view.cellLateralPerMm, made.view.cellLateralPerMm);
+  EXPECT_EQ(tuned.view.cellElevationPerMm, made.view.cellElevationPerMm);
+  EXPECT_EQ(tuned.view.depthMm, made.view.depthMm);
+  EXPECT_EQ(tuned.seeds, made.seeds);
+  EXPECT_EQ(tuned.paths, made.paths);
+  EXPECT_EQ(tuned.binCount, made.binCount);
+  EXPECT_EQ(tuned.echoCount, made.echoCount);
+  EXPECT_EQ(tuned.region, made.region);
+  ASSERT_EQ(tuned.media.size(), made.media.size());
+  for (std::size_t m = 0; m < made.media.size(); ++m)
+  {
+    EXPECT_EQ(tuned.media[m].decayPerMm, made.media[m].decayPerMm);
+    EXPECT_EQ(tuned.media[m].scatter, made.media[m].scatter);
+    EXPECT_EQ(tuned.media[m].roughnessMm, made.media[m].roughnessMm);
+  }
+  ASSERT_EQ(tuned.lines.size(), made.lines.size());
+  for (std::size_t l = 0; l < made.lines.size(); ++l)
+  {
+    EXPECT_EQ(tuned.lines[l].origin, made.lines[l].origin);
+    EXPECT_EQ(tuned.lines[l].axis, made.lines[l].axis);
+    EXPECT_EQ(tuned.lines[l].lateral, made.lines[l].lateral);
+    EXPECT_EQ(tuned.lines[l].elevation, made.lines[l].elevation);
+  }
 }
 
 TEST(SecondHarmonic, BadInputGetsASentence)
