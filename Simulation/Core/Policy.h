@@ -14,10 +14,10 @@ inline int interactiveLinesApart(int lineCount)
   return lineCount >= 120 ? 2 : 1;
 }
 
-/// Paths of a line while the probe moves: three to a batch.
+/// Paths of a line while the probe moves: of 24 the streaks of their noise show.
 inline int interactivePaths(int pathsPerLine)
 {
-  return std::min(pathsPerLine, 24);
+  return std::min(pathsPerLine, 40);
 }
 
 /// Width of a sample of the intensity.
