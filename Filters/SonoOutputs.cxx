@@ -9,6 +9,10 @@
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationInformationVectorKey.h"
+#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -16,6 +20,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedShortArray.h"
 
+#include <algorithm>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -248,14 +253,42 @@ void placeFlat(const ImageResult& image, const ProbePose& pose, vtkImageData* wo
   placementOf(image, pose).flat(pose).place(flat);
 }
 
+namespace {
+
+/// A shared array that knows its range: whoever shows it asks for that, and VTK takes longer to look than to draw it.
+template<class Array, class T>
+vtkSmartPointer<Array> rangedArray(const char* name, const SharedSpan<T>& values)
+{
+  const auto array = sharedArray<Array>(name, values);
+  T low = values.size > 0 ? values[0] : T(0);
+  T high = low;
+  for (const T value : values)
+  {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  double range[2] = { double(low), double(high) };
+  for (vtkInformationInformationVectorKey* key :
+       { vtkAbstractArray::PER_COMPONENT(), vtkAbstractArray::PER_FINITE_COMPONENT() })
+  {
+    vtkNew<vtkInformationVector> components;
+    components->SetNumberOfInformationObjects(1);
+    components->GetInformationObject(0)->Set(vtkDataArray::COMPONENT_RANGE(), range, 2);
+    array->GetInformation()->Set(key, components);
+  }
+  return array;
+}
+
+} // namespace
+
 vtkSmartPointer<vtkPointData> pictureArrays(const ScanPicture& picture)
 {
   auto arrays = vtkSmartPointer<vtkPointData>::New();
-  arrays->SetScalars(sharedArray<vtkUnsignedCharArray>("BMode", picture.grey));
-  arrays->AddArray(sharedArray<vtkUnsignedCharArray>("Mask", picture.mask));
+  arrays->SetScalars(rangedArray<vtkUnsignedCharArray>("BMode", picture.grey));
+  arrays->AddArray(rangedArray<vtkUnsignedCharArray>("Mask", picture.mask));
   if (picture.labels.size > 0)
   {
-    arrays->AddArray(sharedArray<vtkUnsignedShortArray>("Labels", picture.labels));
+    arrays->AddArray(rangedArray<vtkUnsignedShortArray>("Labels", picture.labels));
   }
   return arrays;
 }

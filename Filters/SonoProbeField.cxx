@@ -105,6 +105,7 @@ void writeProbe(const ProbeField& probe, vtkFieldData* field, vtkFieldData* befo
   writeVector("ProbeAxial", probe.pose.axial, field, before);
   writeVector("ProbeLateral", probe.pose.lateral, field, before);
   writeNumber("Preview", probe.preview ? 1.0 : 0.0, field, before);
+  writeNumber("LinesApart", probe.linesApart, field, before);
   writeNumber("PrepareInteraction", probe.prepares ? 1.0 : 0.0, field, before);
 }
 
@@ -138,6 +139,7 @@ ProbeField readProbe(vtkFieldData* field)
   probe.pose.axial = readVector("ProbeAxial", field);
   probe.pose.lateral = readVector("ProbeLateral", field);
   probe.preview = readNumber("Preview", field) != 0.0;
+  probe.linesApart = field->HasArray("LinesApart") ? int(readNumber("LinesApart", field)) : 1; // not in older files
   probe.prepares = field->HasArray("PrepareInteraction") && readNumber("PrepareInteraction", field) != 0.0;
   return probe;
 }

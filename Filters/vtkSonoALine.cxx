@@ -91,15 +91,15 @@ int vtkSonoALine::LineAt(vtkFieldData* field, double lateralMm, double axialMm)
 {
   try
   {
-    const sono::ScanGeometry geometry = sono::readProbe(field).geometry;
+    const sono::ProbeField probe = sono::readProbe(field);
+    const sono::ScanGeometry& geometry = probe.geometry;
     if (geometry.isVolume())
     {
       return -1;
     }
     const float line = sono::beamFromPlane(geometry, lateralMm, axialMm).x;
-    return std::isnan(line) ? -1
-                            : geometry.lineCount * (geometry.fanCount() / 2) +
-                                static_cast<int>(std::lround(line)) % geometry.lineCount;
+    const int inFan = std::isnan(line) ? -1 : static_cast<int>(std::lround(line)) % geometry.lineCount;
+    return inFan < 0 ? -1 : (geometry.lineCount * (geometry.fanCount() / 2) + inFan) * probe.linesApart;
   }
   catch (const sono::Error&)
   {
@@ -123,7 +123,7 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     const sono::ProbeField probe = sono::readProbe(lines->GetFieldData());
     const sono::LineImageLayout layout = sono::lineImageLayout(lines, probe.geometry.totalLineCount());
     const int rows = layout.sampleCount;
-    const int line = std::min(this->Line, layout.lineCount - 1);
+    const int line = std::min(this->Line / probe.linesApart, layout.lineCount - 1);
     const vtkIdType first = vtkIdType(line) * rows;
 
     vtkTable* table = vtkTable::GetData(output);
@@ -152,8 +152,9 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     }
 
     const sono::ScanLine place = sono::makeScanLines(probe.geometry, probe.pose)[std::size_t(line)];
+    const int shown = line * probe.linesApart;
     const sono::Vec3d end = place.originMm + probe.geometry.depthMm * place.axis;
-    drawLine(line, drawnFlat(place.originMm, probe), drawnFlat(end, probe), vtkPolyData::GetData(output, 1));
-    drawLine(line, place.originMm, end, vtkPolyData::GetData(output, 2));
+    drawLine(shown, drawnFlat(place.originMm, probe), drawnFlat(end, probe), vtkPolyData::GetData(output, 1));
+    drawLine(shown, place.originMm, end, vtkPolyData::GetData(output, 2));
   });
 }

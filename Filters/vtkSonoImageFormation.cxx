@@ -60,6 +60,7 @@ sono::EchoSettings vtkSonoImageFormation::Settings(const sono::ProbeField& probe
   settings.depthMm = probe.geometry.rangeMm();
   settings.scattererCellMm =
     probe.preview ? sono::interactiveCellMm(settings.scattererCellMm) : settings.scattererCellMm;
+  settings.interactive = probe.preview;
   settings.validate();
   return settings;
 }

@@ -1,5 +1,6 @@
 #include "vtkSonoProbeSource.h"
 
+#include "Core/Policy.h"
 #include "Core/Progress.h"
 #include "SonoDataFile.h"
 #include "SonoOutputs.h"
@@ -80,6 +81,11 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   const auto& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters);
   probe.geometry.assumedSoundSpeedMPerS = given.geometry.assumedSoundSpeedMPerS;
   probe.geometry.compoundFans = this->Preview ? 1 : given.geometry.compoundFans;
+  if (this->Preview)
+  {
+    probe.linesApart = sono::interactiveLinesApart(probe.geometry.lineCount);
+    probe.geometry.lineCount = (probe.geometry.lineCount + probe.linesApart - 1) / probe.linesApart;
+  }
   probe.geometry.compoundSpanDeg = given.geometry.compoundSpanDeg;
   probe.imagingMode = given.imagingMode;
   probe.facePressureKPa = given.facePressureKPa;

@@ -110,9 +110,10 @@ public:
 
   ///@{
   /**
-   * Whether the probe is being moved. The stages then make a coarse image quickly: at most 60 paths a line, RF sampled
-   * at four times the centre frequency at most, scatterer cells up to twice and pixels twice as wide as they are set
-   * to. Default off.
+   * Whether the probe is being moved. The stages then make a coarse image quickly: every second of 120 lines and more,
+   * at most 40 paths a line, RF sampled at four times the centre frequency at most, radial bins and pixels twice and
+   * scatterer cells up to twice as wide as they are set to, a fifth of the scatterers, and surfaces in pieces of 2 mm.
+   * Default off.
    */
   vtkSetMacro(Preview, bool);
   vtkGetMacro(Preview, bool);

@@ -182,7 +182,7 @@ bool isNeedless(vtkSMProxy* bar)
 {
   vtkSMProxy* colors = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
   const char* name = colors ? bar->GetSessionProxyManager()->GetProxyName("lookup_tables", colors) : nullptr;
-  return name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode.PVLookupTable"));
+  return name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode"));
 }
 
 /// Takes a needless bar away when ParaView shows it by itself for the first time, by either of its two switches.
@@ -304,7 +304,7 @@ const std::string notColors =
   "CentreFrequencyMHz|CompoundFans|CompoundSpanDeg|DepthMm|DepthOffsetMm|DynamicRangeDb|"
   "ElementCount|ElementWidthMm|ElevationApertureMm|ElevationFocusMm|ElevationLineCount|"
   "ElevationSectorDeg|FacePressureKPa|FractionalBandwidth|GainDb|ImagingMode|IsCatheter|IsVolume|"
-  "KerfMm|LabelColors|LabelIds|LabelNames|LabelTissues|LineCount|PrepareInteraction|Preview|"
+  "KerfMm|LabelColors|LabelIds|LabelNames|LabelTissues|LineCount|LinesApart|PrepareInteraction|Preview|"
   "ProbeAxial|ProbeLateral|ProbePositionMm|RadialBinMm|RadiusMm|ReferenceAmplitude|Reverberation|"
   "ReverberationError|ReverberationNpPerMHz|SamplingMHz|ScanKind|SectorDeg|SonoResult|SonoScene|"
   "TgcDbPerCm|TracedPaths|TransmitFocusMm|WidthMm|ErrorDb|PixelMm)$";
@@ -337,7 +337,7 @@ void sonoInstallDisplayDefaults()
   // segmentation ParaView's own would lose names and place; what is not offered to colour by. A person's own settings
   // have a higher priority.
   const std::string settings =
-    R"json({"standard_presets": {"BMode": "Grayscale", "Envelope": "Grayscale",
+    R"json({"standard_presets": {"BMode": "Grayscale", "BModeFlat": "Grayscale", "Envelope": "Grayscale",
       "ErrorPercent": "Viridis (matplotlib)", "IntensityDb": "Inferno (matplotlib)"},
       "settings": {"RepresentedArrayListSettings":
         {"ReaderDetails": ["*.seg.nrrd", "sources", "SonoLabelMapReader"], "FilterExpressions": [")json" +

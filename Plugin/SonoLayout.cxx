@@ -11,6 +11,8 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
+#include "vtkSMTransferFunctionManager.h"
+#include "vtkSMTransferFunctionProxy.h"
 #include "vtkSMViewLayoutProxy.h"
 #include "vtkSmartPointer.h"
 #include "vtkSonoUltrasound.h"
@@ -90,6 +92,18 @@ void showPlainly(vtkSMSourceProxy* source, unsigned int port, std::initializer_l
   representation->UpdateVTKObjects();
 }
 
+/// In greys of its own, without opacity: on black there is nothing to see through what is not scanned, and ParaView
+/// takes longer to look up how opaque each pixel is than to draw the image.
+void showOpaque(vtkSMProxy* representation)
+{
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", representation);
+  vtkNew<vtkSMTransferFunctionManager> tables;
+  vtkSMProxy* greys = tables->GetColorTransferFunction("BModeFlat", representation->GetSessionProxyManager());
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(greys, 0.0, 255.0);
+  vtkSMPropertyHelper(representation, "LookupTable").Set(greys);
+  representation->UpdateVTKObjects();
+}
+
 /// Grey on black, the transducer on top, with what a scanner draws and writes beside it.
 void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
@@ -102,7 +116,7 @@ void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller
     vtkSMPropertyHelper(view, "InteractionMode", true).Set(1); // 2D
     view->UpdateVTKObjects();
   }
-  showQuietly(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, view, controller);
+  showOpaque(showQuietly(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, view, controller));
   for (const char* beside : { "SonoFlatScale", "SonoFlatText" })
   {
     controller->Show(sonoFilterOf(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, beside), 0, view);

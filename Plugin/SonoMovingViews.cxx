@@ -223,6 +223,37 @@ void SonoMovingViews::drawInFull()
   this->Slow.clear();
 }
 
+/// The views that are no slow ones; false: there are none.
+bool SonoMovingViews::drawQuick()
+{
+  bool isAny = false;
+  for (pqView* view : this->Views)
+  {
+    if (view && !this->Slow.contains(view) && vtkSMRenderViewProxy::SafeDownCast(view->getProxy()))
+    {
+      this->markModified(view, Marked::ButAnatomy);
+      view->forceRender();
+      isAny = true;
+    }
+  }
+  return isAny;
+}
+
+void SonoMovingViews::drawGrey()
+{
+  if (!this->drawQuick())
+  {
+    return this->draw();
+  }
+  this->Source->InvokeEvent(PictureShownEvent);
+}
+
+void SonoMovingViews::drawRested()
+{
+  this->drawQuick();
+  this->drawInFull();
+}
+
 void SonoMovingViews::draw()
 {
   const int picture = this->Pictures++;

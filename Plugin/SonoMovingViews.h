@@ -47,6 +47,11 @@ public:
 
   /// Runs the pipeline and shows a picture on the way.
   void draw();
+  /// The same of another grey: slow views wait until all rests, unless there are no others.
+  void drawGrey();
+  /// Shows the picture of the probe that rests where that is quick, so that it need not wait for other views; then
+  /// drawInFull.
+  void drawRested();
   /// From now on the views are drawn as when nothing moves. Does not draw.
   void drawInFull();
 
@@ -62,6 +67,7 @@ private:
     ButAnatomy
   };
   void markModified(pqView* view, Marked which);
+  bool drawQuick();
   void lighten();
 
   vtkSmartPointer<vtkSMProxy> Source;

@@ -31,7 +31,7 @@ auto rest(const TraceSettings& s)
 auto rest(const EchoSettings& s)
 {
   return std::tie(s.centreFrequencyMHz, s.fractionalBandwidth, s.imagingMode, s.samplingMHz, s.depthMm, s.aperture,
-                  s.field, s.arrayField, s.pulse, s.seed);
+                  s.field, s.arrayField, s.pulse, s.interactive, s.seed);
 }
 
 auto rest(const BModeSettings& s)

@@ -87,6 +87,15 @@ struct Simulator::Last
     }
   };
 
+  /// Labels lie where the mask does, however bright the image is.
+  struct LabelsFrom
+  {
+    LabelsWanted wanted;
+    std::vector<std::uint8_t> mask;
+
+    bool same(const LabelsFrom& o) const { return mask == o.mask && wanted.same(o.wanted); }
+  };
+
   LastResult<FieldFrom, std::shared_ptr<const ArrayField>> arrayField;
   LastResult<TraceFrom, TracedResult> traced;
   std::unique_ptr<BackgroundTrace> rounds; ///< of what was traced last; null: all of them are made
@@ -97,6 +106,7 @@ struct Simulator::Last
   LastResult<BModeFrom, BModeResult> bmode;
   LastResult<ImageFrom, ImageResult> image;
   LastResult<PictureFrom, ScanPicture> picture;
+  LastResult<LabelsFrom, SharedSpan<std::uint16_t>> labels;
   LastResult<ErrorFrom, ImageResult> errorMap;
   LastResult<PathsFrom, std::shared_ptr<const std::vector<RecordedPath>>> paths;
 
@@ -335,9 +345,11 @@ ScanPicture Simulator::makePicture(const ImageResult& image, const LabelsWanted*
                          {} };
     if (wanted)
     {
-      picture.labels =
-        SharedSpan<std::uint16_t>(sliceLabels(needScene().volume(), wanted->geometry, wanted->pose, made,
-                                              wanted->traced ? offsetsOf(wanted->traced.host()) : DepthOffsets{}));
+      picture.labels = last_->labels.get({ *wanted, made.mask }, [&] {
+        return SharedSpan<std::uint16_t>(
+          sliceLabels(needScene().volume(), wanted->geometry, wanted->pose, made,
+                      wanted->traced ? offsetsOf(wanted->traced.host()) : DepthOffsets{}));
+      });
     }
     return picture;
   };

@@ -179,7 +179,7 @@ void pqSonoLiveSettings::showStep()
     SCOPED_UNDO_EXCLUDE();
     this->set(next);
   }
-  this->Shown->draw();
+  this->Shown->drawGrey();
   this->Rest.start(); // however long that took
 }
 

@@ -43,7 +43,7 @@
 
 namespace {
 
-constexpr int restMs = 300;
+constexpr int restMs = 150; // more than keys that are held take to repeat
 constexpr int idleMs = 500; // more than settings take to come to rest
 const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
 
@@ -425,6 +425,8 @@ void pqSonoProbeWidget::rest()
   {
     return;
   }
+  const auto after = this->pose();
+  this->Refining.begin();
   std::unique_ptr<SonoKeptAnatomy> anatomy;
   if (sonoAnyWaits(this->proxy()))
   {
@@ -432,11 +434,13 @@ void pqSonoProbeWidget::rest()
   }
   else if (shown)
   {
-    shown->drawInFull();
+    {
+      SCOPED_UNDO_EXCLUDE();
+      this->push(after, false);
+    }
+    shown->drawRested(); // what follows makes nothing of the picture anew
     anatomy = std::make_unique<SonoKeptAnatomy>(this->proxy());
   }
-  const auto after = this->pose();
-  this->Refining.begin();
   {
     // So that undo finds the pose before the movement, not one on the way.
     SCOPED_UNDO_EXCLUDE();

@@ -7,10 +7,23 @@
 
 namespace sono {
 
-/// Paths of a line while the probe moves.
+/// While the probe moves every line across the image is scanned or every second one: a sector of fewer than 60 lines
+/// falls apart.
+inline int interactiveLinesApart(int lineCount)
+{
+  return lineCount >= 120 ? 2 : 1;
+}
+
+/// Paths of a line while the probe moves: of 24 the streaks of their noise show.
 inline int interactivePaths(int pathsPerLine)
 {
-  return std::min(pathsPerLine, 60);
+  return std::min(pathsPerLine, 40);
+}
+
+/// Width of a sample of the intensity.
+inline double interactiveBinMm(double binMm)
+{
+  return 2.0 * binMm;
 }
 
 /// Sampling of the RF: four samples a period carry the usual bandwidths.
@@ -24,6 +37,20 @@ inline double interactiveCellMm(double cellMm)
 {
   return std::min(2.0 * cellMm, std::max(cellMm, 10.0));
 }
+
+/// Candidates in a resolution cell: two scatterers in soft tissue are enough for speckle that will be gone in a moment.
+inline double interactiveCandidates(double candidatesPerCell)
+{
+  return 0.2 * candidatesPerCell;
+}
+
+/// Surfaces are cut into pieces of this edge, as they are anyway where voxels are as large: a piece costs the same.
+constexpr double interactivePieceMm = 2.0;
+
+/// Of the points of a piece the distance: of diffuse echoes, and of the widest coherent ones, which are then up to
+/// half again as wide as the beam at its focus.
+constexpr double interactiveDiffuseSteps = 2.5;
+constexpr double interactiveWidestSteps = 2.0;
 
 /// Edge of a pixel: twice as wide, since ParaView looks at each pixel of each image for its ranges.
 inline double interactivePixelMm(double pixelMm)

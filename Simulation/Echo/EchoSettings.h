@@ -53,6 +53,7 @@ struct EchoSettings
                                    ///< the beam. With a field, both fall off alike in depth from its focus, where the
                                    ///< reflector's echo is 1 (see FieldLevel)
   std::uint64_t seed = 1;          ///< of the scatterers
+  bool interactive = false; ///< for a probe that moves: on the CPU fewer scatterers and coarser surfaces (Policy.h)
 
   /// The parameters of the stage; depth, frequency and bandwidth come from the probe.
   template<class Self, class Visitor>

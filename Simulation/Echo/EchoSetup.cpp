@@ -1,5 +1,6 @@
 #include "Echo/EchoSetup.h"
 
+#include "Core/Policy.h"
 #include "Core/Require.h"
 #include "Echo/Pulse.h"
 
@@ -87,7 +88,7 @@ double tissueScattererScale(const EchoSettings& s, double areaMm2)
 }
 
 EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>& scanLines,
-                     const EchoSettings& echoSettings, int linesPerImage)
+                     const EchoSettings& echoSettings, int linesPerImage, EchoDetail detail)
   : sources(echoSources)
   , lines(scanLines)
   , settings(checked(echoSources, scanLines, echoSettings))
@@ -104,8 +105,9 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
     const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
     nested.emplace(*sources.scene, settings.centreFrequencyMHz, wavelengthMm / beams.focusAreaMm2(), settings.seed);
     const double energyMm = pulseEnergyMm(settings);
-    density.emplace(finisher.sumCount() * settings.sampleMm(),
-                    [&](double depthMm) { return beams.cellAreaMm2(depthMm) * energyMm; });
+    density.emplace(
+      finisher.sumCount() * settings.sampleMm(), [&](double depthMm) { return beams.cellAreaMm2(depthMm) * energyMm; },
+      detail == EchoDetail::Moving ? interactiveCandidates(candidatesPerCell) : candidatesPerCell);
     for (int level = density->finest(); settings.field && level <= density->coarsest(); ++level)
     {
       nestedSight.emplace_back(*settings.field, nested->grid(level).edgeMm);
@@ -118,7 +120,8 @@ EchoSetup::EchoSetup(const EchoSources& echoSources, const std::vector<ScanLine>
   }
   if (sources.scene && isAcoustic)
   {
-    surfaces.emplace(*sources.scene, sources.traced ? sources.traced->targets.get() : sources.targets, settings, beams);
+    surfaces.emplace(*sources.scene, sources.traced ? sources.traced->targets.get() : sources.targets, settings, beams,
+                     detail == EchoDetail::Moving ? SurfaceDetail::Coarse : SurfaceDetail::Full);
   }
   if (settings.field && tissues)
   {

@@ -20,6 +20,13 @@ namespace sono {
 /// beam's area A = pi sL sE for a Gaussian, at the focus where it has one (Data/docs/physics.md eq. 4.7).
 double tissueScattererScale(const EchoSettings& settings, double areaMm2);
 
+/// How much of the scene is listened to.
+enum class EchoDetail
+{
+  Full,
+  Moving ///< what a moving probe's picture needs
+};
+
 /// Everything that image formation needs, made once from the sources and the settings and held while lines are formed.
 /// The arguments must outlive it.
 struct EchoSetup
@@ -27,7 +34,7 @@ struct EchoSetup
   /// The lines are those of images one after the other, which all have `linesPerImage`; 0: of one. Throws Error naming
   /// what is out of range or does not fit together.
   EchoSetup(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
-            int linesPerImage = 0);
+            int linesPerImage = 0, EchoDetail detail = EchoDetail::Full);
   EchoSetup(const EchoSetup&) = delete;
   EchoSetup& operator=(const EchoSetup&) = delete;
 

@@ -125,7 +125,7 @@ std::vector<float> RfLines::envelope() const
 RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, const EchoSettings& settings,
                const Progress& progress)
 {
-  const EchoSetup setup(sources, lines, settings);
+  const EchoSetup setup(sources, lines, settings, 0, settings.interactive ? EchoDetail::Moving : EchoDetail::Full);
   RfLines out = setup.emptyRf();
   const ReverberationNodes nodes = setup.finisher.reverberationNodes();
   const auto formGroup = [&](int group) {

@@ -18,7 +18,7 @@ double reachMm(int level, double stepMm)
 
 } // namespace
 
-ScattererDensity::ScattererDensity(double depthMm, const std::function<double(double)>& cellMm3)
+ScattererDensity::ScattererDensity(double depthMm, const std::function<double(double)>& cellMm3, double perCell)
 {
   const int count = std::max(2, int(std::ceil(depthMm / wantedStepMm)) + 1);
   stepMm_ = depthMm / (count - 1);
@@ -26,7 +26,7 @@ ScattererDensity::ScattererDensity(double depthMm, const std::function<double(do
   for (int i = 0; i < count; ++i)
   {
     const double volume = cellMm3(i * stepMm_);
-    const double needed = volume > 0.0 ? std::min(candidatesPerCell / volume, most) : 0.0;
+    const double needed = volume > 0.0 ? std::min(perCell / volume, most) : 0.0;
     perMm3_.push_back(float(needed));
     int level = 0;
     while (level + 1 < nestedLevels && std::pow(double(nestedCellMm(level + 1)), -3.0) >= needed)

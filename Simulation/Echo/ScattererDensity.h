@@ -18,8 +18,9 @@ constexpr double candidatesPerCell = 15.0;
 class ScattererDensity
 {
 public:
-  /// `cellMm3` is the volume of the resolution cell at a depth, asked for from 0 to `depthMm`.
-  ScattererDensity(double depthMm, const std::function<double(double)>& cellMm3);
+  /// `cellMm3` is the volume of the resolution cell at a depth, asked for from 0 to `depthMm`; it gets so many
+  /// candidates.
+  ScattererDensity(double depthMm, const std::function<double(double)>& cellMm3, double perCell = candidatesPerCell);
 
   /// For lookups while this lives.
   DensityView view() const;

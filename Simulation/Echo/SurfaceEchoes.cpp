@@ -1,5 +1,6 @@
 #include "Echo/SurfaceEchoes.h"
 
+#include "Core/Policy.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/SurfaceLoops.h"
 #include "Echo/SurfacePhase.h"
@@ -24,6 +25,13 @@ constexpr double widestPerSigma = 0.75;
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.
 constexpr double diffuseStepPerLambda = 1.2;
+
+/// Voxels from piece to piece.
+Vec3i voxelsApart(const Vec3f& spacingMm, SurfaceDetail detail)
+{
+  return detail == SurfaceDetail::Full ? Vec3i(1)
+                                       : glm::max(Vec3i(float(interactivePieceMm) / spacingMm + 1e-3f), Vec3i(1));
+}
 
 double blobMm(const EchoSettings& s, const BeamExtent& beam)
 {
@@ -62,7 +70,8 @@ struct SurfaceEchoes::Group
 struct SurfaceEchoes::Room
 {
   FaceList faces;
-  std::vector<std::int32_t> mayBeHeard; ///< by face
+  std::vector<std::size_t> taken;       ///< of the brick's faces, those in the list
+  std::vector<std::int32_t> mayBeHeard; ///< by face of the list
   PieceList pieces;
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
   std::vector<HeardList> heard;             ///< by line
@@ -102,20 +111,24 @@ struct SurfaceEchoes::Room
 };
 
 SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets,
-                             const EchoSettings& settings, const BeamModel& beams)
+                             const EchoSettings& settings, const BeamModel& beams, SurfaceDetail detail)
   : pieces_(scene.surfacePieces())
+  , apart_(voxelsApart(pieces_.spacingMm(), detail))
   , seed_(settings.seed)
 {
   const BeamExtent beam = beamExtent(beams);
   blobMm_ = sono::blobMm(settings, beam);
   const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
-  const Vec3f spacing = pieces_.spacingMm();
+  const bool isCoarse = detail == SurfaceDetail::Coarse;
+  const double diffuseSteps = isCoarse ? interactiveDiffuseSteps : 1.0;
+  const double widestSteps = isCoarse ? interactiveWidestSteps : 1.0;
+  const Vec3f spacing = pieces_.spacingMm() * Vec3f(apart_);
   nets_.spacingMm = spacing;
-  nets_.diffuse = cutsFor(spacing, diffuseStepPerLambda * lambdaMm);
+  nets_.diffuse = cutsFor(spacing, diffuseSteps * diffuseStepPerLambda * lambdaMm);
   nets_.most = cutsFor(spacing, blobMm_ / blobPerStep).cuts;
-  nets_.fewest = glm::min(
-    nets_.most,
-    cutsFor(spacing, widestPerSigma / blobPerStep * std::min(beam.lateralSigmaMm, beam.elevationalSigmaMm)).cuts);
+  nets_.fewest = glm::min(nets_.most, cutsFor(spacing, widestSteps * widestPerSigma / blobPerStep *
+                                                         std::min(beam.lateralSigmaMm, beam.elevationalSigmaMm))
+                                        .cuts);
   nets_.cutsPerMm = float(blobPerStep * std::sqrt(2.0 * pi / lambdaMm / mostTurnRad));
   const float widestMm =
     float(blobPerStep) * std::max({ spacing.x / float(nets_.fewest.x), spacing.y / float(nets_.fewest.y),
@@ -132,28 +145,42 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   }
 }
 
+/// Every so many columns along each of two axes: they stand for those beside them.
+bool SurfaceEchoes::isTaken(const SurfacePieces::Face& face) const
+{
+  const auto isOne = [&](int axis) { return face.axis == axis || face.voxel[axis] % apart_[axis] == 0; };
+  return apart_ == Vec3i(1) || (isOne(0) && isOne(1) && isOne(2));
+}
+
 void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group,
                                Room& room) const
 {
   const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
   const float longestMm = longestStepMm();
   room.faces.clear();
-  for (const SurfacePieces::Face& face : faces)
+  room.taken.clear();
+  for (std::size_t f = 0; f < faces.size(); ++f)
   {
-    const int row = rows_->row(face.below, face.above);
-    room.faces.push(faceMiddleMm(face, pieces_.spacingMm()), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
+    const SurfacePieces::Face& face = faces[f];
+    if (isTaken(face))
+    {
+      const int row = rows_->row(face.below, face.above);
+      room.faces.push(faceMiddleMm(face, pieces_.spacingMm()), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
+      room.taken.push_back(f);
+    }
   }
-  room.mayBeHeard.assign(faces.size(), 0);
+  room.mayBeHeard.assign(room.taken.size(), 0);
   for (const std::size_t i : seeing)
   {
     markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayBeHeard.data());
   }
   room.pieces.clear();
   room.pieceOf.clear();
-  for (std::size_t f = 0; f < faces.size(); ++f)
+  for (std::size_t n = 0; n < room.taken.size(); ++n)
   {
+    const std::size_t f = room.taken[n];
     const int row = rows_->row(faces[f].below, faces[f].above);
-    const SurfacePiece* piece = room.mayBeHeard[f] && group.table.counts(row) ? pieces_.piece(brick, f) : nullptr;
+    const SurfacePiece* piece = room.mayBeHeard[n] && group.table.counts(row) ? pieces_.piece(brick, f) : nullptr;
     if (piece)
     {
       const PieceBounds bounds = pieceBounds(*piece, longestMm);
@@ -192,8 +219,7 @@ BrickGrid SurfaceEchoes::pieceGrid() const
 
 float SurfaceEchoes::longestStepMm() const
 {
-  const Vec3f spacing = pieces_.spacingMm();
-  return std::max({ spacing.x, spacing.y, spacing.z });
+  return std::max({ nets_.spacingMm.x, nets_.spacingMm.y, nets_.spacingMm.z });
 }
 
 std::vector<BeamReach> SurfaceEchoes::seeingPieces(std::vector<BeamReach> beams) const
@@ -201,7 +227,7 @@ std::vector<BeamReach> SurfaceEchoes::seeingPieces(std::vector<BeamReach> beams)
   for (BeamReach& beam : beams)
   {
     beam.sight = pieceSight_.get();
-    // Points lie up to a voxel and a half outside of their brick, and are lit from a little further in front.
+    // Points lie up to a piece and a half outside of their brick, and are lit from a little further in front.
     beam.marginMm = 1.5f * longestStepMm();
     beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm + beam.marginMm : 0.0f;
   }

@@ -14,6 +14,13 @@
 
 namespace sono {
 
+/// How finely surfaces are cut.
+enum class SurfaceDetail
+{
+  Full,
+  Coarse ///< into pieces of several voxels and few points (Policy.h): on the CPU alone
+};
+
 /// Echoes of the boundaries between labels and of targets (Data/docs/physics.md section 10), weighted by the beam as
 /// scatterers are. Boundaries become pieces once a scene (SurfacePieces), pieces become points of the size that the
 /// wavelength wants while beams look at them. Echoes do not depend on which paths met what: the tracer's part is the
@@ -23,7 +30,7 @@ class SurfaceEchoes
 public:
   /// `targets` may be null. The scene must outlive this.
   SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets, const EchoSettings& settings,
-                const BeamModel& beams);
+                const BeamModel& beams, SurfaceDetail detail = SurfaceDetail::Full);
 
   /// Adds to the sums of a group of lines, intensity included. `beams` are those of the scene, `intensities` and `sums`
   /// parallel to them.
@@ -38,7 +45,7 @@ public:
   const FieldSight* targetSight() const { return targetSight_.get(); } ///< the same
   const PieceNets& nets() const { return nets_; }
   BrickGrid pieceGrid() const;
-  float longestStepMm() const; ///< between voxels
+  float longestStepMm() const; ///< between pieces
   /// Beams of the scene as the pieces' bricks meet them.
   std::vector<BeamReach> seeingPieces(std::vector<BeamReach> beams) const;
   SurfaceTable pieceTable() const;
@@ -53,7 +60,10 @@ private:
   /// Pieces that one of the lines hears become points.
   void expand(const std::vector<std::size_t>& seeing, Room& room) const;
 
+  bool isTaken(const SurfacePieces::Face& face) const;
+
   const SurfacePieces& pieces_;
+  Vec3i apart_; ///< voxels from piece to piece
   std::uint64_t seed_;
   double blobMm_;
   std::shared_ptr<const SurfaceRows> rows_;

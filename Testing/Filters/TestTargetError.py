@@ -120,7 +120,7 @@ class TestUltrasound(unittest.TestCase):
         ultrasound.Update()
         self.assertLess(time.time() - begin, 5)
         self.assertFalse(ultrasound.IsRefining())
-        self.assertEqual(number(ultrasound.GetOutputDataObject(IMAGE), "TracedPaths"), 60)
+        self.assertEqual(number(ultrasound.GetOutputDataObject(IMAGE), "TracedPaths"), 40)
 
     def test_a_filter_that_goes_ends_it(self):
         ultrasound = self.ultrasound(TargetErrorDb=0.001, PathsPerLine=10000000)

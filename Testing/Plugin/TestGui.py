@@ -456,7 +456,7 @@ class TestGui(GuiCase):
             rounds = [line.split() for line in pathlib.Path(folder, "rounds.txt").read_text().splitlines()]
         self.assertEqual(errors, [])
         paths = [int(number) for number, _ in rounds if number != "0"]
-        rested = len(paths) - paths[::-1].index(60)  # after the last on the way
+        rested = len(paths) - paths[::-1].index(40)  # after the last on the way
         pictures = list(dict.fromkeys(paths[rested:]))  # each for several outputs
         self.assertEqual(pictures[0], 64)
         self.assertGreater(len(pictures), 2)

@@ -137,9 +137,10 @@ inline double planeOfTargetErrorDb(double degrees, double roughnessMm)
 }
 
 /// The same of a plane of labels, voxels of 0.5 mm, that the axis meets at 18 mm and this much.
-inline double planeOfLabelsErrorDb(double degrees, double roughnessMm, double offsetMm = 0.03)
+inline double planeOfLabelsErrorDb(double degrees, double roughnessMm, double offsetMm = 0.03, bool moving = false)
 {
   EchoSettings s = surfaceSettings();
+  s.interactive = moving;
   s.depthMm = 30.0;
   const double slope = std::tan(degrees * M_PI / 180.0);
   const auto scene = makeScene({ 64, 48, 72 }, Vec3d(0.5),
@@ -242,9 +243,10 @@ inline BallErrors ballOfTargetErrors(double radiusMm)
 }
 
 /// Voxels of 0.5 mm.
-inline BallErrors ballOfLabelsErrors(double radiusMm, double offsetMm = 0.13)
+inline BallErrors ballOfLabelsErrors(double radiusMm, double offsetMm = 0.13, bool moving = false)
 {
   EchoSettings s = surfaceSettings();
+  s.interactive = moving;
   s.depthMm = 2.0 * radiusMm + 12.0;
   const double centre = 6.0 + offsetMm + radiusMm;
   const auto scene =

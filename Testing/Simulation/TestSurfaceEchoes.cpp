@@ -51,6 +51,14 @@ TEST_P(TiltedPlane, OfLabels)
   }
 }
 
+TEST_P(TiltedPlane, OfLabelsWhileTheProbeMoves)
+{
+  for (const double offsetMm : { 0.03, 0.17, 0.28 })
+  {
+    EXPECT_NEAR(planeOfLabelsErrorDb(GetParam(), 0.0, offsetMm, true), 0.0, 1.0) << "moved by " << offsetMm;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Degrees, TiltedPlane,
                          testing::Values(0.0, 1.0, 2.0, 5.0, 7.0, 8.0, 10.0, 15.0, 20.0, 25.0, 28.0, 30.0, 40.0));
 
@@ -70,6 +78,16 @@ TEST_P(Ball, OfLabels)
   for (const double offsetMm : { 0.0, 0.13, 0.38 })
   {
     const BallErrors errors = ballOfLabelsErrors(GetParam(), offsetMm);
+    EXPECT_NEAR(errors.frontDb, 0.0, 1.0) << "moved by " << offsetMm;
+    EXPECT_NEAR(errors.backDb, 0.0, 1.0) << "moved by " << offsetMm;
+  }
+}
+
+TEST_P(Ball, OfLabelsWhileTheProbeMoves)
+{
+  for (const double offsetMm : { 0.0, 0.13, 0.38 })
+  {
+    const BallErrors errors = ballOfLabelsErrors(GetParam(), offsetMm, true);
     EXPECT_NEAR(errors.frontDb, 0.0, 1.0) << "moved by " << offsetMm;
     EXPECT_NEAR(errors.backDb, 0.0, 1.0) << "moved by " << offsetMm;
   }

@@ -129,6 +129,10 @@ TEST(TissueLevels, AreThoseOfTheClosedForm)
     const Moments m = momentsOf(formTissue(*scene, grid(20, 8.0, 2.2), s), 3.0, 40.0);
     EXPECT_NEAR(10.0 * std::log10(m.meanPower()), closedFormDb(c.perCmSr, c.exponent, s), 0.3)
       << c.frequencyMHz << " MHz";
+    s.interactive = true;
+    const Moments moving = momentsOf(formTissue(*scene, grid(20, 8.0, 2.2), s), 3.0, 40.0);
+    EXPECT_NEAR(10.0 * std::log10(moving.meanPower()), closedFormDb(c.perCmSr, c.exponent, s), 0.3)
+      << c.frequencyMHz << " MHz, while the probe moves";
   }
 }
 

@@ -57,7 +57,7 @@ def playback():
     move, press, release = (
         [event(BODY, command, f"({x:.4f},{y:.4f},{button},0)") for x, y in places]
         for command, button in (("mouseMove", "0,1"), ("mousePress", "1,1"), ("mouseRelease", "1,0")))
-    pause = event("pqClientMainWindow", "pause", "8000")
+    pause = 80 * event("pqClientMainWindow", "pause", "100")  # a pause sleeps; in between ParaView goes on
     simulate = event("pqClientMainWindow/SonoToolBar/actionSonoSimulate", "activate")
     hover = move[0].replace(",0,1,0)", ",0,0,0)")
     panel = event("pqClientMainWindow/SonoToolBar/SonoScannerButton", "activate")
@@ -97,8 +97,10 @@ for time, what, gain in drawn:
     if what == "gain" and float(gain) != 0.0:
         gains.setdefault(gain, float(time))
 gains = sorted(gains.values())
-rest = max(time for time in (float(t) for t, of, preview in drawn if (of, preview) == ("2D", "0")) if time < gains[0])
+rest = min(time for time in (float(t) for t, of, preview in drawn if (of, preview) == ("2D", "0")) if time > moving[-1])
 print(f"drawn_rest_s {rest - moving[-1]:.4g} s")  # until the full picture of the last pose lies in the flat view
+body = min(time for time in (float(t) for t, of, preview in drawn if (of, preview) == ("3D", "0")) if time > moving[-1])
+print(f"drawn_body_rest_s {body - moving[-1]:.4g} s")  # the same in the one with the body
 # Each step until the flat view has been drawn after it; a step that the next one overtook counts until then as well.
 steps = sorted(1e3 * (min(at for at in flat if at > step) - step) for step in gains if any(at > step for at in flat))
 print(f"drawn_gain_step_ms {steps[len(steps) // 2]:.4g} ms")
