@@ -1,7 +1,6 @@
 #include "Core/ParallelFor.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <mutex>
@@ -89,11 +88,6 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
 void parallelFor(int count, const Progress& progress, const std::function<void(int)>& body)
 {
   parallelFor(count, progress, [&](int i, const YieldPoint&) { body(i); });
-}
-
-void withThreads(int threads, const std::function<void()>& work)
-{
-  tbb::task_arena(threads, 1).execute(work);
 }
 
 } // namespace sono

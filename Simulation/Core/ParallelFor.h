@@ -18,8 +18,4 @@ using YieldPoint = std::function<void()>;
 /// The same for bodies that take long.
 void parallelFor(int count, const Progress& progress, const std::function<void(int, const YieldPoint&)>& body);
 
-/// Does the work on the calling thread; its loops take at most so many threads, this one among them, 1 or more. For one
-/// of several that keep all cores busy: their short loops would wake others, and keep them awake, that find nothing.
-void withThreads(int threads, const std::function<void()>& work);
-
 } // namespace sono

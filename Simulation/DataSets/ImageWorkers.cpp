@@ -1,6 +1,5 @@
 #include "DataSets/ImageWorkers.h"
 
-#include "Core/ParallelFor.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/OwnImager.h"
 
@@ -18,11 +17,6 @@ namespace sono {
 namespace {
 
 constexpr int mostWorkersOfDevice = 16;
-
-int cores()
-{
-  return std::max(1, int(std::thread::hardware_concurrency()));
-}
 
 /// What the workers share.
 struct Shared
@@ -44,7 +38,8 @@ int imageWorkers(const DataSetImager& imager)
   {
     return 1;
   }
-  return std::clamp(cores(), 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
+  const int cores = int(std::thread::hardware_concurrency());
+  return std::clamp(cores, 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
 }
 
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers)
@@ -110,12 +105,10 @@ void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int
     {
       const OwnImager onDevice(number);
       DataSetImager own = imager.another();
-      withThreads(std::max(1, cores() / workers), [&] {
-        for (std::size_t unit = shared.nextUnit++; unit < units.size(); unit = shared.nextUnit++)
-        {
-          forExamsOf(units[unit], [&](const PlannedRange& exam) { work(own, exam, done, untilStopped); });
-        }
-      });
+      for (std::size_t unit = shared.nextUnit++; unit < units.size(); unit = shared.nextUnit++)
+      {
+        forExamsOf(units[unit], [&](const PlannedRange& exam) { work(own, exam, done, untilStopped); });
+      }
     }
     catch (...)
     {

@@ -5,10 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <mutex>
 #include <numeric>
-#include <set>
-#include <thread>
 #include <vector>
 
 namespace sono {
@@ -34,24 +31,6 @@ TEST(ParallelFor, NestedLoopsSeeWhatTheOuterTaskWrote)
   {
     EXPECT_EQ(std::accumulate(values[std::size_t(i)].begin(), values[std::size_t(i)].end(), 0), 64 * i + 63 * 32);
   }
-}
-
-TEST(ParallelFor, StaysOnItsThreadWhereThatIsAskedFor)
-{
-  std::set<std::thread::id> ids;
-  std::mutex mutex;
-  const auto note = [&](int) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    ids.insert(std::this_thread::get_id());
-  };
-  withThreads(1, [&] {
-    parallelFor(1000, {}, [&](int i) {
-      note(i);
-      parallelFor(10, {}, note);
-    });
-  });
-  EXPECT_EQ(ids, std::set<std::thread::id>{ std::this_thread::get_id() });
-  EXPECT_THROW(withThreads(1, [] { parallelFor(10, {}, [](int) { throw Error("no"); }); }), Error);
 }
 
 TEST(ParallelFor, ProgressStopsIt)
