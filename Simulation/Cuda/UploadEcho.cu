@@ -260,10 +260,10 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   pieceSet_.seed = job.seed;
   uploadFieldSight(job.sight, pieceSight_, stream, traffic);
   const std::shared_ptr<DevicePieces> pieces = DevicePieces::of(*job.pieces);
-  heardPieces_ = pieces->heardBy(
-    job, voxels_.data(),
-    { splat(sceneBeams_.data(), 1.0f, pieceSight_), echo.lineCount, kind_, pieceSet_.table, job.media }, stream,
-    traffic);
+  heardPieces_ =
+    pieces->heardBy(job, voxels_.data(),
+                    { splat(sceneBeams_.data(), 1.0f, pieceSight_), echo.lineCount, kind_, pieceSet_.table, job.media },
+                    stream, traffic);
   pieces_ = pieces; // what was there before is no longer read: heardBy() has waited
   pieceSet_.groups = heardPieces_->groups.data();
   pieceSet_.groupCount = int(heardPieces_->groups.size());
