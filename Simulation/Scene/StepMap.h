@@ -280,26 +280,37 @@ private:
     weight = isKnown ? weight : none;
   }
 
-  /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
-  SONO_LANES_CALLED float settleQuadratic(int radius, int count, Shape& shape)
+  /// Puts a window into equations, column by column: add(sums, x, y, height, weight) for the steps of a strip in each
+  /// of its rows, to sums that begin as `none`.
+  template<class Sums, class Equations, class Add>
+  SONO_LANES void addWindow(int radius, const Sums& none, const Add& add, Equations& equations) const
   {
-    NormalEquations equations;
-    const Shape from = shape;
     forStrips(radius, [&](const Floats& x, int first) {
-      ColumnSums sums;
+      Sums sums = none;
       SONO_ROLLED
       for (int j = -radius; j <= radius; ++j)
       {
         Floats height;
         Floats weight;
-        Floats stiffness;
-        Floats force;
         load(radius, x, first, j, height, weight);
-        pull(from, x, float(j), height, weight, stiffness, force);
-        sums.add(float(j), stiffness, force);
+        add(sums, x, float(j), height, weight);
       }
       equations.addColumns(x, sums);
     });
+  }
+
+  /// Newton's step, voxels, towards the least of a barrier that keeps each step within its rounding.
+  SONO_LANES_CALLED float settleQuadratic(int radius, int count, Shape& shape)
+  {
+    NormalEquations equations;
+    const Shape from = shape;
+    const auto addPull = [&](ColumnSums& sums, const Floats& x, float y, const Floats& height, const Floats& weight) {
+      Floats stiffness;
+      Floats force;
+      pull(from, x, y, height, weight, stiffness, force);
+      sums.add(y, stiffness, force);
+    };
+    addWindow(radius, ColumnSums(), addPull, equations);
     Quadratic d{};
     if (!equations.solve(count, d))
     {
@@ -319,18 +330,9 @@ private:
   SONO_LANES_CALLED bool fitBall(int radius, float u, float v, Shape& ball)
   {
     BallEquations equations(u, v);
-    forStrips(radius, [&](const Floats& x, int first) {
-      BallEquations::Columns columns(v);
-      SONO_ROLLED
-      for (int j = -radius; j <= radius; ++j)
-      {
-        Floats height;
-        Floats weight;
-        load(radius, x, first, j, height, weight);
-        columns.add(float(j), height, weight, weight * height);
-      }
-      equations.addColumns(x, columns);
-    });
+    const auto addStep = [](BallEquations::Columns& sums, const Floats&, float y, const Floats& height,
+                            const Floats& weight) { sums.add(y, height, weight, weight * height); };
+    addWindow(radius, BallEquations::Columns(v), addStep, equations);
     return equations.solve(ball);
   }
 
@@ -338,21 +340,14 @@ private:
   {
     BallEquations equations(u, v);
     const Shape from = ball;
-    forStrips(radius, [&](const Floats& x, int first) {
-      BallEquations::Columns columns(v);
-      SONO_ROLLED
-      for (int j = -radius; j <= radius; ++j)
-      {
-        Floats height;
-        Floats weight;
-        Floats stiffness;
-        Floats force;
-        load(radius, x, first, j, height, weight);
-        pull(from, x, float(j), height, weight, stiffness, force);
-        columns.add(float(j), height, stiffness, force);
-      }
-      equations.addColumns(x, columns);
-    });
+    const auto addPull = [&](BallEquations::Columns& sums, const Floats& x, float y, const Floats& height,
+                             const Floats& weight) {
+      Floats stiffness;
+      Floats force;
+      pull(from, x, y, height, weight, stiffness, force);
+      sums.add(y, height, stiffness, force);
+    };
+    addWindow(radius, BallEquations::Columns(v), addPull, equations);
     Shape d{};
     if (!equations.solve(d))
     {
@@ -367,18 +362,10 @@ private:
   SONO_LANES_CALLED void sumSteps(int radius, NormalEquations& equations)
   {
     NormalEquations all;
-    forStrips(radius, [&](const Floats& x, int first) {
-      ColumnSums sums;
-      SONO_ROLLED
-      for (int j = -radius; j <= radius; ++j)
-      {
-        Floats height;
-        Floats weight;
-        load(radius, x, first, j, height, weight);
-        sums.add(float(j), weight, weight * height);
-      }
-      all.addColumns(x, sums);
-    });
+    const auto addStep = [](ColumnSums& sums, const Floats&, float y, const Floats& height, const Floats& weight) {
+      sums.add(y, weight, weight * height);
+    };
+    addWindow(radius, ColumnSums(), addStep, all);
     equations = all;
   }
 
