@@ -74,14 +74,34 @@ SONO_LANES inline double sumOf(Floats v)
   return v;
 }
 
-/// Of the lanes' parts.
-SONO_LANES inline double wholeSum(double part)
+/// Sums of the lanes' parts, to memory that they share.
+template<int count>
+SONO_LANES inline void wholeSums(const double (&parts)[count], double* to)
 {
-  for (int other = lanes / 2; other > 0; other /= 2)
+  static_assert(count <= lanes);
+  // Half of what a lane has goes to another one, until each has a sum of its own.
+  double left[lanes];
+#pragma unroll
+  for (int n = 0; n < lanes; ++n)
   {
-    part += __shfl_xor_sync(0xffffffffu, part, other);
+    left[n] = n < count ? parts[n] : 0.0;
   }
-  return part;
+#pragma unroll
+  for (int half = lanes / 2; half > 0; half /= 2)
+  {
+    const bool isUpper = (lane() & half) != 0;
+#pragma unroll
+    for (int n = 0; n < half; ++n)
+    {
+      const double other = __shfl_xor_sync(0xffffffffu, isUpper ? left[n] : left[n + half], half);
+      left[n] = (isUpper ? left[n + half] : left[n]) + other;
+    }
+  }
+  if (lane() < count)
+  {
+    to[lane()] = left[0];
+  }
+  __syncwarp();
 }
 
 SONO_LANES inline float largestOf(Floats v)
@@ -104,6 +124,13 @@ SONO_LANES inline void forEach(int count, const F& f)
     f(n);
   }
   __syncwarp();
+}
+
+/// Calls f(row, column) for each cell of a table, likewise.
+template<class F>
+SONO_LANES inline void forCells(int rows, int columns, const F& f)
+{
+  forEach(rows * columns, [&](int n) { f(n / columns, n % columns); });
 }
 
 #else
@@ -166,9 +193,10 @@ inline double sumOf(const Floats& v)
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
-inline double wholeSum(double part)
+template<int count>
+inline void wholeSums(const double (&parts)[count], double* to)
 {
-  return part;
+  std::copy(parts, parts + count, to);
 }
 
 inline float largestOf(const Floats& v)
@@ -184,6 +212,18 @@ inline void forEach(int count, const F& f)
   for (int n = 0; n < count; ++n)
   {
     f(n);
+  }
+}
+
+template<class F>
+inline void forCells(int rows, int columns, const F& f)
+{
+  for (int row = 0; row < rows; ++row)
+  {
+    for (int column = 0; column < columns; ++column)
+    {
+      f(row, column);
+    }
   }
 }
 

@@ -79,6 +79,40 @@ struct Quadratic
 };
 
 constexpr int terms = 6;
+constexpr int moments = 15;
+constexpr int quadraticSums = moments + terms;
+constexpr int ballSums = 14;
+
+/// Where equations are solved, in memory that lanes share.
+struct EquationRoom
+{
+  double sums[quadraticSums];
+  double rows[terms * (terms + 2)]; ///< of a matrix, each with its right-hand side and the least that its pivot may be
+};
+
+/// Solves equations of a positive definite matrix, without pivoting: what is asked for stands where the right-hand
+/// sides did. False where the data do not tell it.
+SONO_LANES_CALLED inline bool eliminate(int count, double* rows)
+{
+  const int pitch = count + 2;
+  SONO_ROLLED
+  for (int r = 0; r < count; ++r)
+  {
+    double* const row = rows + r * pitch;
+    if (!(row[r] > row[count + 1]))
+    {
+      return false;
+    }
+    const double inverse = 1.0 / row[r];
+    forCells(count - 1, count - r, [&](int other, int column) {
+      double* const changed = rows + (other < r ? other : other + 1) * pitch;
+      const int c = r + 1 + column;
+      changed[c] -= changed[r] * inverse * row[c];
+    });
+  }
+  forEach(count, [&](int r) { rows[r * pitch + count] /= rows[r * pitch + r]; });
+  return true;
+}
 
 /// Normal equations of a quadratic's weighted least squares.
 class NormalEquations
@@ -100,23 +134,17 @@ public:
       {
         height[i] = numberOf(sums.height[i], n);
       }
-      const double m[15] = { y[0],           x1 * y[0],      y[1],      x2 * y[0], x1 * y[1],
-                             y[2],           x2 * x1 * y[0], x2 * y[1], x1 * y[2], y[3],
-                             x2 * x2 * y[0], x2 * x1 * y[1], x2 * y[2], x1 * y[3], y[4] };
-      for (int i = 0; i < 15; ++i)
+      const double m[quadraticSums] = { y[0],           x1 * y[0],      y[1],      x2 * y[0],      x1 * y[1],
+                                        y[2],           x2 * x1 * y[0], x2 * y[1], x1 * y[2],      y[3],
+                                        x2 * x2 * y[0], x2 * x1 * y[1], x2 * y[2], x1 * y[3],      y[4],
+                                        height[0],      x1 * height[0], height[1], x2 * height[0], x1 * height[1],
+                                        height[2] };
+      for (int i = 0; i < quadraticSums; ++i)
       {
-        moment_[i] += m[i];
-      }
-      const double r[terms] = { height[0], x1 * height[0], height[1], x2 * height[0], x1 * height[1], height[2] };
-      for (int i = 0; i < terms; ++i)
-      {
-        right_[i] += r[i];
+        part_[i] += m[i];
       }
     });
   }
-
-  /// Of all data.
-  SONO_LANES double weight() const { return wholeSum(moment_[0]); }
 
   /// Data on the line (x, y) = (a, b) t: sums of weight t^n, n = 0 to 4, and of weight height t^n, n = 0 to 2.
   SONO_LANES void addLine(double a, double b, const double* t, const double* height)
@@ -129,84 +157,43 @@ public:
       for (int n = 0; n <= degree; ++n, ++term) // by rising powers of y
       {
         const double factor = ofA[degree - n] * ofB[n];
-        moment_[term] += factor * t[degree];
+        part_[term] += factor * t[degree];
         if (degree <= 2)
         {
-          right_[term] += factor * height[degree];
+          part_[moments + term] += factor * height[degree];
         }
       }
     }
   }
 
-  /// In the first `count` terms, 3 or 6; false where the data do not tell them.
-  SONO_LANES_CALLED bool solve(int count, Quadratic& out) const
-  {
-    // Products of the terms 1, x, y, x^2, x y, y^2 by the moments above.
-    static constexpr int product[terms][terms] = { { 0, 1, 2, 3, 4, 5 },    { 1, 3, 4, 6, 7, 8 },
-                                                   { 2, 4, 5, 7, 8, 9 },    { 3, 6, 7, 10, 11, 12 },
-                                                   { 4, 7, 8, 11, 12, 13 }, { 5, 8, 9, 12, 13, 14 } };
-    double a[terms][terms];
-    double b[terms];
-    double moment[15];
-    SONO_ROLLED
-    for (int i = 0; i < 15; ++i)
-    {
-      moment[i] = wholeSum(moment_[i]);
-    }
-    SONO_ROLLED
-    for (int r = 0; r < count; ++r)
-    {
-      SONO_ROLLED
-      for (int c = 0; c < count; ++c)
-      {
-        a[r][c] = moment[product[r][c]];
-      }
-      b[r] = wholeSum(right_[r]);
-    }
-    // Positive definite: no pivoting.
-    SONO_ROLLED
-    for (int r = 0; r < count; ++r)
-    {
-      if (!(a[r][r] > 1e-9 * moment[product[r][r]]))
-      {
-        return false;
-      }
-      SONO_ROLLED
-      for (int q = r + 1; q < count; ++q)
-      {
-        const double m = a[q][r] / a[r][r];
-        SONO_ROLLED
-        for (int c = r; c < count; ++c)
-        {
-          a[q][c] -= m * a[r][c];
-        }
-        b[q] -= m * b[r];
-      }
-    }
-    SONO_ROLLED
-    for (int r = count - 1; r >= 0; --r)
-    {
-      SONO_ROLLED
-      for (int c = r + 1; c < count; ++c)
-      {
-        b[r] -= a[r][c] * b[c];
-      }
-      b[r] /= a[r][r];
-    }
-    out = { float(b[0]), float(b[1]), float(b[2]), 0.0f, 0.0f, 0.0f };
-    if (count == terms)
-    {
-      out.c3 = float(b[3]);
-      out.c5 = float(b[4]);
-      out.c4 = float(b[5]);
-    }
-    return true;
-  }
+  /// Of all data, to memory that lanes share: the moments of the weights, the first being their sum, and those of the
+  /// heights.
+  SONO_LANES void sumTo(double* sums) const { wholeSums(part_, sums); }
 
 private:
-  double moment_[15] = {};
-  double right_[terms] = {};
+  double part_[quadraticSums] = {}; ///< a lane's
 };
+
+/// The quadratic's first `count` terms, 3 or 6, by its equations' sums; false where the data do not tell them.
+SONO_LANES_CALLED inline bool solve(const double* sums, int count, EquationRoom& room, Quadratic& out)
+{
+  // Products of the terms 1, x, y, x^2, x y, y^2 by the moments.
+  static constexpr int product[terms][terms] = { { 0, 1, 2, 3, 4, 5 },    { 1, 3, 4, 6, 7, 8 },
+                                                 { 2, 4, 5, 7, 8, 9 },    { 3, 6, 7, 10, 11, 12 },
+                                                 { 4, 7, 8, 11, 12, 13 }, { 5, 8, 9, 12, 13, 14 } };
+  double* const rows = room.rows;
+  const int pitch = count + 2;
+  forCells(count, pitch, [&](int r, int c) {
+    rows[r * pitch + c] = c < count ? sums[product[r][c]] : c == count ? sums[moments + r] : 1e-9 * sums[product[r][r]];
+  });
+  if (!eliminate(count, rows))
+  {
+    return false;
+  }
+  const auto term = [&](int r) { return r < count ? float(rows[r * pitch + count]) : 0.0f; };
+  out = { term(0), term(1), term(2), term(3), term(5), term(4) };
+  return true;
+}
 
 /// z = q(i, j) + bulge z^2, the branch that is q for no bulge: a plane, a quadratic or a ball.
 struct Shape
@@ -288,74 +275,57 @@ public:
       }
       const double x = u_ * double(numberOf(at, n));
       const double x2 = x * x;
-      a_[0][0] += t[0];
-      a_[0][1] += x * t[0];
-      a_[0][2] += v_ * t[1];
-      a_[0][3] += t[3] + x2 * t[0];
-      a_[0][4] += t[6];
-      a_[1][1] += x2 * t[0];
-      a_[1][2] += x * v_ * t[1];
-      a_[1][3] += x * (t[3] + x2 * t[0]);
-      a_[1][4] += x * t[6];
-      a_[2][2] += v_ * v_ * t[2];
-      a_[2][3] += v_ * (t[4] + x2 * t[1]);
-      a_[2][4] += v_ * t[7];
-      a_[3][3] += t[5] + x2 * (2.0 * t[3] + x2 * t[0]);
-      a_[3][4] += t[8] + x2 * t[6];
+      const double m[ballSums] = { t[0],
+                                   x * t[0],
+                                   v_ * t[1],
+                                   t[3] + x2 * t[0],
+                                   t[6],
+                                   x2 * t[0],
+                                   x * v_ * t[1],
+                                   x * (t[3] + x2 * t[0]),
+                                   x * t[6],
+                                   v_ * v_ * t[2],
+                                   v_ * (t[4] + x2 * t[1]),
+                                   v_ * t[7],
+                                   t[5] + x2 * (2.0 * t[3] + x2 * t[0]),
+                                   t[8] + x2 * t[6] };
+      for (int i = 0; i < ballSums; ++i)
+      {
+        part_[i] += m[i];
+      }
     });
   }
 
-  SONO_LANES_CALLED bool solve(Shape& out)
+  SONO_LANES_CALLED bool solve(EquationRoom& room, Shape& out) const
   {
-    double a[4][5];
-    SONO_ROLLED
-    for (int r = 0; r < 4; ++r)
+    constexpr int count = 4;
+    constexpr int pitch = count + 2;
+    // By rows from the diagonal on, the right-hand side last.
+    static constexpr int sumOf[count][count + 1] = {
+      { 0, 1, 2, 3, 4 }, { 1, 5, 6, 7, 8 }, { 2, 6, 9, 10, 11 }, { 3, 7, 10, 12, 13 }
+    };
+    wholeSums(part_, room.sums);
+    double* const rows = room.rows;
+    forCells(count, pitch,
+             [&](int r, int c) { rows[r * pitch + c] = c <= count ? room.sums[sumOf[r][c]] : leastPivot; });
+    if (!eliminate(count, rows))
     {
-      SONO_ROLLED
-      for (int c = r; c < 5; ++c)
-      {
-        a[r][c] = wholeSum(a_[r][c]);
-      }
+      return false;
     }
-    SONO_ROLLED
-    for (int r = 0; r < 4; ++r)
-    {
-      if (!(a[r][r] > 1e-9))
-      {
-        return false;
-      }
-      SONO_ROLLED
-      for (int q = r + 1; q < 4; ++q)
-      {
-        const double m = a[r][q] / a[r][r];
-        SONO_ROLLED
-        for (int c = q; c < 5; ++c)
-        {
-          a[q][c] -= m * a[r][c];
-        }
-      }
-    }
-    double b[4];
-    SONO_ROLLED
-    for (int r = 3; r >= 0; --r)
-    {
-      b[r] = a[r][4];
-      SONO_ROLLED
-      for (int c = r + 1; c < 4; ++c)
-      {
-        b[r] -= a[r][c] * b[c];
-      }
-      b[r] /= a[r][r];
-    }
-    out.q = { float(b[0]), float(b[1] * u_), float(b[2] * v_), float(b[3] * u_ * u_), float(b[3] * v_ * v_), 0.0f };
-    out.bulge = float(b[3]);
+    const auto term = [&](int r) { return rows[r * pitch + count]; };
+    const double bulge = term(3);
+    out.q = { float(term(0)),         float(term(1) * u_),    float(term(2) * v_),
+              float(bulge * u_ * u_), float(bulge * v_ * v_), 0.0f };
+    out.bulge = float(bulge);
     return true;
   }
 
 private:
+  static constexpr double leastPivot = 1e-9;
+
   double u_;
   double v_;
-  double a_[4][5] = {};
+  double part_[ballSums] = {}; ///< a lane's
 };
 
 /// How steps at places x of a row, with heights h and weights w, pull at a shape: with stiffness and force. A step is

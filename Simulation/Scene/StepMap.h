@@ -120,10 +120,10 @@ public:
       const int radius = windowRadius(count);
       gather(voxel, axis, gathered + 1, radius);
       gathered = radius;
-      sumSteps(radius, starts[count].equations);
-      const double known = starts[count].equations.weight() / double(window_[radius].total);
+      sumSteps(radius, sums_[count]);
+      const double known = sums_[count][0] / double(window_[radius].total);
       seen[count] = smoothStep(fewestSeen, enoughSeen, float(known));
-      if (!(seen[count] > 0.0f) || !leastSquares(radius, u, v, starts[count]))
+      if (!(seen[count] > 0.0f) || !leastSquares(radius, u, v, sums_[count], starts[count]))
       {
         break;
       }
@@ -142,7 +142,7 @@ public:
       if (w == 0 || starts[w].kind != Kind::None)
       {
         Quadratic fit;
-        const float agreement = settle(windowRadius(w), u, v, starts[w], fit);
+        const float agreement = settle(windowRadius(w), u, v, sums_[w], starts[w], fit);
         const float share = w == 0 ? left : left * seen[w] * agreement;
         if (share > 0.0f)
         {
@@ -163,20 +163,18 @@ private:
     None
   };
 
-  /// The smoothest shape whose least squares lie near enough to the steps to be settled; of none, the last. The
-  /// equations are those of a quadratic.
+  /// The smoothest shape whose least squares lie near enough to the steps to be settled; of none, the last.
   struct Start
   {
-    NormalEquations equations;
     Shape shape;
     Kind kind;
   };
 
-  /// Of the start's equations. False where there are too few data.
-  SONO_LANES bool leastSquares(int radius, float u, float v, Start& start)
+  /// By the sums of a quadratic's equations. False where there are too few data.
+  SONO_LANES bool leastSquares(int radius, float u, float v, const double* sums, Start& start)
   {
     Shape plane{};
-    if (!start.equations.solve(3, plane.q))
+    if (!solve(sums, 3, room_, plane.q))
     {
       return false;
     }
@@ -193,7 +191,7 @@ private:
     }
     start.shape = {};
     start.kind = Kind::None;
-    if (!start.equations.solve(terms, start.shape.q))
+    if (!solve(sums, terms, room_, start.shape.q))
     {
       start.shape = plane;
     }
@@ -210,7 +208,7 @@ private:
   }
 
   /// The smoothest of plane, ball and quadratic, each in front of the next as far as it agrees; how well they do.
-  SONO_LANES_CALLED float settle(int radius, float u, float v, const Start& start, Quadratic& out)
+  SONO_LANES_CALLED float settle(int radius, float u, float v, const double* sums, const Start& start, Quadratic& out)
   {
     Shape shape = start.shape;
     out = shape.q;
@@ -235,7 +233,7 @@ private:
       }
     }
     Shape bent{};
-    if (agreement < 1.0f && start.equations.solve(terms, bent.q))
+    if (agreement < 1.0f && solve(sums, terms, room_, bent.q))
     {
       const float bentAgrees =
         isNear(bent, radius) ? settled(radius, bent, [&] { return settleQuadratic(radius, terms, bent); }) : 0.0f;
@@ -311,8 +309,9 @@ private:
       sums.add(y, stiffness, force);
     };
     addWindow(radius, ColumnSums(), addPull, equations);
+    equations.sumTo(room_.sums);
     Quadratic d{};
-    if (!equations.solve(count, d))
+    if (!solve(room_.sums, count, room_, d))
     {
       return 0.0f;
     }
@@ -333,7 +332,7 @@ private:
     const auto addStep = [](BallEquations::Columns& sums, const Floats&, float y, const Floats& height,
                             const Floats& weight) { sums.add(y, height, weight, weight * height); };
     addWindow(radius, BallEquations::Columns(v), addStep, equations);
-    return equations.solve(ball);
+    return equations.solve(room_, ball);
   }
 
   SONO_LANES_CALLED float settleBall(int radius, float u, float v, Shape& ball)
@@ -349,7 +348,7 @@ private:
     };
     addWindow(radius, BallEquations::Columns(v), addPull, equations);
     Shape d{};
-    if (!equations.solve(d))
+    if (!equations.solve(room_, d))
     {
       return 0.0f;
     }
@@ -359,14 +358,14 @@ private:
   }
 
   /// Least squares of the steps alone.
-  SONO_LANES_CALLED void sumSteps(int radius, NormalEquations& equations)
+  SONO_LANES_CALLED void sumSteps(int radius, double* sums)
   {
-    NormalEquations all;
+    NormalEquations equations;
     const auto addStep = [](ColumnSums& sums, const Floats&, float y, const Floats& height, const Floats& weight) {
       sums.add(y, weight, weight * height);
     };
-    addWindow(radius, ColumnSums(), addStep, all);
-    equations = all;
+    addWindow(radius, ColumnSums(), addStep, equations);
+    equations.sumTo(sums);
   }
 
   /// 1 where no column's step lies further from the fit than its rounding, less to 0 where one does; smoothly.
@@ -427,6 +426,8 @@ private:
   std::ptrdiff_t pitch_[3];
   /// What has not been gathered counts for nothing; there is as much behind the last as a strip goes beyond a window.
   std::array<std::int8_t, std::size_t(allColumns) * allColumns + lanes> steps_;
+  double sums_[windowCount][quadraticSums]; ///< of each window's least squares
+  EquationRoom room_;
 };
 
 } // namespace SONO_LANES_NAMESPACE

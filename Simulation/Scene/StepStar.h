@@ -302,7 +302,7 @@ private:
       const RowSums sums(float(-row.reach), row.count(), row.weight, row.force);
       equations.addLine(stepU(line), stepV(line), sums.x, sums.height);
     }
-    if (!equations.solve(count, height) || excess(height, hopelessExcess) > hopelessExcess)
+    if (!solved(equations, count, height) || excess(height, hopelessExcess) > hopelessExcess)
     {
       return false;
     }
@@ -310,6 +310,12 @@ private:
     {
     }
     return excess(height, mostExcess) <= mostExcess;
+  }
+
+  bool solved(const NormalEquations& equations, int count, Quadratic& height)
+  {
+    equations.sumTo(room_.sums);
+    return solve(room_.sums, count, room_, height);
   }
 
   /// Newton's step, voxels.
@@ -338,7 +344,7 @@ private:
       equations.addLine(stepU(line), stepV(line), sums.x, sums.height);
     }
     Quadratic d{};
-    if (!equations.solve(count, d))
+    if (!solved(equations, count, d))
     {
       return 0.0f;
     }
@@ -360,6 +366,7 @@ private:
   float height_[lines][pitch]; ///< steps relative to the face's; what is not known is not read
   int radius_ = 0;             ///< of the window
   Row rows_[lines];            ///< its columns
+  EquationRoom room_;
 };
 
 } // namespace sono::stepfit
