@@ -9,7 +9,6 @@ import collections
 import os
 import pathlib
 import re
-import resource
 import shutil
 import signal
 import struct
@@ -27,11 +26,19 @@ ROOT = PLAYBACKS.parents[2]
 LAST = 20
 LEAVING_S = 60
 
+DANGLING = r"Input port 0 of algorithm vtkSono\w+ \(0x[0-9a-f]+\) has 0 connections but is not optional"
+# What follows it, where the filter is shown.
+AFTER_DANGLING = r"vtkPVGeometryFilter .* returned failure for request[^$]*REQUEST_DATA_OBJECT"
 # What ParaView itself says, each with its reason. Ours comes from Filters/SonoStage.cxx and need not be here.
 KNOWN = {
     # So says the Slice of a Wavelet, too, when somebody clicks on it with the right button after its source was changed and
     # before it was drawn again: the picking draws without updating.
     r"vtkPVImageSliceMapper.*Mapper has no vtkImageData input",
+    # A filter of a state that was saved after a script had deleted what it depends on; an Elevation of a deleted Wavelet fails,
+    # too. ParaView connects the first port of whatever its menus make.
+    DANGLING,
+    # An image under a name whose ending is none of its writers': ParaView's dialog falls back on CGNS, which it cannot hold.
+    r"vtkPCGNSWriter.*(Unable to write data object of class vtkImageData|returned failure for request)",
     # A question, which ParaView's dialog for a file's name asks with the sign of a warning.
     r"^MESSAGE .* already exists\. Do you want to replace it",
 }
@@ -57,16 +64,22 @@ class Judge:
         self.done = 0
         self.ended = False
         self.faults = []
+        self.stack = []
         self.kinds = collections.Counter()
         self.open = None  # lines of a message that may go on
         self.explained = collections.Counter()
 
-    def fault(self, sentence):
+    def place(self):
+        """Where something happens."""
+        return f"action {self.done}: ", "\n  after " + (self.acts[-1] if self.acts else "the start")
+
+    def fault(self, sentence, place=None):
         """Once, however often a filter is asked again."""
+        before, after = place or self.place()
         kind = re.sub(r"0x[0-9a-f]+|[\d.]+s\)|Time: \d+", "", sentence)
         self.kinds[kind] += 1
         if self.kinds[kind] == 1:
-            self.faults.append(f"action {self.done}: {sentence}\n  after " + (self.acts[-1] if self.acts else "the start"))
+            self.faults.append(before + sentence + after)
             print("FAULT", self.faults[-1], flush=True)
 
     def read(self, line):
@@ -78,6 +91,8 @@ class Judge:
             self.acts.append(line)
         elif line.startswith("DONE "):
             self.done = int(line.split()[1]) + 1
+        elif re.match(r"\d+ +0x", line):
+            self.stack.append(line)
         elif line == "END":
             self.ended = True
         elif line.startswith("STUBBORN "):
@@ -98,7 +113,7 @@ class Judge:
                 self.fault(f"an error that is not explained: {text}")
 
     def reason(self, text):
-        for pattern in KNOWN:
+        for pattern in KNOWN | ({AFTER_DANGLING} if self.explained[DANGLING] else set()):
             if re.search(pattern, text):
                 return pattern
         if "SonoStage.cxx" in text or "vtkSono" in text:
@@ -135,7 +150,43 @@ def write_label_maps(folder):
     (folder / "empty.nii").write_bytes(b"")
 
 
+# A monkey that does what must not be.
+SPOILT = """
+import os, signal, sys, time
+sys.path.insert(0, os.environ["MONKEY_SCRIPTS"])
+import monkey_acts
+from vtkmodules.vtkCommonCore import vtkLogger
+
+def spoil(hands, _):
+    hands.note("spoils")
+    yield
+    if hands.number == 1:
+        time.sleep(15)
+    elif hands.number == 2:
+        vtkLogger.Log(vtkLogger.VERBOSITY_ERROR, "spoilt.py", 1, "nobody knows why")
+    elif hands.number == 3:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    yield
+
+monkey_acts.choose = lambda hands: spoil
+exec(open(os.path.join(os.environ["MONKEY_SCRIPTS"], "monkey.py"), encoding="utf-8").read())
+"""
+
+
 class TestGuiMonkey(GuiCase):
+    def test_a_hang_an_error_and_a_crash_are_told(self):
+        judge = Judge()
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            script = folder / "spoilt.py"
+            script.write_text(SPOILT)
+            code = self.run_monkey(folder, judge, "1", 10, script)
+            self.tell_crash(judge, code)
+        self.assertEqual([fault.split(":")[0] for fault in judge.faults], ["action 1", "action 2", "action 3"])
+        for fault, part in zip(judge.faults, ("does not answer", "nobody knows why", "SIGSEGV")):
+            self.assertIn(part, fault)
+        self.assertFalse(judge.ended)
+
     def test_random_actions(self):
         seed, count = os.environ.get("MONKEY_SEED", "1"), int(os.environ.get("MONKEY_ACTIONS", "300"))
         print(f"seed {seed}, {count} actions", flush=True)
@@ -145,14 +196,14 @@ class TestGuiMonkey(GuiCase):
             write_label_maps(folder / "given")
             code = self.run_monkey(folder, judge, seed, count)
             if code < 0:
-                self.tell_crash(folder, judge, code)
+                self.tell_crash(judge, code)
         if judge.faults or code != 0 or not judge.ended:
             text = "\n".join([f"seed {seed}: ParaView ended with {code} in action {judge.done} of {count}",
                               "The last actions:", *judge.acts, "Faults:", *judge.faults])
             self.fail(text)
         self.assertEqual(judge.done, count)
 
-    def run_monkey(self, folder, judge, seed, count):
+    def run_monkey(self, folder, judge, seed, count, script=PLAYBACKS / "monkey.py"):
         """Until it ends by itself; the return code."""
         heart = folder / "heart"
         heart.write_bytes(bytes(16))
@@ -163,12 +214,12 @@ class TestGuiMonkey(GuiCase):
         begun = time.monotonic()
         process = subprocess.Popen(
             ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
-             f"--script={PLAYBACKS / 'monkey.py'}"], env=environment, cwd=folder, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, errors="replace",
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (resource.RLIM_INFINITY,) * 2))
+             f"--script={script}"], env=environment, cwd=folder, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, errors="replace")
 
         def hung(sentence):
-            judge.fault(f"hang: {sentence}\n" + self.backtrace(["-p", str(process.pid)]))
+            place = judge.place()  # by now: a debugger takes a while
+            judge.fault(f"hang: {sentence}\n" + self.backtrace(process.pid), place)
 
         dog = Watchdog(self.display, process.pid, heart, hung)
         log = os.environ.get("MONKEY_LOG")
@@ -192,18 +243,18 @@ class TestGuiMonkey(GuiCase):
         return code
 
     @staticmethod
-    def backtrace(of):
-        """Of a process or a core file, where there is a debugger."""
+    def backtrace(pid):
+        """Of the main thread, where there is a debugger."""
         if not shutil.which("gdb"):
             return "  (without gdb there is no backtrace)"
-        done = subprocess.run(["gdb", "-batch", "-nx", "-iex", "set debuginfod enabled off", "-ex", "bt 60", *of],
+        done = subprocess.run(["gdb", "-batch", "-nx", "-iex", "set debuginfod enabled off", "-ex", "bt 60", "-p", str(pid)],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", timeout=300)
         return "\n".join("  " + line for line in done.stdout.splitlines() if line.startswith("#"))
 
-    def tell_crash(self, folder, judge, code):
-        cores = sorted(folder.glob("core*"))
-        trace = self.backtrace([shutil.which("paraview"), str(cores[-1])]) if cores else "  (there is no core file)"
-        judge.fault(f"ended by {signal.Signals(-code).name}\n{trace}")
+    @staticmethod
+    def tell_crash(judge, code):
+        """With the stack that ParaView writes, innermost last."""
+        judge.fault("\n  ".join([f"ended by {signal.Signals(-code).name}", *judge.stack]))
 
 
 if __name__ == "__main__":

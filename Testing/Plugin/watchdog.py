@@ -2,7 +2,7 @@
 
 As a desktop does, it pings the window (_NET_WM_PING of the window managers' specification), and the monkey within notes when the
 ping comes through, with all other events, and when its timers fire. A window hangs that has not looked at its events for more
-than 5 s, of which the part that the machine spent on other processes (/proc/stat) does not count. A simulation that can be
+than 5 s; what its threads waited for a processor that other processes had does not count. A simulation that can be
 stopped looks at events as it goes, though no timer fires meanwhile: after 5 s of that Escape is pressed, as a person would,
 and a run that is not over 5 s later cannot be stopped, which counts as a hang, too."""
 import mmap
@@ -21,27 +21,43 @@ PING_S = 0.25
 
 
 class Clock:
-    """Seconds in which the machine could have worked for a process: of each second the part that others had is left out."""
+    """Seconds in which a process slept or computed: what its threads waited for a processor is left out, as far as it was
+    others that had it."""
 
     def __init__(self, pid):
-        self.own = pathlib.Path(f"/proc/{pid}/stat")
-        self.at = self.seconds = 0.0
-        self.others = 0.0
-        self.read()
+        self.pid = pid
+        self.seconds = 0.0
+        self.at = time.monotonic()
+        self.waited, self.own, self.all = self.waits_s(), self.own_s(), self.all_s()
 
-    def others_s(self):
-        """Of all processors together, what others and the system had so far."""
-        tick = os.sysconf("SC_CLK_TCK")
-        user, nice, system, _, _, *rest = map(int, pathlib.Path("/proc/stat").read_text().splitlines()[0].split()[1:9])
-        own = self.own.read_text().rsplit(")", 1)[1].split()
-        return (user + nice + system + sum(rest) - int(own[11]) - int(own[12])) / tick
+    def waits_s(self):
+        """Of each thread, how long it has been ready to run while others ran."""
+        waits = {}
+        for task in pathlib.Path(f"/proc/{self.pid}/task").iterdir():
+            try:
+                waits[task.name] = int((task / "schedstat").read_text().split()[1]) / 1e9
+            except OSError:
+                pass  # it has ended
+        return waits
+
+    def own_s(self):
+        fields = pathlib.Path(f"/proc/{self.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    @staticmethod
+    def all_s():
+        """Of all processors and processes."""
+        user, nice, system, _, _, *rest = pathlib.Path("/proc/stat").read_text().splitlines()[0].split()[1:9]
+        return sum(map(int, (user, nice, system, *rest))) / os.sysconf("SC_CLK_TCK")
 
     def read(self):
-        now, others = time.monotonic(), self.others_s()
+        now, waited, own, all_s = time.monotonic(), self.waits_s(), self.own_s(), self.all_s()
         passed = now - self.at
-        taken = (others - self.others) / os.cpu_count()
-        self.seconds += min(max(passed - taken, 0.0), passed)
-        self.at, self.others = now, others
+        wait = max((waited[task] - before for task, before in self.waited.items() if task in waited), default=0.0)
+        busy = all_s - self.all
+        others = min(max(1.0 - (own - self.own) / busy, 0.0), 1.0) if busy > 0.0 else 0.0
+        self.seconds += max(passed - wait * others, 0.0)
+        self.at, self.waited, self.own, self.all = now, waited, own, all_s
         return self.seconds
 
 
@@ -99,7 +115,7 @@ class Watchdog:
         while not self.ended.wait(PING_S):
             try:
                 now = clock.read()
-            except (FileNotFoundError, ProcessLookupError):
+            except OSError:
                 return
             last, was, beat = seen, beat, self.heart[:8]
             seen = int.from_bytes(self.heart[8:], "little")
