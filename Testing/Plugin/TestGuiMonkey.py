@@ -28,7 +28,7 @@ LEAVING_S = 60
 
 DANGLING = r"Input port 0 of algorithm vtkSono\w+ \(0x[0-9a-f]+\) has 0 connections but is not optional"
 # What follows it, where the filter is shown.
-AFTER_DANGLING = r"vtkPVGeometryFilter .* returned failure for request[^$]*REQUEST_DATA_OBJECT"
+AFTER_DANGLING = r"vtkPVGeometryFilter .* returned failure for request.*REQUEST_DATA_OBJECT"
 # What ParaView itself says, each with its reason. Ours comes from Filters/SonoStage.cxx and need not be here.
 KNOWN = {
     # So says the Slice of a Wavelet, too, when somebody clicks on it with the right button after its source was changed and
@@ -40,7 +40,7 @@ KNOWN = {
     # its menus make.
     DANGLING,
     # The same, saved as Python.
-    r"smstate.py.*[^$]*Untraceable: .* is not 'known' at this point",
+    r"smstate.py.*Untraceable: .* is not 'known' at this point",
     # An image under a name whose ending is none of its writers': ParaView's dialog falls back on CGNS, which it cannot hold.
     r"vtkPCGNSWriter.*(Unable to write data object of class vtkImageData|returned failure for request)",
     # A question, which ParaView's dialog for a file's name asks with the sign of a warning.
@@ -124,7 +124,7 @@ class Judge:
 
     def reason(self, text):
         for pattern in KNOWN | ({AFTER_DANGLING} if self.explained[DANGLING] else set()):
-            if re.search(pattern, text):
+            if re.search(pattern, text, re.DOTALL):
                 return pattern
         if "SonoStage.cxx" in text or "vtkSono" in text:
             return next((part for part in self.ours if part in text), None)
