@@ -63,10 +63,7 @@ void vtkSonoRayTracer::PrintSelf(ostream& os, vtkIndent indent)
 int vtkSonoRayTracer::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkMultiBlockDataSet" : "vtkPolyData");
-  if (port == 2)
-  {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // of the first two: so that one clear sentence says what is missing
   return 1;
 }
 
@@ -103,6 +100,14 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
 int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
+    if (!input[0]->GetInformationObject(0))
+    {
+      throw sono::Error("No anatomy is connected; give an Ultrasound Scene.");
+    }
+    if (!input[1]->GetInformationObject(0))
+    {
+      throw sono::Error("No probe is connected; give an Ultrasound Probe.");
+    }
     vtkNew<vtkFieldData> acquisition;
     acquisition->ShallowCopy(sono::announcedFields(input[1]->GetInformationObject(0)));
     const sono::ProbeField probe = sono::readProbe(acquisition);

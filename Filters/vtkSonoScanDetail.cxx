@@ -106,13 +106,23 @@ void vtkSonoScanDetail::PrintSelf(ostream& os, vtkIndent indent)
 int vtkSonoScanDetail::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // so that one clear sentence says what is missing
   return 1;
 }
 
-int vtkSonoScanDetail::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+int vtkSonoScanDetail::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkDataObject::SetPointDataActiveScalarInfo(output->GetInformationObject(0), VTK_UNSIGNED_SHORT, 1);
-  return 1;
+  return sono::announceStage(this, [&] {
+    if (!input[0]->GetInformationObject(0))
+    {
+      throw sono::Error("No label map is connected; set the filter's Input.");
+    }
+    if (!input[1]->GetInformationObject(0))
+    {
+      throw sono::Error("No scan is connected; give the CT or MR that was segmented.");
+    }
+    vtkDataObject::SetPointDataActiveScalarInfo(output->GetInformationObject(0), VTK_UNSIGNED_SHORT, 1);
+  });
 }
 
 std::string vtkSonoScanDetail::ContentKey()
@@ -144,7 +154,10 @@ int vtkSonoScanDetail::RequestUpdateExtent(vtkInformation*, vtkInformationVector
   {
     for (int port : { 0, 1 })
     {
-      sono::askNothing(input[port]->GetInformationObject(0));
+      if (vtkInformation* inInfo = input[port]->GetInformationObject(0))
+      {
+        sono::askNothing(inInfo);
+      }
     }
     return 1;
   }

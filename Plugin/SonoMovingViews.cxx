@@ -52,8 +52,9 @@ std::set<vtkObject*> partsOf(vtkSMProxy* representation)
 QList<pqView*> visibleViews()
 {
   QList<pqView*> views = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>();
-  views.erase(std::remove_if(views.begin(), views.end(), [](pqView* view) { return !view->widget()->isVisible(); }),
-              views.end());
+  // One whose layout was removed has no widget.
+  const auto isHidden = [](pqView* view) { return !view->widget() || !view->widget()->isVisible(); };
+  views.erase(std::remove_if(views.begin(), views.end(), isHidden), views.end());
   return views;
 }
 

@@ -24,8 +24,8 @@ if [[ ${1:-} != simulation ]]; then
 fi
 if [[ ${1:-} == tests ]]; then
   packages+=(
-    libgtest-dev libbenchmark-dev openimageio-tools libopenvdb-tools xvfb openmpi-bin python3-mpi4py python3-xlib
-    clang-format doxygen
+    libgtest-dev libbenchmark-dev openimageio-tools libopenvdb-tools xvfb openmpi-bin python3-mpi4py
+    python3-xlib python3-pyqt5 clang-format doxygen
     # readers of the learning study
     python3-pil python3-nibabel
     # registers phases

@@ -13,13 +13,16 @@ namespace sono {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
+constexpr int groupLines = 8;      // neighbouring lines that share the generated bricks
+constexpr int bricksPerYield = 32; // milliseconds; a group of deep lines at a high frequency takes seconds
 
-void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
+                std::vector<LineSum>& sums)
 {
   const LineGrid grid = lineGrid(sums.front());
   TissueScatterers::Buffer buffer;
   forSeenBricks(tissues.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    yieldPoint();
     const ScattererView scatterers = tissues.generate(brick, buffer);
     for (const std::size_t i : seeing)
     {
@@ -29,7 +32,8 @@ void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& b
 }
 
 /// Bricks of each level, row by row, of each line those that it takes.
-void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
+               std::vector<LineSum>& sums)
 {
   const NestedScatterers& nested = *setup.nested;
   const DensityView density = setup.density->view();
@@ -49,6 +53,7 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
       beam.sight = setup.nestedSight.empty() ? nullptr : &setup.nestedSight[std::size_t(level - density.finest)];
     }
     forBrickRows(nested.grid(level), reaching, [&](const BrickRow& row) {
+      yieldPoint();
       wanted.assign(std::size_t(row.count()), 0);
       bool isWanted = false;
       for (std::size_t i = 0; i < beams.size(); ++i)
@@ -76,10 +81,12 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, std:
   }
 }
 
-void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
+               std::vector<LineSum>& sums)
 {
   const LineGrid grid = lineGrid(sums.front());
   forSeenBricks(points.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    yieldPoint();
     const ScattererView scatterers = points.brick(brick);
     for (const std::size_t i : seeing)
     {
@@ -128,7 +135,14 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
   const EchoSetup setup(sources, lines, settings, 0, settings.interactive ? EchoDetail::Moving : EchoDetail::Full);
   RfLines out = setup.emptyRf();
   const ReverberationNodes nodes = setup.finisher.reverberationNodes();
-  const auto formGroup = [&](int group) {
+  const auto formGroup = [&](int group, const YieldPoint& yieldPoint) {
+    int bricks = 0;
+    const YieldPoint brickDone = [&] {
+      if (++bricks % bricksPerYield == 0)
+      {
+        yieldPoint();
+      }
+    };
     const int first = group * groupLines;
     const int last = std::min(first + groupLines, out.lineCount);
     std::vector<LineSum> sums(std::size_t(last - first), setup.finisher.emptySum());
@@ -143,15 +157,15 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     };
     if (setup.tissues)
     {
-      addTissues(*setup.tissues, beams([&](int l) { return setup.sceneBeam(l); }, setup.tissueSight), sums);
+      addTissues(*setup.tissues, beams([&](int l) { return setup.sceneBeam(l); }, setup.tissueSight), brickDone, sums);
     }
     if (setup.nested)
     {
-      addNested(setup, beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), sums);
+      addNested(setup, beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), brickDone, sums);
     }
     if (sources.points)
     {
-      addPoints(*sources.points, beams([&](int l) { return setup.pointBeam(l); }, setup.pointSight), sums);
+      addPoints(*sources.points, beams([&](int l) { return setup.pointBeam(l); }, setup.pointSight), brickDone, sums);
     }
     std::vector<LineSum> surfaces;
     if (setup.surfaces)
@@ -162,7 +176,8 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       {
         intensities.push_back(setup.finisher.intensity(l));
       }
-      setup.surfaces->add(beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), intensities, surfaces);
+      setup.surfaces->add(beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), intensities, brickDone,
+                          surfaces);
     }
     LineFinisher::Room room = setup.finisher.room();
     for (int l = first; l < last; ++l)

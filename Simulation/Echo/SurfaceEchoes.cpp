@@ -241,7 +241,7 @@ SurfaceTable SurfaceEchoes::pieceTable() const
 }
 
 void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
-                        std::vector<LineSum>& sums) const
+                        const YieldPoint& brickDone, std::vector<LineSum>& sums) const
 {
   const std::vector<BeamReach> exact = beams;
   Group group{ exact, intensities, sums, {}, targetTable() };
@@ -258,6 +258,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
       beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
     }
     forSeenBricks(targets_->grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+      brickDone();
       room.pieces.clear();
       room.diffuse.clear();
       for (const SurfacePoint& point : targets_->brick(brick))
@@ -273,6 +274,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
   beams = seeingPieces(std::move(beams));
   group.table = pieceTable();
   forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    brickDone();
     findPieces(brick, seeing, group, room);
     if (room.pieces.count > 0)
     {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/ParallelFor.h"
 #include "Echo/BeamModel.h"
 #include "Echo/BrickWalk.h"
 #include "Echo/FieldSight.h"
@@ -33,8 +34,8 @@ public:
                 const BeamModel& beams, SurfaceDetail detail = SurfaceDetail::Full);
 
   /// Adds to the sums of a group of lines, intensity included. `beams` are those of the scene, `intensities` and `sums`
-  /// parallel to them.
-  void add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
+  /// parallel to them. `brickDone` is called in each brick, and may throw Aborted.
+  void add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities, const YieldPoint& brickDone,
            std::vector<LineSum>& sums) const;
 
   // What a device needs to do the same.

@@ -7,7 +7,8 @@ import unittest
 
 import numpy as np
 from chain import label_image, listen, make
-from sonovdb.vtkSonoFilters import vtkSonoRayTracer, vtkSonoUltrasound
+from sonovdb.vtkSonoFilters import (vtkSonoProbeSource, vtkSonoRayTracer, vtkSonoScanDetail, vtkSonoThoraxSource,
+                                    vtkSonoUltrasound)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 TABLE = """tissue,impedance_MRayl,sound_speed_m_per_s,attenuation_dB_per_cm_MHz,mu0,sigma0,mu1,tau,gamma,roughness_mm,source
@@ -53,6 +54,23 @@ class TestHardInput(unittest.TestCase):
                 for array in filter(None, (where.GetArray(i) for i in range(where.GetNumberOfArrays()))):
                     self.assertTrue(np.isfinite(vtk_to_numpy(array).astype(float)).all(), array.GetName())
         return time.monotonic() - start
+
+    def test_what_is_not_connected_is_named(self):
+        """In one sentence, not by the pipeline's own, which repeat while a window draws."""
+        probe, thorax = vtkSonoProbeSource(), make(vtkSonoThoraxSource, SpacingMm=5.0)
+        for kind, port, given, missing in ((vtkSonoRayTracer, 1, probe, "No anatomy"), (vtkSonoRayTracer, 0, None, "No anatomy"),
+                                           (vtkSonoScanDetail, 0, thorax, "No scan"),
+                                           (vtkSonoScanDetail, 1, thorax, "No label map")):
+            with self.subTest(filter=kind.__name__, missing=missing):
+                filter_ = kind()
+                if given:
+                    filter_.SetInputConnection(port, given.GetOutputPort())
+                said, pipeline = listen(filter_), listen(filter_.GetExecutive())
+                for _ in range(2):
+                    filter_.Update()
+                self.assertEqual((len(said), pipeline), (1, []))
+                self.assertIn(missing + " is connected", said[0])
+                self.assertEqual(filter_.GetOutput().GetNumberOfPoints(), 0)
 
     def test_mirrors_on_both_sides(self):
         """The work ends with the time that is shown, whatever the number of boundaries that a path may meet."""

@@ -121,4 +121,15 @@ TEST(EchoInput, StopsWhenAsked)
   EXPECT_THROW(formRf({}, lines, EchoSettings{}, [](double) { return false; }), Aborted);
 }
 
+/// Not only between groups of lines, of which one may take seconds.
+TEST(EchoInput, StopsWithinALine)
+{
+  const SceneS1 scene(100000);
+  const PointScatterers points(scene.points);
+  int asked = 0;
+  EXPECT_THROW(
+    formRf({ nullptr, nullptr, &points }, { scene.lines[64] }, scene.settings, [&](double) { return ++asked < 3; }),
+    Aborted);
+}
+
 } // namespace

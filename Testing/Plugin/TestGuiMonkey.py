@@ -1,0 +1,274 @@
+"""Random actions in ParaView, without a crash, a hang (see watchdog.py) or an error that is not explained. Needs Xvfb,
+python3-pyqt5 and python3-xlib; run by ctest -L gui.
+
+MONKEY_ACTIONS says how many, MONKEY_SEED which: `MONKEY_SEED=7 MONKEY_ACTIONS=2000 ctest -R TestGuiMonkey -V`. Without, the
+same ones each time, as many as a test has time for. An action depends on the seed, on its number and on what ParaView shows
+then, so that the same ones follow, as far as no clock counts; a failure prints the last ones before it. MONKEY_LOG names a file
+for all that ParaView writes."""
+import collections
+import os
+import pathlib
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+from guicase import PLAYBACKS, PLUGIN, GuiCase
+from watchdog import LONGEST_S, Watchdog
+
+ROOT = PLAYBACKS.parents[2]
+LAST = 20
+LEAVING_S = 60
+
+DANGLING = r"Input port 0 of algorithm vtkSono\w+ \(0x[0-9a-f]+\) has 0 connections but is not optional"
+# What follows it, where the filter is shown.
+AFTER_DANGLING = r"vtkPVGeometryFilter .* returned failure for request.*REQUEST_DATA_OBJECT"
+# What ParaView itself says, each with its reason. Ours comes from Filters/SonoStage.cxx and need not be here.
+KNOWN = {
+    # So says the Slice of a Wavelet, too, when somebody clicks on it with the right button after its source was changed and
+    # before it was drawn again: the picking draws without updating.
+    r"vtkPVImageSliceMapper.*Mapper has no vtkImageData input",
+    # A filter of a state that was saved after what it depends on was deleted, by a script or by the panel's Delete, which looks
+    # for those that depend on the first output alone (pqPipelineSource::getNumberOfConsumers): a Simulate Ultrasound can be
+    # deleted under its flat views. An Elevation of a deleted Wavelet fails, too. ParaView connects the first port of whatever
+    # its menus make.
+    DANGLING,
+    # The same, saved as Python.
+    r"smstate.py.*Untraceable: .* is not 'known' at this point",
+    # An image under a name whose ending is none of its writers': ParaView's dialog falls back on CGNS, which it cannot hold.
+    r"vtkPCGNSWriter.*(Unable to write data object of class vtkImageData|returned failure for request)",
+    # A question, which ParaView's dialog for a file's name asks with the sign of a warning.
+    r"^MESSAGE .* already exists\. Do you want to replace it",
+}
+
+
+# Of ParaView's own, what may take longer than the window may be silent, while others have the machine, too: making all proxies of
+# a state, and, with Python in the process, the classes of all proxies after a reset.
+SLOW = re.compile(r"ACT \d+ (loads state|actionDelete_All)")
+SLOW_S = 30.0
+
+
+def explained(sources):
+    """Parts of the sentences by which our filters refuse bad input: the literals of four words and more in the sources."""
+    parts = set()
+    for path in sources:
+        for literal in re.findall(r'"((?:[^"\\\n]|\\.)*)"', path.read_text(encoding="utf-8")):
+            if len(literal.split()) >= 4:
+                parts.add(literal.replace('\\"', '"').strip())
+    return parts
+
+
+class Judge:
+    """Collects what ParaView writes, and tells errors that are not explained."""
+
+    def __init__(self):
+        self.ours = explained(path for floor in ("Simulation", "Filters") for path in sorted((ROOT / floor).rglob("*"))
+                              if path.suffix in (".h", ".cpp", ".cxx") and "Cuda" not in path.parts)
+        self.acts = collections.deque(maxlen=LAST)
+        self.done = 0
+        self.ended = False
+        self.faults = []
+        self.stack = []
+        self.kinds = collections.Counter()
+        self.open = None  # lines of a message that may go on
+        self.explained = collections.Counter()
+
+    def place(self):
+        """Where something happens."""
+        return f"action {self.done}: ", "\n  after " + (self.acts[-1] if self.acts else "the start")
+
+    def fault(self, sentence, place=None):
+        """Once, however often a filter is asked again."""
+        before, after = place or self.place()
+        kind = re.sub(r"0x[0-9a-f]+|[\d.]+s\)|Time: \d+", "", sentence)
+        self.kinds[kind] += 1
+        if self.kinds[kind] == 1:
+            self.faults.append(before + sentence + after)
+            print("FAULT", self.faults[-1], flush=True)
+
+    def read(self, line):
+        line = re.sub(r"\x1b\[[\d;]*m", "", line)  # colours
+        begins = re.match(r"\(\s*[\d.]+s\)|ACT |DONE |RAISED |MESSAGE |DIALOG |STUBBORN |END$", line)
+        if begins or not line.startswith(" ") and self.open and self.open[0].startswith("RAISED"):
+            self.close()
+        if line.startswith("ACT "):
+            self.acts.append(line)
+        elif line.startswith("DONE "):
+            self.done = int(line.split()[1]) + 1
+        elif re.match(r"\d+ +0x", line):
+            self.stack.append(line)
+        elif line == "END":
+            self.ended = True
+        elif line.startswith("STUBBORN "):
+            self.fault(f"a dialog cannot be closed: {line}")
+        elif " ERR| " in line or line.startswith(("RAISED ", "MESSAGE ", "Traceback ")):
+            self.open = [line]
+        elif self.open:
+            self.open.append(line)
+
+    def close(self):
+        """The message is complete."""
+        text, self.open = "\n".join(self.open or []), None
+        if text:
+            reason = self.reason(text)
+            if reason:
+                self.explained[reason] += 1
+            else:
+                self.fault(f"an error that is not explained: {text}")
+
+    def reason(self, text):
+        for pattern in KNOWN | ({AFTER_DANGLING} if self.explained[DANGLING] else set()):
+            if re.search(pattern, text, re.DOTALL):
+                return pattern
+        if "SonoStage.cxx" in text or "vtkSono" in text:
+            return next((part for part in self.ours if part in text), None)
+        return None
+
+
+def write_label_maps(folder):
+    """Small ones, and damaged ones."""
+    folder.mkdir()
+    size = 24
+
+    def label(x, y, z):
+        r = sum(((each - size / 2) / (size / 2)) ** 2 for each in (x, y, z))
+        return 0 if r > 0.95 else 3 if r > 0.8 else 2 if r < 0.15 else 1
+
+    voxels = bytes(label(x, y, z) for z in range(size) for y in range(size) for x in range(size))
+    header = (f"NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: {size} {size} {size}\n"
+              "space directions: (5,0,0) (0,5,0) (0,0,5)\nspace origin: (-60,-60,-60)\nencoding: raw\n"
+              "Segment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=liver\nSegment1_ID:=b\nSegment1_LabelValue:=2\n"
+              "Segment1_Name:=heart\nSegment2_ID:=c\nSegment2_LabelValue:=3\nSegment2_Name:=skin\n\n").encode()
+    nifti = struct.pack("<i36x8h12x4h8f3f", 348, 3, size, size, size, 1, 1, 1, 1, 0, 2, 8, 0, 1, 5, 5, 5, 0, 0, 0, 0, 352, 1, 0)
+    nifti = nifti.ljust(252, b"\0") + struct.pack("<2h6f12f", 0, 1, 0, 0, 0, 0, 0, 0, 5, 0, 0, -60, 0, 5, 0, -60, 0, 0, 5, -60)
+    nifti = nifti.ljust(344, b"\0") + b"n+1\0" + bytes(4)
+    whole = {"map.seg.nrrd": header + voxels, "map.nii": nifti + voxels}
+    for name, content in whole.items():
+        (folder / name).write_bytes(content)
+        (folder / ("cut_" + name)).write_bytes(content[:len(content) // 2])
+        bent = bytearray(content)
+        for i in range(0, 200, 13):
+            bent[i] ^= 0x55
+        (folder / ("bent_" + name)).write_bytes(bent)
+    (folder / "huge.seg.nrrd").write_bytes(header.replace(f"sizes: {size} {size}".encode(), b"sizes: 900000 900000") + voxels)
+    (folder / "empty.nii").write_bytes(b"")
+
+
+# A monkey that does what must not be.
+SPOILT = """
+import os, signal, sys, time
+sys.path.insert(0, os.environ["MONKEY_SCRIPTS"])
+import monkey_acts
+from vtkmodules.vtkCommonCore import vtkLogger
+
+def spoil(hands, _):
+    hands.note("spoils")
+    yield
+    if hands.number == 1:
+        time.sleep(15)
+    elif hands.number == 2:
+        vtkLogger.Log(vtkLogger.VERBOSITY_ERROR, "spoilt.py", 1, "nobody knows why")
+    elif hands.number == 3:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    yield
+
+monkey_acts.choose = lambda hands: spoil
+exec(open(os.path.join(os.environ["MONKEY_SCRIPTS"], "monkey.py"), encoding="utf-8").read())
+"""
+
+
+class TestGuiMonkey(GuiCase):
+    def test_a_hang_an_error_and_a_crash_are_told(self):
+        judge = Judge()
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            script = folder / "spoilt.py"
+            script.write_text(SPOILT)
+            code = self.run_monkey(folder, judge, "1", 10, script)
+            self.tell_crash(judge, code)
+        self.assertEqual([fault.split(":")[0] for fault in judge.faults], ["action 1", "action 2", "action 3"])
+        for fault, part in zip(judge.faults, ("does not answer", "nobody knows why", "SIGSEGV")):
+            self.assertIn(part, fault)
+        self.assertFalse(judge.ended)
+
+    def test_random_actions(self):
+        seed, count = os.environ.get("MONKEY_SEED", "1"), int(os.environ.get("MONKEY_ACTIONS", "300"))
+        print(f"seed {seed}, {count} actions", flush=True)
+        judge = Judge()
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            write_label_maps(folder / "given")
+            code = self.run_monkey(folder, judge, seed, count)
+            if code < 0:
+                self.tell_crash(judge, code)
+        if judge.faults or code != 0 or not judge.ended:
+            text = "\n".join([f"seed {seed}: ParaView ended with {code} in action {judge.done} of {count}",
+                              "The last actions:", *judge.acts, "Faults:", *judge.faults])
+            self.fail(text)
+        self.assertEqual(judge.done, count)
+
+    def run_monkey(self, folder, judge, seed, count, script=PLAYBACKS / "monkey.py"):
+        """Until it ends by itself; the return code."""
+        heart = folder / "heart"
+        heart.write_bytes(bytes(16))
+        # Shaders that were compiled for one view are there for the next.
+        environment = dict(os.environ, DISPLAY=self.display, HOME=str(folder), XDG_RUNTIME_DIR=str(folder),
+                           XDG_CACHE_HOME=str(folder / "cache"), MONKEY_SEED=seed, MONKEY_ACTIONS=str(count),
+                           MONKEY_SCRIPTS=str(PLAYBACKS))
+        begun = time.monotonic()
+        process = subprocess.Popen(
+            ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
+             f"--script={script}"], env=environment, cwd=folder, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, errors="replace")
+
+        def hung(sentence):
+            place = judge.place()  # by now: a debugger takes a while
+            judge.fault(f"hang: {sentence}\n" + self.backtrace(process.pid), place)
+
+        def longest_s():
+            return SLOW_S if judge.acts and SLOW.match(judge.acts[-1]) else LONGEST_S
+
+        dog = Watchdog(self.display, process.pid, heart, hung, longest_s)
+        log = os.environ.get("MONKEY_LOG")
+        with open(log, "w", encoding="utf-8") if log else open(os.devnull, "w", encoding="utf-8") as record:
+            killer = None
+            for line in process.stdout:
+                record.write(line)
+                record.flush()
+                judge.read(line.rstrip("\n"))
+                if judge.ended and not killer:
+                    killer = threading.Timer(LEAVING_S, process.kill)
+                    killer.start()
+        judge.close()
+        code = process.wait()
+        dog.stop()
+        if killer:
+            killer.cancel()
+        print(f"{judge.done} actions in {time.monotonic() - begun:.0f} s; the window was silent for {dog.longest_s:.1f} s at "
+              f"most; {dog.stops} runs stopped after 5 s; {sum(judge.explained.values())} errors that are explained, of "
+              f"{len(judge.explained)} kinds", flush=True)
+        return code
+
+    @staticmethod
+    def backtrace(pid):
+        """Of the main thread, where there is a debugger."""
+        if not shutil.which("gdb"):
+            return "  (without gdb there is no backtrace)"
+        done = subprocess.run(["gdb", "-batch", "-nx", "-iex", "set debuginfod enabled off", "-ex", "bt 60", "-p", str(pid)],
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", timeout=300)
+        return "\n".join("  " + line for line in done.stdout.splitlines() if line.startswith("#"))
+
+    @staticmethod
+    def tell_crash(judge, code):
+        """With the stack that ParaView writes, innermost last."""
+        judge.fault("\n  ".join([f"ended by {signal.Signals(-code).name}", *judge.stack]))
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
