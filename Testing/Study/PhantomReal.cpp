@@ -30,8 +30,9 @@ struct Scanner
 };
 
 // Of the last, bandwidth, smoothing and fans are chosen by the published speckle of plain gel: its axial and lateral
-// size and its SD; nothing else was. The one before is chosen in the same way by eight squares of that gel, see
-// measureRealPictures. The others say what each setting is for.
+// size and its SD. That levels are smoothed, and not along the line, is what the wires say; nothing else was chosen.
+// The one before is chosen in the same way by eight squares of that gel, see measureRealPictures. The others say what
+// each setting is for.
 const std::vector<Scanner> scanners{
   { "_without_smoothing", 0.4, 1, 0.0, 0.0, false },
   { "_smoothed_envelope", 0.4, 1, 0.2, 0.76, false },
