@@ -48,6 +48,7 @@ public:
   sonoParameter(NoiseSeed, int);
   sonoParameter(AxialSmoothingMm, double);
   sonoParameter(LateralSmoothingLines, double);
+  sonoSwitch(SmoothCompressed);
   sonoParameter(Tgc1Db, double);
   sonoParameter(Tgc2Db, double);
   sonoParameter(Tgc3Db, double);

@@ -193,6 +193,15 @@ __global__ void setReference(double* reference, int images, double value)
   }
 }
 
+__global__ void mapLevels(const float* level, std::size_t count, const float* map, int mapCount, float* grey)
+{
+  const std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
+  if (i < count)
+  {
+    grey[i] = mapCount > 0 ? mapGrey(map, mapCount, level[i]) : level[i];
+  }
+}
+
 /// `mapCount` 0: a linear grey map.
 __global__ void compressSamples(const float* envelope, const double* gainDb, const float* lateralGainDb,
                                 const double* reference, int samples, std::size_t perImage, float rangeDb,
@@ -312,6 +321,26 @@ void DeviceDisplay::prepare(const BModeJob& job, cudaStream_t stream, Traffic& t
   haze_.upload(job.haze.power, stream, traffic);
 }
 
+const float* DeviceDisplay::smooth(const float* values, std::size_t count, int samples, cudaStream_t stream)
+{
+  const auto blocks = unsigned((count + threads - 1) / threads);
+  if (!settings_.axialSmoothing.empty())
+  {
+    smoothedAlong_.resize(count);
+    smoothRows<<<blocks, threads, 0, stream>>>(values, smoothedAlong_.data(), count, samples, 1, axialSmoothing_.data(),
+                                               int(settings_.axialSmoothing.size()) - 1);
+    values = smoothedAlong_.data();
+  }
+  if (!settings_.lateralSmoothing.empty())
+  {
+    smoothedAcross_.resize(count);
+    smoothRows<<<blocks, threads, 0, stream>>>(values, smoothedAcross_.data(), count, settings_.linesAcross, samples,
+                                               lateralSmoothing_.data(), int(settings_.lateralSmoothing.size()) - 1);
+    values = smoothedAcross_.data();
+  }
+  return values;
+}
+
 const float* DeviceDisplay::receive(const float* envelope, std::size_t count, int lines, int samples,
                                     cudaStream_t stream)
 {
@@ -325,21 +354,7 @@ const float* DeviceDisplay::receive(const float* envelope, std::size_t count, in
       settings_.noiseSeed, haze_.data(), haze.nodeCount, haze.nodesPerSample);
     envelope = received_.data();
   }
-  if (!settings_.axialSmoothing.empty())
-  {
-    smoothedAlong_.resize(count);
-    smoothRows<<<blocks, threads, 0, stream>>>(envelope, smoothedAlong_.data(), count, samples, 1,
-                                               axialSmoothing_.data(), int(settings_.axialSmoothing.size()) - 1);
-    envelope = smoothedAlong_.data();
-  }
-  if (!settings_.lateralSmoothing.empty())
-  {
-    smoothedAcross_.resize(count);
-    smoothRows<<<blocks, threads, 0, stream>>>(envelope, smoothedAcross_.data(), count, settings_.linesAcross, samples,
-                                               lateralSmoothing_.data(), int(settings_.lateralSmoothing.size()) - 1);
-    envelope = smoothedAcross_.data();
-  }
-  return envelope;
+  return settings_.smoothCompressed ? envelope : smooth(envelope, count, samples, stream);
 }
 
 GreyArrays DeviceDisplay::room(int images, int lines, int samples)
@@ -381,9 +396,17 @@ void DeviceDisplay::compress(const float* envelopes, int firstImage, int images,
     setReference<<<imageBlocks, threads, 0, stream>>>(reference, images, settings_.referenceAmplitude);
   }
   const dim3 grid(unsigned(std::max<std::size_t>(1, std::min<std::size_t>(perImage / 1024, 2048))), images);
+  float* grey = to.grey.data() + firstImage * perImage;
+  const int mapCount = int(settings_.greyMap.size());
   compressSamples<<<grid, threads, 0, stream>>>(envelope, gainDb_.data(), lateralGainDb_.data(), reference, samples,
                                                 perImage, settings_.rangeDb, settings_.rejectDb, greyMap_.data(),
-                                                int(settings_.greyMap.size()), to.grey.data() + firstImage * perImage);
+                                                settings_.smoothCompressed ? 0 : mapCount, grey);
+  if (settings_.smoothCompressed)
+  {
+    const float* level = smooth(grey, count, samples, stream);
+    mapLevels<<<unsigned((count + threads - 1) / threads), threads, 0, stream>>>(level, count, greyMap_.data(),
+                                                                                 mapCount, grey);
+  }
   check(cudaGetLastError(), "compressing grey levels");
 }
 

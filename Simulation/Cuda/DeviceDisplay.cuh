@@ -32,7 +32,9 @@ public:
   DeviceArray<std::uint8_t> maskOf(const PlaneScan& scan, cudaStream_t stream);
 
 private:
-  /// The envelopes with noise and haze, smoothed; they stay until the next call.
+  /// Values smoothed along the lines and across them; they stay until the next call.
+  const float* smooth(const float* values, std::size_t count, int samples, cudaStream_t stream);
+  /// The envelopes with noise and haze, smoothed where they are what is; they stay until the next call.
   const float* receive(const float* envelope, std::size_t count, int lines, int samples, cudaStream_t stream);
 
   BModeJob settings_; ///< without its tables

@@ -221,6 +221,7 @@ struct BModeJob
   std::vector<float> greyMap;          ///< empty: linear
   std::vector<float> axialSmoothing;   ///< weights of 0, 1, ... samples away; empty: none
   std::vector<float> lateralSmoothing; ///< the same of lines
+  bool smoothCompressed = false;       ///< the levels instead of the envelope
   int linesAcross = 1;                 ///< that lie in one plane
   HazePower haze;                      ///< of the lines of an image
   int firstReferenceSample = 0;        ///< of a line: the automatic reference leaves out what lies above

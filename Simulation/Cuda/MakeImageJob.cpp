@@ -430,6 +430,7 @@ BModeJob makeBModeJob(const BModeSettings& settings, int lineCount, int sampleCo
   job.greyMap = settings.greyMap;
   job.axialSmoothing = axialSmoothing(settings, sampleMm);
   job.lateralSmoothing = lateralSmoothing(settings);
+  job.smoothCompressed = settings.smoothCompressed;
   job.linesAcross = linesAcross(settings, lineCount);
   job.haze = makeHaze(settings, lineCount, sampleCount, sampleMm);
   job.noiseRms = settings.addNoise ? float(std::pow(10.0, settings.noiseDb / 20.0)) : 0.0f;

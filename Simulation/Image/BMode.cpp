@@ -161,28 +161,42 @@ void validateSizes(const std::vector<float>& envelope, int lineCount, int sample
   }
 }
 
-std::vector<float> smoothedAcross(std::vector<float> envelope, int lineCount, int sampleCount,
-                                  const BModeSettings& settings)
+/// Envelopes or levels, along the lines and then across them.
+std::vector<float> smooth(std::vector<float> values, int lineCount, int sampleCount, double sampleMm,
+                          const BModeSettings& settings)
 {
-  const std::vector<float> weights = lateralSmoothing(settings);
-  if (weights.empty())
+  const std::vector<float> axial = axialSmoothing(settings, sampleMm);
+  const std::vector<float> lateral = lateralSmoothing(settings);
+  std::vector<float> smoothed(axial.empty() && lateral.empty() ? 0 : values.size());
+  if (!axial.empty())
   {
-    return envelope;
+    parallelFor(lineCount, {}, [&](int l) {
+      const std::size_t first = std::size_t(l) * std::size_t(sampleCount);
+      for (int s = 0; s < sampleCount; ++s)
+      {
+        smoothed[first + std::size_t(s)] =
+          smoothedEnvelope(values.data() + first, sampleCount, 1, s, axial.data(), int(axial.size()) - 1);
+      }
+    });
+    values.swap(smoothed);
   }
-  const int across = linesAcross(settings, lineCount);
-  std::vector<float> smoothed(envelope.size());
-  parallelFor(lineCount, {}, [&](int l) {
-    const float* plane = envelope.data() + std::size_t(l - l % across) * std::size_t(sampleCount);
-    float* line = smoothed.data() + std::size_t(l) * std::size_t(sampleCount);
-    for (int s = 0; s < sampleCount; ++s)
-    {
-      line[s] = smoothedEnvelope(plane + s, across, sampleCount, l % across, weights.data(), int(weights.size()) - 1);
-    }
-  });
-  return smoothed;
+  if (!lateral.empty())
+  {
+    const int across = linesAcross(settings, lineCount);
+    parallelFor(lineCount, {}, [&](int l) {
+      const float* plane = values.data() + std::size_t(l - l % across) * std::size_t(sampleCount);
+      float* line = smoothed.data() + std::size_t(l) * std::size_t(sampleCount);
+      for (int s = 0; s < sampleCount; ++s)
+      {
+        line[s] = smoothedEnvelope(plane + s, across, sampleCount, l % across, lateral.data(), int(lateral.size()) - 1);
+      }
+    });
+    values.swap(smoothed);
+  }
+  return values;
 }
 
-/// The envelope with noise and haze, smoothed.
+/// The envelope with noise and haze, smoothed where it is what is.
 std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampleCount, double sampleMm,
                            const BModeSettings& settings)
 {
@@ -191,7 +205,6 @@ std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampl
     addReceiverNoise(envelope, sampleCount, settings.noiseDb, settings.pulseSigmaMm / sampleMm, settings.noiseSeed);
   }
   const HazePower haze = makeHaze(settings, lineCount, sampleCount, sampleMm);
-  const std::vector<float> axial = axialSmoothing(settings, sampleMm);
   parallelFor(lineCount, {}, [&](int l) {
     float* line = envelope.data() + std::size_t(l) * std::size_t(sampleCount);
     const float* power = haze.power.data() + std::size_t(l) * std::size_t(haze.nodeCount);
@@ -199,13 +212,9 @@ std::vector<float> receive(std::vector<float> envelope, int lineCount, int sampl
     {
       line[s] = hazyEnvelope(line[s], power, float(s) * haze.nodesPerSample);
     }
-    const std::vector<float> rough(line, line + (axial.empty() ? 0 : sampleCount));
-    for (int s = 0; !axial.empty() && s < sampleCount; ++s)
-    {
-      line[s] = smoothedEnvelope(rough.data(), sampleCount, 1, s, axial.data(), int(axial.size()) - 1);
-    }
   });
-  return smoothedAcross(std::move(envelope), lineCount, sampleCount, settings);
+  return settings.smoothCompressed ? std::move(envelope)
+                                   : smooth(std::move(envelope), lineCount, sampleCount, sampleMm, settings);
 }
 
 } // namespace
@@ -265,8 +274,9 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   settings.validate();
   validateSizes(echoEnvelope, lineCount, sampleCount, sampleMm);
 
+  const bool smooths = settings.axialSmoothingMm > 0.0 || settings.lateralSmoothingLines > 0.0;
   std::vector<float> received;
-  if (settings.addNoise || settings.addHaze || settings.axialSmoothingMm > 0.0 || settings.lateralSmoothingLines > 0.0)
+  if (settings.addNoise || settings.addHaze || (smooths && !settings.smoothCompressed))
   {
     received = receive(echoEnvelope, lineCount, sampleCount, sampleMm, settings);
   }
@@ -296,13 +306,20 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
       {
         grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s] + lineDb[l], rangeDb, rejectDb);
       }
-      if (!settings.greyMap.empty())
-      {
-        std::transform(grey + first, grey + first + offsetDb.size(), grey + first,
-                       [&](float x) { return mapGrey(settings.greyMap.data(), int(settings.greyMap.size()), x); });
-      }
     }
   });
+  if (smooths && settings.smoothCompressed)
+  {
+    result.grey = smooth(std::move(result.grey), lineCount, sampleCount, sampleMm, settings);
+  }
+  if (!settings.greyMap.empty())
+  {
+    parallelFor(lineCount, {}, [&](int l) {
+      float* line = result.grey.data() + std::size_t(l) * std::size_t(sampleCount);
+      std::transform(line, line + sampleCount, line,
+                     [&](float x) { return mapGrey(settings.greyMap.data(), int(settings.greyMap.size()), x); });
+    });
+  }
   return result;
 }
 

@@ -44,11 +44,12 @@ int firstReferenceSample(int sampleCount, double sampleMm);
 
 /// Noise, haze, smoothing, time-gain compensation, log compression, reject:
 /// x = 1 + (20 log10(a) + tgc(depth) + gain(line) - 20 log10(reference)) / range, clamped to [0, 1], within 1e-4 dB,
-/// then grey = greyMap(x), where a is the smoothed sqrt(|envelope + noise|^2 + haze). `envelope` is lineCount x
-/// sampleCount. NaN, negative and subnormal envelopes are black, +infinity is white. The automatic reference is
-/// whiteOverRank times the envelope of referenceRank among those from 6 mm on (among all, where the lines end there):
-/// tissue keeps its grey whether or not a wall shines beside it. Where that envelope is zero it is the largest finite
-/// one; where all are zero, 1. Throws Error for settings out of range, counts below 1 and sizes that do not match.
+/// then grey = greyMap(x), where a is the smoothed sqrt(|envelope + noise|^2 + haze), or x is smoothed instead.
+/// `envelope` is lineCount x sampleCount. NaN, negative and subnormal envelopes are black, +infinity is white. The
+/// automatic reference is whiteOverRank times the envelope of referenceRank among those from 6 mm on (among all, where
+/// the lines end there): tissue keeps its grey whether or not a wall shines beside it. Where that envelope is zero it
+/// is the largest finite one; where all are zero, 1. Throws Error for settings out of range, counts below 1 and sizes
+/// that do not match.
 BModeLines makeBMode(const std::vector<float>& envelope, int lineCount, int sampleCount, double sampleMm,
                      const BModeSettings& settings);
 

@@ -34,6 +34,7 @@ struct BModeSettings
   std::uint64_t noiseSeed = 1;
   double axialSmoothingMm = 0.0;      ///< of the envelope, before any gain
   double lateralSmoothingLines = 0.0; ///< the same, behind it
+  bool smoothCompressed = false;      ///< both of the compressed levels instead, before the grey map
   double frequencyMHz = 2.5;          ///< centre of the band that is received, > 0
   double pulseSigmaMm = 0.2;    ///< standard deviation of the receive filter's pulse: the noise's grain along a line
   double hazeGrowthPerMm = 0.0; ///< of a harmonic picture, see bodyWallGrowthPerMm; 0: the haze is the fundamental's
@@ -91,6 +92,13 @@ struct BModeSettings
             Parameter{ "lateralSmoothingLines", "Lateral Smoothing (lines)", between(0, 50),
                        "Width at half height of the Gaussian that smooths the envelope across the lines of a plane, in "
                        "lines (no unit), 0 to 50: a sector's speckle gets the wider the deeper it lies. 0: none." });
+    visitor(
+      self.smoothCompressed,
+      Parameter{ "smoothCompressed",
+                 "Smooth Compressed",
+                 {},
+                 "Let the smoothing act on the compressed levels, as a scanner's speckle reduction may, instead of "
+                 "the envelope: strong points stay narrow while speckle grows wide." });
     visitSliders(self.tgcDb, visitor,
                  { "tgc1Db", "tgc2Db", "tgc3Db", "tgc4Db", "tgc5Db", "tgc6Db", "tgc7Db", "tgc8Db" },
                  { "TGC 1 (dB)", "TGC 2 (dB)", "TGC 3 (dB)", "TGC 4 (dB)", "TGC 5 (dB)", "TGC 6 (dB)", "TGC 7 (dB)",

@@ -240,6 +240,28 @@ TEST(GpuStages, WholeImagesAndSweeps)
   EXPECT_EQ(seen, int(poses.size()));
 }
 
+TEST(GpuStages, SmoothedLevelsAreTheCpus)
+{
+  SONO_GPU_OR_SKIP();
+  ImageSettings s = thoraxSettings();
+  s.bmode.axialSmoothingMm = 0.3;
+  s.bmode.lateralSmoothingLines = 1.5;
+  s.bmode.smoothCompressed = true;
+  s.bmode.greyMap = { 0.0f, 0.2f, 0.7f, 1.0f };
+  const std::vector<ProbePose> pose{ thoraxPhantomA4C().orthonormalized() };
+  s.setDevice(Device::Cpu);
+  const PlaneImage cpu = imagesOf(thorax(), pose, s).front();
+  s.setDevice(Device::Cuda);
+  const PlaneImage gpu = imagesOf(thorax(), pose, s).front();
+  ASSERT_EQ(gpu.value.size(), cpu.value.size());
+  double squared = 0.0;
+  for (std::size_t p = 0; p < cpu.value.size(); ++p)
+  {
+    squared += gpu.mask[p] == cpu.mask[p] ? std::pow(double(gpu.value[p]) - cpu.value[p], 2) : 0.0;
+  }
+  EXPECT_LE(std::sqrt(squared / double(cpu.value.size())), 1e-3);
+}
+
 TEST(GpuStages, APictureIsItsLevelsInBytesAndHasTheCpusLabels)
 {
   SONO_GPU_OR_SKIP();

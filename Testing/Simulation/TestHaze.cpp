@@ -1,6 +1,7 @@
 #include "Image/BMode.h"
 #include "Image/Haze.h"
 #include "ImageTestTools.h"
+#include "Kernel/GreyLevel.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -159,6 +160,40 @@ TEST(LateralSmoothing, TurnsAStepIntoTheNormalDistributionWithinItsPlane)
       const float level = grey[std::size_t(line * samples + s)];
       EXPECT_NEAR(std::pow(10.0, 3.0 * (level - 1.0)), 0.2 + 0.6 * step, 1e-4) << line;
     }
+  }
+}
+
+TEST(Smoothing, OfLevelsLeavesABellsWidthAndComesBeforeTheMap)
+{
+  // A bell's level is a parabola, which a Gaussian of variance v lowers by v dB'' / 2 everywhere: 8.6859 v / (2 s^2).
+  constexpr int side = 201;
+  constexpr double sigma = 12.0; // lines and samples
+  std::vector<float> bell;
+  for (int l = 0; l < side; ++l)
+  {
+    for (int s = 0; s < side; ++s)
+    {
+      bell.push_back(float(std::exp(-0.5 * (std::pow(l - 100, 2) + std::pow(s - 100, 2)) / (sigma * sigma))));
+    }
+  }
+  BModeSettings settings = plain();
+  settings.dynamicRangeDb = 100.0;
+  settings.axialSmoothingMm = 0.6; // at 0.1 mm a sample
+  settings.lateralSmoothingLines = 8.0;
+  settings.smoothCompressed = true;
+  const auto level = makeBMode(bell, side, side, 0.1, settings).grey;
+  const double lowerDb = (36.0 + 64.0) / std::pow(2.3548200450, 2) * 8.6858896 / (2.0 * sigma * sigma);
+  for (const int away : { 0, 5, 10, 15 })
+  {
+    const double db = -8.6858896 * 0.5 * away * away / (sigma * sigma) - lowerDb;
+    EXPECT_NEAR(100.0 * (level[std::size_t(100 * side + 100 + away)] - 1.0), db, 2e-3) << away << " samples";
+    EXPECT_NEAR(100.0 * (level[std::size_t((100 + away) * side + 100)] - 1.0), db, 2e-3) << away << " lines";
+  }
+  settings.greyMap = { 0.0f, 0.1f, 1.0f };
+  const auto grey = makeBMode(bell, side, side, 0.1, settings).grey;
+  for (std::size_t i = 0; i < grey.size(); i += 97)
+  {
+    EXPECT_EQ(grey[i], mapGrey(settings.greyMap.data(), 3, level[i]));
   }
 }
 

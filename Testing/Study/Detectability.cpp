@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sono::study {
 namespace {
@@ -26,17 +27,39 @@ Moments momentsOf(const std::vector<float>& values)
   return m;
 }
 
-/// Probability that a gamma variable of shape m and scale 1 exceeds x.
-double gammaTail(int m, double x)
+/// Probability that a gamma variable of shape m and scale 1 is at most x: x^m e^-x / Gamma(m+1) times the sum of
+/// x^k / ((m+1) ... (m+k)).
+double gammaBelow(double m, double x)
 {
   double term = 1.0;
   double sum = 0.0;
-  for (int k = 0; k < m; ++k)
+  for (int k = 1; term > 1e-16 * sum; ++k)
   {
     sum += term;
-    term *= x / (k + 1);
+    term *= x / (m + k);
   }
-  return std::exp(-x) * sum;
+  return std::exp(m * std::log(x) - x - std::lgamma(m + 1.0)) * sum;
+}
+
+double meanError(const std::vector<MeasuredLesion>& lesions, const std::function<double(double)>& gcnrOfContrast)
+{
+  double error = 0.0;
+  for (const MeasuredLesion& lesion : lesions)
+  {
+    error += std::fabs(gcnrOfContrast(lesion.contrastDb) - lesion.gcnr) / double(lesions.size());
+  }
+  return error;
+}
+
+/// Of parameters from `low` to `high` in steps of a thousandth of themselves.
+double leastOf(const std::function<double(double)>& error, double low, double high)
+{
+  double least = error(low);
+  for (double x = low; x <= high; x *= 1.001)
+  {
+    least = std::min(least, error(x));
+  }
+  return least;
 }
 
 } // namespace
@@ -104,7 +127,7 @@ Detectability detectability(const std::vector<float>& envelopeInside, const std:
   return d;
 }
 
-double gcnrOfSpeckle(double contrastDb, int looks)
+double gcnrOfSpeckle(double contrastDb, double looks)
 {
   const double ratio = std::pow(10.0, std::fabs(contrastDb) / 10.0);
   if (ratio < 1.0 + 1e-9)
@@ -112,7 +135,31 @@ double gcnrOfSpeckle(double contrastDb, int looks)
     return 0.0;
   }
   const double crossing = looks * std::log(ratio) / (1.0 - 1.0 / ratio);
-  return gammaTail(looks, crossing / ratio) - gammaTail(looks, crossing);
+  return gammaBelow(looks, crossing) - gammaBelow(looks, crossing / ratio);
+}
+
+double gcnrOfNormalLevels(double differenceDb, double deviationDb)
+{
+  return std::erf(std::fabs(differenceDb) / (2.0 * std::sqrt(2.0) * deviationDb));
+}
+
+double gcnrErrorOfNormalLevels(const std::vector<MeasuredLesion>& lesions, double deviationDb)
+{
+  return meanError(lesions, [&](double contrastDb) { return gcnrOfNormalLevels(contrastDb, deviationDb); });
+}
+
+double leastGcnrErrorOfNormalLevels(const std::vector<MeasuredLesion>& lesions)
+{
+  return leastOf([&](double deviationDb) { return gcnrErrorOfNormalLevels(lesions, deviationDb); }, 0.1, 20.0);
+}
+
+double leastGcnrErrorOfLooks(const std::vector<MeasuredLesion>& lesions)
+{
+  return leastOf(
+    [&](double looks) {
+      return meanError(lesions, [&](double contrastDb) { return gcnrOfSpeckle(contrastDb, looks); });
+    },
+    1.0, 200.0);
 }
 
 double leastGcnrError(const std::vector<MeasuredLesion>& lesions, double meanContrastDb)

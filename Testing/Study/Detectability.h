@@ -28,9 +28,13 @@ Detectability detectability(const std::vector<float>& envelopeInside, const std:
 
 /// gCNR of two regions of fully developed speckle whose mean envelopes differ by contrastDb, averaged over `looks`
 /// independent pictures of power: power is gamma distributed with shape m = looks, and scale r and 1 for the power
-/// ratio r. The densities cross at x = m ln r / (1 - 1/r), so gCNR = Q(m, x/r) - Q(m, x), with Q(m, x) = exp(-x) times
-/// the sum of x^k / k! for k < m. One look: r^(-1/(r-1)) - r^(-r/(r-1)).
-double gcnrOfSpeckle(double contrastDb, int looks = 1);
+/// ratio r. The densities cross at x = m ln r / (1 - 1/r), so gCNR = P(m, x) - P(m, x/r), with P the regularized lower
+/// incomplete gamma function. One look: r^(-1/(r-1)) - r^(-r/(r-1)). `looks` > 0, a fraction where they are correlated.
+double gcnrOfSpeckle(double contrastDb, double looks = 1.0);
+
+/// gCNR of two regions whose levels are normal with one standard deviation s > 0 and means D apart, dB: the densities
+/// cross half way, so it is 2 Phi(|D| / 2s) - 1.
+double gcnrOfNormalLevels(double differenceDb, double deviationDb);
 
 /// A lesion as somebody measured it.
 struct MeasuredLesion
@@ -43,5 +47,12 @@ struct MeasuredLesion
 /// stays within meanContrastDb: each lesion may have any contrast of its sign, and gCNR follows by gcnrOfSpeckle. By
 /// dynamic programming over what the lesions may be off together, in steps of 0.01 dB.
 double leastGcnrError(const std::vector<MeasuredLesion>& lesions, double meanContrastDb);
+
+/// The mean absolute gCNR error of lesions that have their contrasts exactly, in speckle whose levels are normal.
+double gcnrErrorOfNormalLevels(const std::vector<MeasuredLesion>& lesions, double deviationDb);
+/// The smallest that any one standard deviation from 0.1 to 20 dB gives.
+double leastGcnrErrorOfNormalLevels(const std::vector<MeasuredLesion>& lesions);
+/// The smallest that speckle of any one number of looks from 1 to 200 gives.
+double leastGcnrErrorOfLooks(const std::vector<MeasuredLesion>& lesions);
 
 } // namespace sono::study

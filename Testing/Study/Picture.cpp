@@ -116,6 +116,27 @@ Picture montage(const std::vector<Picture>& panels, int columns)
   return picture;
 }
 
+PlaneImage readGrey(const std::filesystem::path& path, double pixelMm, double lateralMinMm, double axialMinMm)
+{
+  const OIIO::ImageBuf buffer(path.string());
+  PlaneImage image;
+  image.width = buffer.spec().width;
+  image.height = buffer.spec().height;
+  image.pixelMm = pixelMm;
+  image.lateralMinMm = lateralMinMm;
+  image.axialMinMm = axialMinMm;
+  const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
+  image.value.resize(count);
+  image.mask.assign(count, 1);
+  OIIO::ROI first = OIIO::get_roi(buffer.spec());
+  first.chend = 1;
+  if (!buffer.get_pixels(first, OIIO::TypeDesc::FLOAT, image.value.data()))
+  {
+    throw Error("cannot read '" + path.string() + "': " + buffer.geterror());
+  }
+  return image;
+}
+
 void writePicture(const Picture& picture, const std::filesystem::path& path)
 {
   OIIO::ImageBuf buffer = bufferOf(picture);

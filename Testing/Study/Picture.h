@@ -30,6 +30,10 @@ Picture pictureOfLabels(const LabelVolume& labels, const ScanGeometry& geometry,
 /// Pictures in rows, all as high as the highest, each column as wide as its widest; smaller ones stand in the middle.
 Picture montage(const std::vector<Picture>& panels, int columns);
 
+/// The first channel of a picture file as levels 0 to 1, all of it inside; the first pixel lies at the place given.
+/// Throws Error when it cannot be read.
+PlaneImage readGrey(const std::filesystem::path& path, double pixelMm, double lateralMinMm, double axialMinMm);
+
 /// Writes a PNG. Throws Error when that fails.
 void writePicture(const Picture& picture, const std::filesystem::path& path);
 

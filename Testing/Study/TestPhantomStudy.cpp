@@ -1,5 +1,6 @@
 #include "Detectability.h"
 #include "EchoScenes.h"
+#include "NearTargets.h"
 #include "PhantomBeam.h"
 #include "PhantomLesions.h"
 #include "PhantomWires.h"
@@ -46,6 +47,113 @@ TEST(Detectability, GcnrOfSpeckleIsTheClosedFormAndWhatSamplesShow)
   }
   EXPECT_EQ(gcnrOfSpeckle(0.0), 0.0);
   EXPECT_NEAR(gcnrOfSpeckle(6.0), 0.471, 0.0005); // Data/docs/physics.md section 9
+}
+
+/// 1 - the overlap of two densities of dB, summed.
+template<class Density>
+double gcnrByIntegral(const Density& density, double differenceDb)
+{
+  constexpr double stepDb = 0.002;
+  double overlap = 0.0;
+  for (double x = -150.0; x < 100.0; x += stepDb)
+  {
+    overlap += stepDb * std::min(density(x), density(x - differenceDb));
+  }
+  return 1.0 - overlap;
+}
+
+TEST(Detectability, GcnrOfLevelsIsTheOverlapIntegrated)
+{
+  for (const double difference : { 2.0, -3.0, 6.0 })
+  {
+    for (const double deviation : { 1.0, 2.2, 5.57 })
+    {
+      const auto normal = [&](double x) {
+        return std::exp(-0.5 * x * x / (deviation * deviation)) / (deviation * std::sqrt(2.0 * M_PI));
+      };
+      EXPECT_NEAR(gcnrOfNormalLevels(difference, deviation), gcnrByIntegral(normal, difference), 1e-5);
+    }
+    for (const double looks : { 1.0, 2.5, 6.4, 30.0 })
+    {
+      const auto gamma = [&](double x) { // of 10 log10 of the power
+        const double power = looks * std::pow(10.0, 0.1 * x);
+        return 0.1 * std::log(10.0) * std::exp(looks * std::log(power) - power - std::lgamma(looks));
+      };
+      EXPECT_NEAR(gcnrOfSpeckle(difference, looks), gcnrByIntegral(gamma, difference), 1e-5);
+    }
+  }
+}
+
+TEST(Detectability, OneSpeckleDoesNotGiveTheRealMassesGcnr)
+{
+  const std::vector<MeasuredLesion> masses{ { 0.90, -6.0 }, { 0.50, -3.0 }, { 0.36, 3.0 } };
+  // Where -3 dB has its 0.50 (a deviation of 1.5 / 0.6745 dB) the slopes of -6 and +3 outweigh each other's gain.
+  const double atMedian = (0.90 - std::erf(1.349 / std::sqrt(2.0)) + 0.0 + 0.50 - 0.36) / 3.0;
+  EXPECT_NEAR(leastGcnrErrorOfNormalLevels(masses), atMedian, 2e-4);
+  EXPECT_NEAR(gcnrErrorOfNormalLevels(masses, 1.5 / 0.67449), atMedian, 1e-4);
+  EXPECT_GT(leastGcnrErrorOfLooks(masses), 0.05);
+  // Lesions that one speckle has made are met.
+  const std::vector<MeasuredLesion> own{ { gcnrOfSpeckle(-6.0, 6.4), -6.0 }, { gcnrOfSpeckle(3.0, 6.4), 3.0 } };
+  EXPECT_LT(leastGcnrErrorOfLooks(own), 1e-3);
+}
+
+TEST(NearTargets, SpeckleAndWiresHaveTheWidthsTheyWereMadeWith)
+{
+  // White noise smoothed by a Gaussian of sigma s has the autocorrelation exp(-x^2 / 4 s^2), half at 2 s sqrt(ln 2), on
+  // a slope that the plane takes off.
+  constexpr double sigmaX = 0.4, sigmaZ = 0.15, rangeDb = 60.0;
+  PlaneImage image;
+  image.width = image.height = 600;
+  image.pixelMm = 0.05;
+  image.lateralMinMm = -15.0;
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  std::vector<float> noise(std::size_t(image.width * image.height));
+  std::generate(noise.begin(), noise.end(), [&] { return normal(random); });
+  const auto smooth = [&](const std::vector<float>& from, double sigmaMm, int stride) {
+    std::vector<float> to(from.size(), 0.0f);
+    const int reach = int(4.0 * sigmaMm / image.pixelMm);
+    for (int i = reach * stride; i < int(from.size()) - reach * stride; ++i)
+    {
+      for (int k = -reach; k <= reach; ++k)
+      {
+        to[std::size_t(i)] +=
+          float(std::exp(-0.5 * std::pow(k * image.pixelMm / sigmaMm, 2))) * from[std::size_t(i + k * stride)];
+      }
+    }
+    return to;
+  };
+  image.value = smooth(smooth(noise, sigmaX, 1), sigmaZ, image.width);
+  double squares = 0.0;
+  for (const float value : image.value)
+  {
+    squares += value * value / double(image.value.size());
+  }
+  for (int j = 0; j < image.height; ++j)
+  {
+    for (int i = 0; i < image.width; ++i)
+    {
+      float& value = image.value[std::size_t(j * image.width + i)];
+      value = float((20.0 + 2.0 * value / std::sqrt(squares) + 0.02 * i - 0.01 * j) / rangeDb);
+    }
+  }
+  const GelSpeckle gel = gelSpeckle(image, rangeDb, 0.0, 15.0, 20.0);
+  EXPECT_NEAR(gel.deviationDb, 2.0, 0.1);
+  EXPECT_NEAR(gel.lateralMm, 4.0 * sigmaX * std::sqrt(std::log(2.0)), 0.1);
+  EXPECT_NEAR(gel.axialMm, 4.0 * sigmaZ * std::sqrt(std::log(2.0)), 0.04);
+
+  const PhantomTarget wire{ PhantomTargetKind::Wire, 2, "row", 1.0, 20.0, 0.1, "phantom_nylon" };
+  for (int j = 0; j < image.height; ++j)
+  {
+    for (int i = 0; i < image.width; ++i)
+    {
+      const double x = (image.lateralMinMm + i * image.pixelMm - 1.0) / 0.35;
+      const double z = (j * image.pixelMm - 20.0) / 0.2;
+      image.value[std::size_t(j * image.width + i)] = float((50.0 - 6.0206 * (x * x + z * z)) / rangeDb);
+    }
+  }
+  EXPECT_NEAR(wireWidthMm(image, rangeDb, wire, false), 0.7, 0.005);
+  EXPECT_NEAR(wireWidthMm(image, rangeDb, wire, true), 0.4, 0.005);
 }
 
 TEST(Detectability, OfFewPixelsTheHistogramIsBiasedAndTheThresholdHardly)
