@@ -39,6 +39,8 @@ KNOWN = {
     # deleted under its flat views. An Elevation of a deleted Wavelet fails, too. ParaView connects the first port of whatever
     # its menus make.
     DANGLING,
+    # The same, split into two screens.
+    r"Some proxy is added as input but was not registered",
     # The same, saved as Python.
     r"smstate.py.*Untraceable: .* is not 'known' at this point",
     # An image under a name whose ending is none of its writers': ParaView's dialog falls back on CGNS, which it cannot hold.
@@ -53,6 +55,7 @@ KNOWN = {
 # the classes of all proxies after a reset.
 SLOW = re.compile(r"ACT \d+ (loads state|deletes|actionDelete_All)")
 SLOW_S = 15.0
+JUDGED = ("RAISED ", "MESSAGE ", "Traceback ", "critical: ", "fatal: ")  # beside what VTK logs as errors
 
 
 def explained(sources):
@@ -70,7 +73,7 @@ class Judge:
 
     def __init__(self):
         self.ours = explained(path for floor in ("Simulation", "Filters") for path in sorted((ROOT / floor).rglob("*"))
-                              if path.suffix in (".h", ".cpp", ".cxx") and "Cuda" not in path.parts)
+                              if path.suffix in (".h", ".cpp", ".cxx"))
         self.acts = collections.deque(maxlen=LAST)
         self.done = 0
         self.ended = False
@@ -95,7 +98,7 @@ class Judge:
 
     def read(self, line):
         line = re.sub(r"\x1b\[[\d;]*m", "", line)  # colours
-        begins = re.match(r"\(\s*[\d.]+s\)|ACT |DONE |RAISED |MESSAGE |DIALOG |STUBBORN |END$", line)
+        begins = re.match(r"\(\s*[\d.]+s\)|ACT |DONE |RAISED |MESSAGE |DIALOG |STUBBORN |END$|critical: In |fatal: In ", line)
         if begins or not line.startswith(" ") and self.open and self.open[0].startswith("RAISED"):
             self.close()
         if line.startswith("ACT "):
@@ -108,9 +111,9 @@ class Judge:
             self.ended = True
         elif line.startswith("STUBBORN "):
             self.fault(f"a dialog cannot be closed: {line}")
-        elif " ERR| " in line or line.startswith(("RAISED ", "MESSAGE ", "Traceback ")):
+        elif " ERR| " in line or line.startswith(JUDGED) and not self.open:
             self.open = [line]
-        elif self.open:
+        elif self.open is not None:
             self.open.append(line)
 
     def close(self):
