@@ -45,8 +45,6 @@ class Driver:
         self.count = int(os.environ["MONKEY_ACTIONS"])
         self.number = 0
         self.hands = Hands(pathlib.Path.cwd())
-        # In software each layer that is peeled off takes as long as a picture.
-        simple.GetSettingsProxy("RenderViewSettings").DepthPeeling = 0
         self.running = None
         self.inside = False  # an action, which may have opened an event loop of its own
         self.settling = 0
@@ -100,6 +98,10 @@ class Driver:
         self.hands.attempts += 1
         self.hands.number = self.number
         self.dialogs.plan = None
+        # In software each layer that is peeled off takes as long as a picture. A session that was reset peels again.
+        settings = simple.GetSettingsProxy("RenderViewSettings")
+        if settings.DepthPeeling:
+            settings.DepthPeeling = 0
         self.since.start()
         self.running = monkey_acts.choose(self.hands)(self.hands, self.dialogs)
 
