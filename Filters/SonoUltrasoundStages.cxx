@@ -249,6 +249,12 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   return traced;
 }
 
+bool UltrasoundStages::offerBetter()
+{
+  isBetterOffered_ = hasBetter();
+  return isBetterOffered_;
+}
+
 void UltrasoundStages::readEchoInputs(const Inputs& inputs, ImageInput& image)
 {
   announceDevice(chooseDevice(image.settings.echo.device));
@@ -370,7 +376,9 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     return;
   }
   simulator_.setProgressive(owner_->GetProgressive());
-  isImproved_ = simulator_.improve();
+  // One output would otherwise be of a round that ended after another had been made, and nobody would know which.
+  const bool takesBetter = std::exchange(isBetterOffered_, false) || !owner_->GetProgressive();
+  isImproved_ = takesBetter && simulator_.improve();
   ImageInput image{ field_.pose, settings_, targets(inputs[Filter::TARGETS], blocks), nullptr };
   const TracedResult traced = trace(image);
   fields->PassData(blocks->GetFieldData());

@@ -78,6 +78,10 @@ public:
   /// Whether more rounds of paths are traced in the background, and whether make() gives a better result by now.
   bool isRefining() const { return simulator_.isRefining(); }
   bool hasBetter() const { return simulator_.hasBetter(); }
+  /// hasBetter(). Only from then on, and once, make() takes the better result over.
+  bool offerBetter();
+  /// Whether it is still to be taken over.
+  bool isBetterOffered() const { return isBetterOffered_ && hasBetter(); }
   /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
   /// stop.
   void make(int port, vtkInformationVector** input, vtkInformationVector* output);
@@ -133,9 +137,10 @@ private:
   vtkMTimeType pulseTime_ = 0; ///< of the stage when it was read; 0: it is to be read
   // The last results, and the arrays that stay as long as they do.
   TracedResult traced_;
-  bool isImproved_ = false;   ///< by more rounds, of the same paths
-  bool isAsked_ = false;      ///< for what is traced, since the last announcement
-  bool isImageAsked_ = false; ///< for an image, the same
+  bool isBetterOffered_ = false; ///< to whoever looks on, see vtkSonoUltrasound::HasBetter
+  bool isImproved_ = false;      ///< by more rounds, of the same paths
+  bool isAsked_ = false;         ///< for what is traced, since the last announcement
+  bool isImageAsked_ = false;    ///< for an image, the same
   Display display_;
   ScanPicture picture_;
   vtkSmartPointer<vtkPointData> pictureArrays_;

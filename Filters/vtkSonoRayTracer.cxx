@@ -83,6 +83,7 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
   auto settings = sono::settingsIn<sono::TraceSettings>(*this->Parameters);
   settings.pathsPerLine = probe.preview ? sono::interactivePaths(settings.pathsPerLine) : settings.pathsPerLine;
   settings.radialBinMm = probe.preview ? sono::interactiveBinMm(settings.radialBinMm) : settings.radialBinMm;
+  settings.rouletteDb = probe.preview ? sono::interactiveRouletteDb(settings.rouletteDb) : settings.rouletteDb;
   settings.targetErrorDb = probe.preview ? 0.0 : settings.targetErrorDb;
   settings.timeBudgetS = probe.preview ? 0.0 : settings.timeBudgetS;
   settings.interactive = probe.preview;

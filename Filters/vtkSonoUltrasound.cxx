@@ -97,7 +97,7 @@ sonoStage(vtkSonoScanConverter, ScanConverter, converter);
 
 void vtkSonoUltrasound::SetProgressive(bool progressive)
 {
-  const bool isUnfinished = this->IsRefining() || this->HasBetter();
+  const bool isUnfinished = this->IsRefining() || this->Inside->hasBetter();
   this->Progressive = progressive;
   if (isUnfinished && !progressive)
   {
@@ -112,12 +112,12 @@ bool vtkSonoUltrasound::IsRefining()
 
 bool vtkSonoUltrasound::HasBetter()
 {
-  return this->Inside->hasBetter();
+  return this->Inside->offerBetter();
 }
 
 vtkMTimeType vtkSonoUltrasound::GetMTime()
 {
-  if (this->Inside->isLeftWanted() || (this->Progressive && this->Inside->hasBetter()))
+  if (this->Inside->isLeftWanted() || (this->Progressive && this->Inside->isBetterOffered()))
   {
     this->MTime.Modified(); // without telling: nothing has changed but who looks, or what is known
   }

@@ -105,8 +105,9 @@ public:
   ///@{
   /**
    * With a target error or a time budget of the tracer, whether a picture of the first round of paths is made at once
-   * and the others are traced in the background, until another picture is wanted: HasBetter says when an Update makes a
-   * better one, IsRefining whether one may follow. Off, an Update gives the last one; it waits for what is under way.
+   * and the others are traced in the background, until another picture is wanted: HasBetter says whether there is a
+   * better one, IsRefining whether one may follow. An Update makes a better one once HasBetter has said so; all outputs
+   * are of the same paths until it is asked again. Off, an Update gives the last one; it waits for what is under way.
    * Default off: for whoever looks on.
    */
   void SetProgressive(bool progressive);

@@ -66,6 +66,9 @@ void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controlle
     // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
     constexpr double fewTriangles = 0.1;
     vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
+    // Each draws all triangles once more, and two order the nearest and the farthest pair of surfaces at each pixel.
+    constexpr int peels = 2;
+    vtkSMPropertyHelper(view, "MaximumNumberOfPeels", true).Set(peels);
     view->UpdateVTKObjects();
   }
   for (unsigned int port : { vtkSonoUltrasound::ANATOMY, vtkSonoUltrasound::PROBE, vtkSonoUltrasound::IMAGE })

@@ -252,6 +252,14 @@ void SonoMovingViews::drawGrey()
 void SonoMovingViews::drawRested()
 {
   this->drawQuick();
+  for (pqView* view : this->Slow)
+  {
+    if (view)
+    {
+      this->markModified(view, Marked::ButAnatomy);
+      drawLightly(view->getViewProxy());
+    }
+  }
   this->drawInFull();
 }
 

@@ -49,8 +49,8 @@ public:
   void draw();
   /// The same of another grey: slow views wait until all rests, unless there are no others.
   void drawGrey();
-  /// Shows the picture of the probe that rests where that is quick, so that it need not wait for other views; then
-  /// drawInFull.
+  /// Has the picture of the probe that rests on the screen, in slow views as on the way, so that it need not wait until
+  /// these are drawn in full; then drawInFull.
   void drawRested();
   /// From now on the views are drawn as when nothing moves. Does not draw.
   void drawInFull();

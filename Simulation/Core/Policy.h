@@ -20,6 +20,13 @@ inline int interactivePaths(int pathsPerLine)
   return std::min(pathsPerLine, 40);
 }
 
+/// Paths fainter than this, in dB, play Russian roulette: most of what they take is time past their first reflection,
+/// where they are that faint, and what they leave stays the same in the mean. From -30 on its noise shows.
+inline double interactiveRouletteDb(double rouletteDb)
+{
+  return std::max(rouletteDb, -40.0);
+}
+
 /// Width of a sample of the intensity.
 inline double interactiveBinMm(double binMm)
 {

@@ -99,6 +99,22 @@ class TestUltrasound(unittest.TestCase):
             np.testing.assert_array_equal(array(ultrasound.GetOutputDataObject(FLAT_IMAGE), name),
                                           array(at_once.GetOutputDataObject(FLAT_IMAGE), name))
 
+    def test_outputs_are_of_the_same_paths_until_it_is_asked_again(self):
+        """Rounds end whenever they do, between one output and another as well."""
+        ultrasound = self.ultrasound(ErrorMap=True, TargetErrorDb=0.0, TimeBudgetS=600.0)
+        ultrasound.SetProgressive(True)
+        ultrasound.Update()
+        while ultrasound.IsRefining():
+            time.sleep(0.01)
+        paths = lambda port: number(ultrasound.GetOutputDataObject(port), "TracedPaths")
+        for asked, expected in ((False, 64), (True, 1024)):
+            if asked:
+                self.assertTrue(ultrasound.HasBetter())
+            for port in (IMAGE, TRACED_LINES, ERROR_MAP, FLAT_IMAGE, IMAGE):
+                ultrasound.Update(port)
+                self.assertEqual(paths(port), expected)
+        self.assertFalse(ultrasound.HasBetter())
+
     def test_without_who_looks_on_the_last_one_is_waited_for(self):
         ultrasound = self.ultrasound()
         ultrasound.SetProgressive(True)

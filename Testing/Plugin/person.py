@@ -72,14 +72,21 @@ class Person:
         xtest.fake_input(self.display, X.MotionNotify, x=x, y=y)
         self.display.sync()
 
+    def hold(self):
+        """The mouse button, until release()."""
+        xtest.fake_input(self.display, X.ButtonPress, 1)
+        self.display.sync()
+
+    def release(self):
+        xtest.fake_input(self.display, X.ButtonRelease, 1)
+        self.display.sync()
+
     def click(self, x, y, seconds=0):
         """Seconds between press and release."""
         self.move(x, y)
-        xtest.fake_input(self.display, X.ButtonPress, 1)
-        self.display.sync()
+        self.hold()
         time.sleep(seconds)
-        xtest.fake_input(self.display, X.ButtonRelease, 1)
-        self.display.sync()
+        self.release()
         self.clicks += 1
 
     def await_colour(self, x, y, around=6):

@@ -1,20 +1,28 @@
 # The drag of the one filter as a person makes it: in ParaView's window on a screen without a GPU, the layout with the translucent
-# thorax at 1 mm, each picture drawn. Counts what the flat view and the one with the body show; then steps of the gain's slider in the
-# scanner's panel until they are in the flat view. Needs Xvfb.
+# thorax at 1 mm, each picture drawn. Counts what the flat view and the one with the body show while a hand moves at its own pace,
+# then steps of the gain's slider in the scanner's panel until they are in the flat view. Mouse and keys are events of the X
+# server: ParaView's player of recorded events, which this stage had before, looks through all widgets for 90 ms an event, and waits
+# for each picture. Needs Xvfb and python3-xlib.
+import math
 import os
 import pathlib
 import sys
 import tempfile
+import threading
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Plugin"))
 from guicase import GuiCase
+from person import Person
 
-MOVES = 40
-GAINS = range(52, 72)  # places of the slider, in hundredths of its length
-FROM, TO = (0.5625, 0.6426), (0.47, 0.60)  # in the view with the body: where the probe lies at first, and up the chest
-BODY = ("pqClientMainWindow/centralwidget/MultiViewWidget/CoreWidget/qt_tabwidget_stackedwidget/MultiViewWidget2/"
-        "Container/Frame.1/CentralWidgetFrame/Viewport")
-PANEL = "pqClientMainWindow/pqSonoScannerDock/SonoScannerContents/SonoScannerScroll/qt_scrollarea_viewport/SonoScannerControls/"
+EVENTS_PER_S = 30
+SWEEP_S, SWEEPS = 2.0, 6  # one way along the skin, and how many ways there and back
+GAIN_STEPS, GAIN_EVERY_S = 20, 0.3
+# Where things are on the screen.
+FAN = (757, 122)
+SCANNER = (859, 122)
+GAIN = (1013, 415)  # the slider's handle at 0 dB
+FROM, TO = (538, 539), (499, 516)  # in the view with the body: where the probe lies at first, and up the chest
 
 # Inside ParaView: the thorax, the time at which each view of the layout has been drawn, and when a hand moved what.
 SCRIPT = """
@@ -23,20 +31,22 @@ import os, time
 thorax = simple.ThoraxPhantom(Spacingmm=1)
 simple.SetActiveSource(thorax)
 drawn = open(os.environ["SONOVDB_DRAWN"], "w", buffering=1)
-watched = set()
+watched = {}  # what is observed has to be kept: Python's collector would take the observers with it
 turned = []
+def noting(view):
+    def note(*_):
+        if view.SMProxy.GetClientSideObject().GetSuppressRendering():
+            return  # brought up to date only
+        for source in turned:
+            print(time.perf_counter(), view.InteractionMode, source.Preview, file=drawn)
+    return note
 def watch(*_):
     for view in simple.GetRenderViews():
         if view.SMProxy.GetGlobalIDAsString() not in watched:
-            watched.add(view.SMProxy.GetGlobalIDAsString())
-            def note(*_, view=view):
-                if view.SMProxy.GetClientSideObject().GetSuppressRendering():
-                    return  # brought up to date only
-                for source in simple.GetSources().values():
-                    if source.SMProxy.GetXMLName() == "SonoUltrasound":
-                        print(time.perf_counter(), view.InteractionMode, source.Preview, file=drawn)
-            view.SMProxy.AddObserver("EndEvent", note)
-            view.SMProxy.GetInteractor().AddObserver(
+            interactor = view.SMProxy.GetInteractor()
+            watched[view.SMProxy.GetGlobalIDAsString()] = view, interactor
+            view.SMProxy.AddObserver("EndEvent", noting(view))
+            interactor.AddObserver(
                 "LeftButtonPressEvent", lambda *_: print(time.perf_counter(), "press", -1, file=drawn), 1000.0)
     for source in simple.GetSources().values():
         if source.SMProxy.GetXMLName() == "SonoUltrasound" and source not in turned:
@@ -48,35 +58,78 @@ servermanager.ProxyManager().SMProxyManager.AddObserver("RegisterEvent", watch)
 """
 
 
-def event(thing, command, arguments=""):
-    return f'  <pqevent object="{thing}" command="{command}" arguments="{arguments}"/>\n'
+def seconds_of(folder):
+    """The processor's time that the ParaView of a folder has taken; 0: there is none."""
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if f"--script={folder}/watch.py".encode() in (process / "cmdline").read_bytes().split(b"\0"):
+                times = (process / "stat").read_text().rpartition(")")[2].split()[11:13]
+                return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
+        except OSError:
+            pass  # it has ended
+    return 0.0
 
 
-def playback():
-    places = [tuple(a + (b - a) * step / MOVES for a, b in zip(FROM, TO)) for step in range(MOVES + 1)]
-    move, press, release = (
-        [event(BODY, command, f"({x:.4f},{y:.4f},{button},0)") for x, y in places]
-        for command, button in (("mouseMove", "0,1"), ("mousePress", "1,1"), ("mouseRelease", "1,0")))
-    pause = 80 * event("pqClientMainWindow", "pause", "100")  # a pause sleeps; in between ParaView goes on
-    simulate = event("pqClientMainWindow/SonoToolBar/actionSonoSimulate", "activate")
-    hover = move[0].replace(",0,1,0)", ",0,0,0)")
-    panel = event("pqClientMainWindow/SonoToolBar/SonoScannerButton", "activate")
-    gains = [event(PANEL + "SonoScannerSettings/GainDb/DoubleRangeWidget/Slider", "set_int", place) for place in GAINS]
-    return "<pqevents>\n" + "".join([simulate, pause, pause, hover, press[0], *move[1:], release[-1], pause, panel, pause,
-                                    *gains, pause]) + "</pqevents>\n"
+def await_rest(person):
+    """Returns when ParaView has nothing more to do, in the background either."""
+    idle = 0
+    before = seconds_of(person.folder)
+    while idle < 4 and not person.ended.wait(0.5):
+        now = seconds_of(person.folder)
+        idle = idle + 1 if now - before < 0.05 else 0
+        before = now
+
+
+def drag(person):
+    """From the press of the button to its release, there and back, slower where it turns."""
+    person.hold()
+    begin = time.perf_counter()
+    for step in range(1, round(SWEEPS * SWEEP_S * EVENTS_PER_S) + 1):
+        way = 0.5 - 0.5 * math.cos(math.pi * step / (SWEEP_S * EVENTS_PER_S))
+        person.move(*(round(a + (b - a) * way) for a, b in zip(FROM, TO)))
+        time.sleep(max(0.0, begin + step / EVENTS_PER_S - time.perf_counter()))
+    person.release()
+
+
+def act(person):
+    try:
+        person.await_colour(*FAN)
+        time.sleep(2)
+        person.click(*FAN)
+        await_rest(person)
+        person.move(*FROM)
+        await_rest(person)
+        drag(person)
+        await_rest(person)
+        person.click(*SCANNER)
+        await_rest(person)
+        person.click(*GAIN)
+        await_rest(person)
+        for _ in range(GAIN_STEPS):
+            person.press("Right")
+            time.sleep(GAIN_EVERY_S)
+        await_rest(person)
+    finally:
+        person.press_quit()
 
 
 GuiCase.setUpClass()
 try:
     with tempfile.TemporaryDirectory() as folder:
-        files = {name: pathlib.Path(folder, name) for name in ("watch.py", "drag.xml", "drawn")}
-        files["watch.py"].write_text(SCRIPT)
-        files["drag.xml"].write_text(playback())
-        os.environ["SONOVDB_DRAWN"] = str(files["drawn"])
-        done = GuiCase().paraview(folder, f"--script={files['watch.py']}", f"--test-script={files['drag.xml']}", "--exit")
+        pathlib.Path(folder, "watch.py").write_text(SCRIPT)
+        drawn = pathlib.Path(folder, "drawn")
+        drawn.touch()
+        os.environ["SONOVDB_DRAWN"] = str(drawn)
+        case = GuiCase()
+        person = Person(case, folder)
+        acting = threading.Thread(target=act, args=(person,))
+        acting.start()
+        done = case.paraview(folder, f"--script={folder}/watch.py")
+        person.ended.set()
+        acting.join()
         if done.returncode:
             raise SystemExit("drawn: ParaView failed:\n" + done.stdout)
-        drawn = [line.replace("'", "").split() for line in files["drawn"].read_text().splitlines()]
+        drawn = [line.replace("'", "").split() for line in drawn.read_text().splitlines()]
 finally:
     GuiCase.tearDownClass()
 
@@ -85,7 +138,7 @@ press = [float(time) for time, what, _ in drawn if what == "press"]
 flat = [float(time) for time, of, _ in drawn if of == "2D"]
 for name, mode in (("flat", "2D"), ("body", "3D")):
     times = [float(time) for time, of, preview in drawn if (of, preview) == (mode, "1")]
-    if len(times) < MOVES / 4:
+    if len(times) < 5:
         raise SystemExit(f"drawn: only {len(times)} pictures on the way")
     between = sorted(b - a for a, b in zip(times, times[1:]))
     print(f"drawn_{name}_frames_per_s {(len(times) - 1) / (times[-1] - times[0]):.4g} 1/s")
