@@ -202,6 +202,14 @@ bool runWork(vtkAlgorithm* algorithm, const std::function<void()>& work)
   return attempt(algorithm, work) != Outcome::Failed;
 }
 
+void requireConnected(vtkInformationVector* input, const std::string& sentence)
+{
+  if (!input->GetInformationObject(0))
+  {
+    throw Error(sentence);
+  }
+}
+
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work)
 {
   if (attempt(algorithm, work) != Outcome::Failed)

@@ -26,7 +26,11 @@ int runStage(vtkAlgorithm* algorithm, vtkInformationVector* outputVector, const 
 /// The same for RequestInformation, which every piece needs; after an exception images are announced without voxels.
 int announceStage(vtkAlgorithm* algorithm, const std::function<void()>& work);
 
-/// The same for work that is neither, as writing a file is; false after an exception.
+/// For what announceStage does: throws Error with the sentence where nothing is connected to an input that VTK does not
+/// ask for. Where VTK asks, its pipeline says so itself, at each look and in words of its own.
+void requireConnected(vtkInformationVector* input, const std::string& sentence);
+
+/// The same as runStage for work that is neither, as writing a file is; false after an exception.
 bool runWork(vtkAlgorithm* algorithm, const std::function<void()>& work);
 
 /// Tells the observers of WarningEvent, or else the output window, what a person should know of a result that is made

@@ -101,14 +101,8 @@ sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) co
 int vtkSonoRayTracer::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    if (!input[0]->GetInformationObject(0))
-    {
-      throw sono::Error("No anatomy is connected; give an Ultrasound Scene.");
-    }
-    if (!input[1]->GetInformationObject(0))
-    {
-      throw sono::Error("No probe is connected; give an Ultrasound Probe.");
-    }
+    sono::requireConnected(input[0], "No anatomy is connected; give an Ultrasound Scene.");
+    sono::requireConnected(input[1], "No probe is connected; give an Ultrasound Probe.");
     vtkNew<vtkFieldData> acquisition;
     acquisition->ShallowCopy(sono::announcedFields(input[1]->GetInformationObject(0)));
     const sono::ProbeField probe = sono::readProbe(acquisition);

@@ -113,14 +113,8 @@ int vtkSonoScanDetail::FillInputPortInformation(int, vtkInformation* info)
 int vtkSonoScanDetail::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    if (!input[0]->GetInformationObject(0))
-    {
-      throw sono::Error("No label map is connected; set the filter's Input.");
-    }
-    if (!input[1]->GetInformationObject(0))
-    {
-      throw sono::Error("No scan is connected; give the CT or MR that was segmented.");
-    }
+    sono::requireConnected(input[0], "No label map is connected; set the filter's Input.");
+    sono::requireConnected(input[1], "No scan is connected; give the CT or MR that was segmented.");
     vtkDataObject::SetPointDataActiveScalarInfo(output->GetInformationObject(0), VTK_UNSIGNED_SHORT, 1);
   });
 }

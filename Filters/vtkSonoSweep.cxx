@@ -198,14 +198,8 @@ int vtkSonoSweep::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkSonoSweep::RequestInformation(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
-    if (!input[LABELS_OR_SCENE]->GetInformationObject(0))
-    {
-      throw sono::Error("No label map is connected; set the filter's Input.");
-    }
-    if (!input[PROBE]->GetInformationObject(0))
-    {
-      throw sono::Error("No probe is connected; give an Ultrasound Probe.");
-    }
+    sono::requireConnected(input[LABELS_OR_SCENE], "No label map is connected; set the filter's Input.");
+    sono::requireConnected(input[PROBE], "No probe is connected; give an Ultrasound Probe.");
     const sono::ProbeField probe = sono::readProbe(sono::announcedFields(input[PROBE]->GetInformationObject(0)));
     const sono::PlaneImage layout = sono::planeImageLayout(probe.geometry, this->PixelMm);
     // How many images there are is known from the poses alone.

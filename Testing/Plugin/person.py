@@ -12,6 +12,16 @@ from guicase import read_screen
 VIEW = (300, 205, 720, 520)  # left, top, width, height of the inside of the 3-D view
 
 
+def press_keys(screen, *names):
+    """Keys of an X display together, by their names in X, the last one last."""
+    keys = [screen.keysym_to_keycode(XK.string_to_keysym(name)) for name in names]
+    for key in keys:
+        xtest.fake_input(screen, X.KeyPress, key)
+    for key in reversed(keys):
+        xtest.fake_input(screen, X.KeyRelease, key)
+    screen.sync()
+
+
 class Person:
     """Watches the screen and acts while ParaView plays a script."""
 
@@ -102,13 +112,7 @@ class Person:
         raise TimeoutError(f"nothing coloured at ({x}, {y})")
 
     def press(self, *names):
-        """Keys together, by their names in X, the last one last."""
-        keys = [self.display.keysym_to_keycode(XK.string_to_keysym(name)) for name in names]
-        for key in keys:
-            xtest.fake_input(self.display, X.KeyPress, key)
-        for key in reversed(keys):
-            xtest.fake_input(self.display, X.KeyRelease, key)
-        self.display.sync()
+        press_keys(self.display, *names)
 
     def press_quit(self):
         self.press("Control_L", "q")

@@ -11,10 +11,11 @@ import pathlib
 import threading
 import time
 
-from Xlib import X, XK, display
+from Xlib import X, display
 from Xlib.error import XError
-from Xlib.ext import xtest
 from Xlib.protocol import event
+
+from person import press_keys
 
 LONGEST_S = 5.0  # unless somebody who knows better says more
 PING_S = 0.25
@@ -102,12 +103,6 @@ class Watchdog:
                                               data=(32, [atom("_NET_WM_PING"), number, window.id, 0, 0])))
         self.display.flush()
 
-    def press_escape(self):
-        key = self.display.keysym_to_keycode(XK.string_to_keysym("Escape"))
-        for kind in (X.KeyPress, X.KeyRelease):
-            xtest.fake_input(self.display, kind, key)
-        self.display.sync()
-
     def watch(self):
         number = seen = 0
         answered = beaten = None  # when, by the clock
@@ -141,7 +136,7 @@ class Watchdog:
             elif busy > self.limit_s() and escaped is None:
                 escaped = now
                 self.stops += 1
-                self.press_escape()
+                press_keys(self.display, "Escape")
             elif escaped is not None and now - escaped > LONGEST_S:
                 self.hung(f"a run of {busy:.1f} s does not stop {now - escaped:.1f} s after Escape")
                 beaten = escaped = None

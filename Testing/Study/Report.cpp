@@ -190,10 +190,8 @@ private:
     paragraph(
       "H 10 MHz, 40 mm, 60 dB, focus 25 mm, as the screen of a real scanner says; what is real was measured in its "
       "two pictures. Bandwidth, fans and smoothing of the last column were chosen by the speckle of plain gel, and "
-      "what "
-      "is smoothed by the wires, nothing for a single target: a mass has the level that its maker states. With these "
-      "levels no speckle of one kind comes nearer "
-      "to the real gCNR than 0.073 on average (normal levels in dB).");
+      "what is smoothed by the wires, nothing for a single target: a mass has the level that its maker states. With "
+      "these levels no speckle of one kind comes nearer to the real gCNR than 0.073 on average (normal levels in dB).");
     showTable("phantom_real.csv", "phantom_real");
     picture("phantom_real.png", "Anechoic cylinders and masses; wires. Above as the beam has it, below smoothed.");
   }

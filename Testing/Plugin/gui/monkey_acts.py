@@ -150,12 +150,7 @@ def click_browser(hands, _):
     x, y = hands.rng.choice([12, 28, 45, 70, 100]), hands.rng.randrange(rows.height())
     hands.note(f"clicks in the pipeline browser at {x}, {y}")
     at = rows.mapToGlobal(QtCore.QPoint(x, y))
-    hands.move(at.x(), at.y())
-    yield
-    hands.press(1)
-    yield
-    hands.let_go()
-    yield
+    yield from hands.click(at.x(), at.y())
 
 
 # Settings

@@ -161,6 +161,15 @@ class Hands:
         self.x.sync()
         self.held.append((X.ButtonRelease, button))
 
+    def click(self, x, y, button=1):
+        """In steps of an action."""
+        self.move(x, y)
+        yield
+        self.press(button)
+        yield
+        self.let_go()
+        yield
+
     def press_key(self, name):
         key = self.x.keysym_to_keycode(XK.string_to_keysym(name))
         xtest.fake_input(self.x, X.KeyPress, key)

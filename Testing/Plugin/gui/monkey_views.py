@@ -161,14 +161,9 @@ def arrange(hands, _):
 
 
 @act(3)
-def frame_menu(hands, _):
-    """A tool button in the frame of a view, or of the tool bar with a menu."""
+def right_click(hands, _):
+    """In a view, which may open a menu."""
     view = hands.any_of(hands.views())
     at = view.mapToGlobal(QtCore.QPoint(hands.rng.randint(5, view.width() - 5), hands.rng.randint(5, view.height() - 5)))
     hands.note(f"right click at {at.x()}, {at.y()}")
-    hands.move(at.x(), at.y())
-    yield
-    hands.press(3)
-    yield
-    hands.let_go()
-    yield
+    yield from hands.click(at.x(), at.y(), 3)
