@@ -67,10 +67,11 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, poses);
   const RfLines rfOfOne = rfLayout(perImage, echo);
   DeviceImager& imager = DeviceImager::instance();
-  const auto traced = traceOnDevice(scene, lines, settings.tracing, {}, perImage, seeds, partOf(progress, 0.0, 0.5));
   const EchoSources sources{ &scene, nullptr, points, settings.tracing.model, nullptr };
   const EchoSetup setup(sources, lines, echo, perImage);
   const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));
+  imager.prepare(echoJob);
+  const auto traced = traceOnDevice(scene, lines, settings.tracing, {}, perImage, seeds, partOf(progress, 0.0, 0.5));
   const auto rf = imager.formRf(echoJob, { 0, int(lines.size()) }, traced.get(), false);
   std::vector<std::shared_ptr<const BModeJob>> bmodeJobs;
   for (const ImageInput* input : group)

@@ -77,12 +77,13 @@ void sweepOnDevice(const Scene& scene, const std::vector<ProbePose>& poses, cons
   {
     const int count = std::min(together, int(poses.size()) - first);
     const LineRange range{ first * perImage, count * perImage };
-    const auto traced = imager.trace(traceJob, range);
     // For the lines of one group at a time: the device has work while the next one's is made.
     const auto firstLine = lines.begin() + range.first;
     const std::vector<ScanLine> groupLines(firstLine, firstLine + range.count);
     const EchoSetup setup(sources, groupLines, settings.echo, perImage);
     const auto echoJob = std::make_shared<const EchoJob>(makeEchoJob(setup, perImage));
+    imager.prepare(echoJob);
+    const auto traced = imager.trace(traceJob, range);
     if (!bmodeJob)
     {
       bmodeJob =

@@ -56,7 +56,11 @@ public:
   DeviceEcho();
   /// Nothing that it was asked for may still be going on.
   ~DeviceEcho();
+  /// Uploads.
   void prepare(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
+  /// Then, before run(): the surfaces that the job's lines hear. The event is of after the uploads; waits for it, and
+  /// for what is computed here, but not for what the stream was asked for since.
+  void findPieces(const EchoJob& job, cudaEvent_t uploaded, Traffic& traffic);
   /// Forms the lines [first, first + count) of the job: their envelopes, and IQ where it is wanted.
   void run(int first, int count, const TracedOnDevice& traced, bool wantsIq, cudaStream_t stream);
   /// What the job gives in place of a tracer, for lines from `first` on; nothing of it where it gives none.

@@ -104,12 +104,14 @@ struct DeviceImager::Work
   // The jobs whose numbers are on the device.
   std::shared_ptr<const TraceJob> traceJob;
   std::shared_ptr<const EchoJob> echoJob;
+  bool hasPieces = false; ///< of that job
   std::shared_ptr<const BModeJob> bmodeJob;
   // The last layout's mask.
   PlaneScan scan{};
   std::shared_ptr<const DeviceArray<std::uint8_t>> mask;
   SharedSpan<std::uint8_t> hostMask;
   Stopwatch tracing, forming, compressing, converting;
+  cudaEvent_t uploaded = nullptr; ///< the echo job
   cudaEvent_t converted = nullptr;
 
   void forget()
@@ -132,6 +134,18 @@ struct DeviceImager::Work
   /// Turns the trace of the doubled tone into that of the harmonic.
   void grow(const HarmonicJob& job, float echoSampleMm, const DeviceTraced& sent, const DeviceTraced& doubled,
             cudaStream_t stream);
+
+  void prepare(const std::shared_ptr<const EchoJob>& job)
+  {
+    if (echoJob != job)
+    {
+      echoJob = nullptr; // stays so when the upload fails
+      hasPieces = false;
+      echo->prepare(*job, deviceStream(), traffic);
+      check(cudaEventRecord(uploaded, deviceStream()), "uploading");
+      echoJob = job;
+    }
+  }
 
   void prepare(const std::shared_ptr<const BModeJob>& job)
   {
@@ -193,6 +207,7 @@ DeviceImager::DeviceImager(int device, Waiting waiting)
   const OnLane onLane(lane);
   work_ = std::make_unique<Work>();
   work_->lane = lane;
+  check(cudaEventCreateWithFlags(&work_->uploaded, cudaEventDisableTiming), "creating an event");
   check(cudaEventCreateWithFlags(&work_->converted, cudaEventDisableTiming), "creating an event");
 }
 
@@ -352,15 +367,20 @@ std::shared_ptr<const DeviceTraced> DeviceImager::traceHarmonic(const std::share
   });
 }
 
+void DeviceImager::prepare(const std::shared_ptr<const EchoJob>& job)
+{
+  guarded([&](Work& w, cudaStream_t) { w.prepare(job); });
+}
+
 std::shared_ptr<const DeviceRf> DeviceImager::formRf(const std::shared_ptr<const EchoJob>& job, LineRange lines,
                                                      const DeviceTraced* traced, bool wantsIq)
 {
   return guarded([&](Work& w, cudaStream_t stream) {
-    if (w.echoJob != job)
+    w.prepare(job);
+    if (!w.hasPieces)
     {
-      w.echoJob = nullptr;
-      w.echo->prepare(*job, stream, w.traffic);
-      w.echoJob = job;
+      w.echo->findPieces(*job, w.uploaded, w.traffic);
+      w.hasPieces = true;
     }
     w.forming.start();
     w.echo->run(lines.first, lines.count, traced ? traced->view : w.echo->given(lines.first), wantsIq, stream);

@@ -93,6 +93,8 @@ public:
   std::shared_ptr<const DeviceTraced> traceHarmonic(const std::shared_ptr<const TraceJob>& sent,
                                                     const std::shared_ptr<const TraceJob>& doubled,
                                                     const HarmonicJob& harmonic, const Progress& progress = {});
+  /// Uploads for formRf(). Asked for before trace(), its search for surfaces need not wait for the trace.
+  void prepare(const std::shared_ptr<const EchoJob>& job);
   /// `traced` holds the same lines, or is null, where the job's own `given` is taken. The IQ, if it is wanted, beside
   /// the envelope.
   std::shared_ptr<const DeviceRf> formRf(const std::shared_ptr<const EchoJob>& job, LineRange lines,

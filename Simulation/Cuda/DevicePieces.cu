@@ -22,6 +22,8 @@ using namespace stepfit;
 constexpr int threads = 128;
 // Warps that fit faces on a multiprocessor, for which registers are shared out: as many as find room for their maps.
 constexpr int fittingWarps = 24;
+// Lines that a face is looked at for together.
+constexpr int runLines = 16;
 
 /// Of a face.
 enum FaceState : std::uint8_t
@@ -103,10 +105,20 @@ unsigned blocksFor(int count)
   return unsigned((count + threads - 1) / threads);
 }
 
-/// As SurfaceEchoes::findPieces marks them.
+__global__ void makeRuns(const Beam* beams, int lines, BeamRun* runs)
+{
+  const int first = runLines * (int(blockIdx.x) * threads + int(threadIdx.x));
+  if (first < lines)
+  {
+    runs[first / runLines] = beamRun(beams, first, min(runLines, lines - first));
+  }
+}
+
+/// As SurfaceEchoes::findPieces marks them. Most faces that nobody has heard yet lie far from each run of lines.
 template<BeamKind kind>
-__global__ void __launch_bounds__(threads) markHeardFaces(PieceHearers hearers, const SurfaceFace* faces, int count,
-                                                          Vec3f spacingMm, float radiusMm, std::uint8_t* state)
+__global__ void __launch_bounds__(threads)
+  markHeardFaces(PieceHearers hearers, const BeamRun* runs, int runCount, const SurfaceFace* faces, int count,
+                 Vec3f spacingMm, float radiusMm, std::uint8_t* state)
 {
   __shared__ BeamTables tables;
   wholeBeam(hearers.splat, 0, tables);
@@ -123,17 +135,29 @@ __global__ void __launch_bounds__(threads) markHeardFaces(PieceHearers hearers, 
     return;
   }
   const Vec3f middle = faceMiddleMm(face, spacingMm);
-  for (int line = 0; line < hearers.lines; ++line)
-  {
-    Beam beam = hearers.splat.beams[line];
+  const auto withTables = [&](Beam& beam) {
     beam.kind = kind;
     beam.field = &tables.field;
     beam.array = &tables.array;
     beam.arraySight = &tables.arraySight;
-    if (mayHearSurface(middle, face.roughNormal, radiusMm, row, beam, hearers.splat.grid, hearers.table))
+  };
+  for (int r = 0; r < runCount; ++r)
+  {
+    BeamRun run = runs[r];
+    withTables(run.middle);
+    if (!someMayHearSurface(middle, face.roughNormal, radiusMm, row, run, hearers.splat.grid, hearers.table))
     {
-      state[n] = heard;
-      return;
+      continue;
+    }
+    for (int line = run.first; line < run.first + run.count; ++line)
+    {
+      Beam beam = hearers.splat.beams[line];
+      withTables(beam);
+      if (mayHearSurface(middle, face.roughNormal, radiusMm, row, beam, hearers.splat.grid, hearers.table))
+      {
+        state[n] = heard;
+        return;
+      }
     }
   }
 }
@@ -307,12 +331,12 @@ DevicePieces::~DevicePieces()
 }
 
 std::shared_ptr<const PieceList> DevicePieces::heardBy(const SurfaceJob& job, const std::uint8_t* voxels,
-                                                       const PieceHearers& hearers, cudaStream_t stream,
+                                                       const PieceHearers& hearers, cudaEvent_t uploaded,
                                                        Traffic& traffic)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const OnLane lane(lane_);
-  follow(deviceStream(), stream);
+  check(cudaStreamWaitEvent(deviceStream(), uploaded), "looking for surfaces");
   if (!isWhole_)
   {
     blocks_.assign(std::size_t(job.pieces->blockCount()), false);
@@ -398,9 +422,13 @@ int DevicePieces::markHeard(const SurfaceJob& job, const PieceHearers& hearers, 
 {
   const cudaStream_t stream = deviceStream();
   const int count = int(faces_.size());
+  const int runs = (hearers.lines + runLines - 1) / runLines;
+  runs_.resize(std::size_t(runs));
+  makeRuns<<<blocksFor(runs), threads, 0, stream>>>(hearers.splat.beams, hearers.lines, runs_.data());
   withKind(hearers.kind, [&](auto kind) {
-    markHeardFaces<kind.value><<<blocksFor(count), threads, 0, stream>>>(
-      hearers, faces_.data(), count, job.pieces->spacingMm(), 2.0f * job.longestStepMm, state_.data());
+    markHeardFaces<kind.value><<<blocksFor(count), threads, 0, stream>>>(hearers, runs_.data(), runs, faces_.data(),
+                                                                         count, job.pieces->spacingMm(),
+                                                                         2.0f * job.longestStepMm, state_.data());
   });
   check(cudaGetLastError(), "looking for surfaces");
   return select(count, IsHeard{ state_.data() }, selected_, traffic);

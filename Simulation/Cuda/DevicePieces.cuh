@@ -3,6 +3,7 @@
 #include "Cuda/DeviceMemory.cuh"
 #include "Cuda/ImageJob.h"
 #include "Cuda/SplatChunk.cuh"
+#include "Kernel/BeamRun.h"
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/SurfacePiece.h"
 #include "Scene/StepWindows.h"
@@ -55,9 +56,10 @@ public:
   DevicePieces& operator=(const DevicePieces&) = delete;
 
   /// All so far, after those that these beams may hear of the job's blocks have been added. `voxels` are its tissues on
-  /// the device. Waits until all is done that `stream` was asked for.
+  /// the device. Waits for the event, after which they and the beams are there, and for the pieces, but for nothing
+  /// else that the caller's stream was asked for.
   std::shared_ptr<const PieceList> heardBy(const SurfaceJob& job, const std::uint8_t* voxels,
-                                           const PieceHearers& hearers, cudaStream_t stream, Traffic& traffic);
+                                           const PieceHearers& hearers, cudaEvent_t uploaded, Traffic& traffic);
 
 private:
   explicit DevicePieces(int device);
@@ -82,6 +84,7 @@ private:
   DeviceArray<int> brickOfPiece_; ///< of the list's, ascending
   // For a while.
   DeviceArray<int> selected_, count_;
+  DeviceArray<BeamRun> runs_;
   DeviceArray<std::uint8_t> scratch_;
 };
 

@@ -259,15 +259,6 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   pieceSet_.marginMm = 1.5f * job.longestStepMm;
   pieceSet_.seed = job.seed;
   uploadFieldSight(job.sight, pieceSight_, stream, traffic);
-  const std::shared_ptr<DevicePieces> pieces = DevicePieces::of(*job.pieces);
-  heardPieces_ =
-    pieces->heardBy(job, voxels_.data(),
-                    { splat(sceneBeams_.data(), 1.0f, pieceSight_), echo.lineCount, kind_, pieceSet_.table, job.media },
-                    stream, traffic);
-  pieces_ = pieces; // what was there before is no longer read: heardBy() has waited
-  pieceSet_.groups = heardPieces_->groups.data();
-  pieceSet_.groupCount = int(heardPieces_->groups.size());
-  pieceSet_.pieces = heardPieces_->pieces.data();
   targets_ = job.targets.has_value();
   if (targets_)
   {
@@ -290,6 +281,24 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   }
   // A perfect mirror across the whole beam echoes 1; a point of it far less.
   surfaceScale_ = 536870912.0f / std::max(1.0f, float(echo.beam.largestWeight));
+}
+
+void DeviceEcho::findPieces(const EchoJob& echo, cudaEvent_t uploaded, Traffic& traffic)
+{
+  if (!surfaces_)
+  {
+    return;
+  }
+  const SurfaceJob& job = *echo.surfaces;
+  const std::shared_ptr<DevicePieces> pieces = DevicePieces::of(*job.pieces);
+  heardPieces_ =
+    pieces->heardBy(job, voxels_.data(),
+                    { splat(sceneBeams_.data(), 1.0f, pieceSight_), echo.lineCount, kind_, pieceSet_.table, job.media },
+                    uploaded, traffic);
+  pieces_ = pieces; // what was there before is no longer read: all that reads it was asked for before the event
+  pieceSet_.groups = heardPieces_->groups.data();
+  pieceSet_.groupCount = int(heardPieces_->groups.size());
+  pieceSet_.pieces = heardPieces_->pieces.data();
 }
 
 /// The speckle that reverberates belongs to the probe and is the same for every image.

@@ -42,6 +42,8 @@ std::shared_ptr<const DeviceTraced> DeviceImager::traceHarmonic(const std::share
   return nullptr;
 }
 
+void DeviceImager::prepare(const std::shared_ptr<const EchoJob>&) {}
+
 std::shared_ptr<const DeviceRf> DeviceImager::formRf(const std::shared_ptr<const EchoJob>&, LineRange,
                                                      const DeviceTraced*, bool)
 {
