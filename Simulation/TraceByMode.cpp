@@ -31,7 +31,7 @@ void fetchTraced(const DeviceTraced& device, TracedLines& lines)
 TracedResult traceHarmonic(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                            const std::vector<TargetSurface>& targets, const Progress& progress)
 {
-  const TracedLines sent = sono::trace(scene, lines, settings, partOf(progress, 0.0, 0.5), targets);
+  const TracedLines sent = sono::trace(scene, lines, sentTone(settings), partOf(progress, 0.0, 0.5), targets);
   TracedLines doubled = sono::trace(scene, lines, doubledTone(settings), partOf(progress, 0.5, 1.0), targets);
   return TracedResult(
     secondHarmonic(sent, std::move(doubled), harmonicSources(scene, lines, settings), sentGains(settings)));
@@ -73,7 +73,8 @@ PathRounds toneRounds(const Scene& scene, const std::vector<ScanLine>& lines, co
 PathRounds harmonicRounds(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                           const std::vector<TargetSurface>& targets, const Progress& progress)
 {
-  const auto sent = std::make_shared<TraceRounds>(scene, lines, settings, targets, partOf(progress, 0.0, 0.5));
+  const auto sent =
+    std::make_shared<TraceRounds>(scene, lines, sentTone(settings), targets, partOf(progress, 0.0, 0.5));
   const auto doubled =
     std::make_shared<TraceRounds>(scene, lines, doubledTone(settings), targets, partOf(progress, 0.5, 1.0));
   return [=, sources = harmonicSources(scene, lines, settings),
@@ -94,16 +95,18 @@ std::shared_ptr<const DeviceTraced> traceOnDevice(const Scene& scene, const std:
                                                   const std::vector<std::uint64_t>& seeds, const Progress& progress)
 {
   const std::size_t images = lines.size() / std::size_t(linesPerImage);
-  TraceSetup setup(scene, lines, settings, targets, partOf(progress, 0.0, 0.3));
+  const bool isHarmonic = settings.imagingMode == ImagingMode::Harmonic;
+  const TraceSettings first = isHarmonic ? sentTone(settings) : settings;
+  TraceSetup setup(scene, lines, first, targets, partOf(progress, 0.0, 0.3));
   if (images > 1)
   {
     requireEachMeets(setup, images);
   }
-  TraceJob job = makeTraceJob(setup, settings, linesPerImage);
+  TraceJob job = makeTraceJob(setup, first, linesPerImage);
   job.seeds = seeds.empty() ? job.seeds : seeds;
   DeviceImager& imager = DeviceImager::instance();
   const Progress tracing = partOf(progress, 0.3, 1.0);
-  if (settings.imagingMode == ImagingMode::Fundamental)
+  if (!isHarmonic)
   {
     return imager.trace(std::make_shared<const TraceJob>(std::move(job)), { 0, int(lines.size()) }, tracing);
   }

@@ -305,8 +305,6 @@ TraceJob makeTraceJob(const TraceSetup& setup, const TraceSettings& settings, in
   job.paths = setup.paths;
   job.binCount = settings.binCount();
   job.binMm = float(settings.radialBinMm);
-  job.rangeIsTime = settings.rangeIsTime();
-  job.echoCount = settings.echoCount();
   job.echoSampleMm = float(settings.echoSampleMm);
   return job;
 }
@@ -317,6 +315,8 @@ void tuneTraceJob(const TraceSetup& setup, const TraceSettings& settings, TraceJ
   job.media = setup.media;
   job.view.media = nullptr;
   job.frequencyMHz = setup.frequencyMHz;
+  job.rangeIsTime = settings.rangeIsTime() && !settings.intensityAlone;
+  job.echoCount = settings.echoCount();
   job.radPerMm = float(4.0 * 3.14159265358979323846 * settings.frequencyMHz / assumedSoundSpeedMmPerUs);
 }
 

@@ -100,7 +100,7 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
   {
     const RoughBoundary rough =
       roughBoundary(view, view.media[boundary.before.medium], view.media[boundary.after.medium]);
-    const float chance = reflectionChance(boundary.reflection, view.reverberates, path.reflections > 0);
+    const float chance = reflectionChance(boundary.reflection, view.favoursReflections, path.reflections > 0);
     out = scatterRough(rough, d, n, boundary.cosine, boundary.reflection, chance, u);
   }
   else

@@ -170,13 +170,13 @@ SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ra
 /// The chance with which a path is reflected. Reverberation is heard by its amplitude, so weak boundaries reflect more
 /// paths than their R, each of which counts less: a quarter of |r|, so that what a path stands for is at most four
 /// times what there is; and |r| once a path has been reflected, for then nothing but reverberation is left to it.
-SONO_HD inline float reflectionChance(const Reflection& r, bool reverberates, bool wasReflected)
+SONO_HD inline float reflectionChance(const Reflection& r, bool favoursReflections, bool wasReflected)
 {
   if (r.total)
   {
     return 1.0f;
   }
-  return reverberates ? larger(r.reflectance, (wasReflected ? 1.0f : 0.25f) * fabsf(r.amplitude)) : 0.0f;
+  return favoursReflections ? larger(r.reflectance, (wasReflected ? 1.0f : 0.25f) * fabsf(r.amplitude)) : 0.0f;
 }
 
 /// Draws the branch with a chance (see reflectionChance), then whether it goes on coherently, else the facets that it

@@ -51,6 +51,7 @@ struct TraceView
   float perTransmitFocus = 0.0f;  ///< 1/mm, of the aperture along the array; 0: not focused
   float perElevationFocus = 0.0f; ///< and across it
   bool reverberates = true;       ///< Acoustic: paths that have been reflected go on; otherwise they end there
+  bool favoursReflections = true; ///< Acoustic: boundaries reflect as many paths as serves what reverberates
   float faceReflection = 0.0f;    ///< of the amplitude, by the transducer's face
   float faceRadiusMm = 10.0f;
   float cellLateralPerMm = 0.0f; ///< how wide the line hears at a range, mm of each (see resolutionCell); 0: not known

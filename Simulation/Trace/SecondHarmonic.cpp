@@ -70,6 +70,12 @@ double harmonicSourcePerMm(const Tissue& tissue, double faceMRayl, const SentSou
          (tissue.soundSpeedMPerS * tissue.soundSpeedMPerS * std::sqrt(tissue.impedanceMRayl * faceMRayl));
 }
 
+TraceSettings sentTone(TraceSettings settings)
+{
+  settings.intensityAlone = true;
+  return settings;
+}
+
 TraceSettings doubledTone(TraceSettings settings)
 {
   settings.frequencyMHz = receivedMHz(ImagingMode::Harmonic, settings.frequencyMHz);

@@ -23,6 +23,9 @@ struct SentSound
 ///   S = beta pi f p0 / (c^2 sqrt(Z Z0)),   Z0 the impedance at the face                                        (14.3)
 double harmonicSourcePerMm(const Tissue& tissue, double faceMRayl, const SentSound& sent);
 
+/// The trace at the frequency that is sent, of which the intensity alone counts.
+TraceSettings sentTone(TraceSettings settings);
+
 /// The same trace at twice the frequency.
 TraceSettings doubledTone(TraceSettings settings);
 

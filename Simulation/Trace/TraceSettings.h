@@ -54,6 +54,8 @@ struct TraceSettings
   double radialBinMm = 0.25;
   double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   bool reverberation = true;    ///< of Acoustic: whether paths that have been reflected are heard
+  bool intensityAlone = false;  ///< of Acoustic: paths end where they are reflected, though as many are as reverberate
+                                ///< elsewhere, so that the intensity is the same to the bit
   double faceReflection = 0.3;  ///< of the amplitude, by the transducer's face: chosen, a matched one's
   double rouletteDb = -100.0;   ///< paths fainter than this play Russian roulette
   std::uint64_t seed = 1;
@@ -146,7 +148,7 @@ struct TraceSettings
   bool rangeIsTime() const { return model == InterfaceModel::Acoustic; }
   /// Whether paths that have been reflected are heard where their time says; in Amadou2024 they are where they cross
   /// the line.
-  bool reverberates() const { return rangeIsTime() && reverberation; }
+  bool reverberates() const { return rangeIsTime() && reverberation && !intensityAlone; }
   /// Whether a Simulator traces in rounds. A single path has no error.
   bool refines() const { return !deterministic && (targetErrorDb > 0.0 || timeBudgetS > 0.0); }
   /// Paths that a line gets at most.

@@ -100,6 +100,7 @@ TraceView makeView(const TraceSettings& settings, const Scene& scene)
   view.perTransmitFocus = float(spread.perTransmitFocus);
   view.perElevationFocus = float(spread.perElevationFocus);
   view.reverberates = settings.reverberates();
+  view.favoursReflections = settings.rangeIsTime() && settings.reverberation;
   view.faceReflection = float(settings.faceReflection);
   if (settings.aperture.isNamed())
   {

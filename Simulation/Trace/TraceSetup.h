@@ -38,8 +38,8 @@ struct TraceSetup
   TraceSetup(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
              const std::vector<TargetSurface>& targets, const Progress& progress, Records records = Records::All);
 
-  /// For settings that differ from the constructor's in their frequency alone, of the same scene and targets: where
-  /// paths may go stays.
+  /// For settings that differ from the constructor's in their frequency alone, or in what of it is wanted, of the same
+  /// scene and targets: where paths may go stays.
   void tune(const Scene& scene, const TraceSettings& settings, const std::vector<TargetSurface>& targets);
 
   CellSpace<EmbreeTargets, CellsOnDemand> space() const

@@ -249,6 +249,38 @@ TEST(SecondHarmonic, GrowsInTissueAndNotInCoupling)
   EXPECT_EQ(at(70.1), 0.0); // beyond the map
 }
 
+/// What has been reflected is not followed, and nothing else is changed by that.
+TEST(SecondHarmonic, TheToneThatIsSentHasTheSameIntensity)
+{
+  Tissue fat = test::makeTissue("fat", 1.38, 1450.0, 0.6);
+  Tissue bone = test::makeTissue("bone", 6.0, 3200.0, 4.0);
+  fat.roughnessMm = 0.1;
+  bone.roughnessMm = 0.2;
+  for (Tissue* tissue : { &fat, &bone })
+  {
+    tissue->scattererProbability = 1.0;
+    tissue->scattererSigma = 1.0;
+  }
+  const auto scene = test::makeScene({ 40, 40, 60 }, Vec3d(1.0), { fat, bone }, [](const Vec3d& p) {
+    return p.z > 20.0 && p.z < 24.0 && p.x + 0.5 * p.z < 35.0 ? 1 : 0;
+  });
+  const std::vector<ScanLine> lines{ test::makeLine({ 20.0, 20.0, 0.0 }, { 0.0, 0.0, 1.0 }),
+                                     test::makeLine({ 22.0, 20.0, 0.0 }, glm::normalize(Vec3d(0.2, 0.0, 1.0))) };
+  for (const double apertureMm : { 0.0, 18.0 })
+  {
+    TraceSettings tone;
+    tone.depthMm = 50.0;
+    tone.aperture.apertureMm = apertureMm;
+    tone.aperture.elevationApertureMm = apertureMm;
+    const TracedLines whole = trace(*scene, lines, tone);
+    const TracedLines sent = trace(*scene, lines, sentTone(tone));
+    EXPECT_EQ(sent.intensity, whole.intensity) << apertureMm;
+    EXPECT_LT(sent.segments, whole.segments * 4 / 5) << apertureMm;
+    EXPECT_TRUE(sent.reverberation.empty());
+    EXPECT_GT(*std::max_element(whole.reverberation.begin(), whole.reverberation.end()), 0.0f);
+  }
+}
+
 /// What a GPU gets of a setup that went over to the doubled tone is what it gets of one that was made for it.
 TEST(SecondHarmonic, ATunedSetupIsThatOfTheTone)
 {
@@ -262,13 +294,14 @@ TEST(SecondHarmonic, ATunedSetupIsThatOfTheTone)
     test::makeScene({ 40, 40, 60 }, Vec3d(1.0), { fat, liver }, [](const Vec3d& p) { return p.z < 20.0 ? 0 : 1; });
   const std::vector<ScanLine> lines{ test::makeLine({ 20.0, 20.0, 0.0 }, { 0.0, 0.0, 1.0 }),
                                      test::makeLine({ 21.0, 20.0, 0.0 }, glm::normalize(Vec3d(0.1, 0.0, 1.0))) };
-  TraceSettings sent;
-  sent.frequencyMHz = 1.7;
-  sent.depthMm = 50.0;
-  sent.aperture.apertureMm = 18.0;
-  sent.aperture.elevationApertureMm = 12.0;
-  sent.aperture.transmitFocusMm = 60.0;
-  const TraceSettings twice = doubledTone(sent);
+  TraceSettings tone;
+  tone.frequencyMHz = 1.7;
+  tone.depthMm = 50.0;
+  tone.aperture.apertureMm = 18.0;
+  tone.aperture.elevationApertureMm = 12.0;
+  tone.aperture.transmitFocusMm = 60.0;
+  const TraceSettings sent = sentTone(tone);
+  const TraceSettings twice = doubledTone(tone);
 
   TraceSetup setup(*scene, lines, sent, {}, {});
   TraceJob tuned = makeTraceJob(setup, sent, 1);
@@ -288,6 +321,8 @@ TEST(SecondHarmonic, ATunedSetupIsThatOfTheTone)
   EXPECT_EQ(tuned.paths, made.paths);
   EXPECT_EQ(tuned.binCount, made.binCount);
   EXPECT_EQ(tuned.echoCount, made.echoCount);
+  EXPECT_EQ(tuned.rangeIsTime, made.rangeIsTime);
+  EXPECT_EQ(tuned.view.reverberates, made.view.reverberates);
   EXPECT_EQ(tuned.region, made.region);
   ASSERT_EQ(tuned.media.size(), made.media.size());
   for (std::size_t m = 0; m < made.media.size(); ++m)

@@ -200,8 +200,9 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
   costs.of("look", [&] { return maskSufficiency(*body.scene, body.groups, set.masks, settings, pose); });
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, pose);
   costs.of("trace_tables", [&] {
-    TraceSetup setup(*body.scene, lines, settings.tracing, {}, {});
-    TraceJob job = makeTraceJob(setup, settings.tracing, int(lines.size()));
+    const TraceSettings tone = sentTone(settings.tracing);
+    TraceSetup setup(*body.scene, lines, tone, {}, {});
+    TraceJob job = makeTraceJob(setup, tone, int(lines.size()));
     const TraceJob sent = job;
     const TraceSettings doubled = doubledTone(settings.tracing);
     setup.tune(*body.scene, doubled, {});
