@@ -13,6 +13,7 @@ namespace {
 
 constexpr int launchWarps = 4096; // few lines of many paths are cut into so many warps, to fill a device
 constexpr int fewWarps = 2048;    // of a launch: all at once on a large device, however many registers they take
+constexpr int startWarps = 4;     // of a block that starts lines
 constexpr int fullWarps = 512;    // of a launch: with fewer, lanes that idle cost less than a device that does
 constexpr double bouncesPerLaunch = 1.4e9;     // a second or so, then progress is asked
 constexpr double binsPerLaunch = 6.25e7;       // 1 GB of sums
@@ -65,27 +66,36 @@ int batchesOfWarp(int lines, int batches, int longest, const Fits& fits)
 }
 
 template<class Targets>
-void launchKernels(const TraceLaunch<Targets>& launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
+void launchKernels(TraceLaunch<Targets> launch, int lines, bool inShared, bool manyPaths, cudaStream_t stream)
 {
-  const int batchRows = launch.warps * launch.batchesTogether;
-  const std::size_t bytes = sharedBesideBins(launch.view, launch.warps, launch.batchesTogether) +
-                            (inShared ? batchRows * launch.binCount * sizeof(BinSums<float>) : 0);
-  const int blocks = ceilDiv(launch.batches, launch.batchesTogether) * launch.slices;
-  const bool few = lines * blocks * launch.warps <= fewWarps;
-  const auto kernel = !inShared   ? tracePaths<false, true, blocksOfMany, Targets>
-                      : manyPaths ? tracePaths<true, true, blocksOfMany, Targets>
-                      : few       ? tracePaths<true, false, blocksOfFew, Targets>
-                                  : tracePaths<true, false, blocksOfMany, Targets>;
-  sharedMemoryFor(kernel);
+  launch.slicesOfLine = ceilDiv(launch.batches, launch.batchesTogether) * launch.slices;
+  launch.sliceCount = lines * launch.slicesOfLine;
+  const bool few = inShared && !manyPaths && launch.sliceCount * launch.warps <= fewWarps;
+  const auto kernel = !inShared   ? tracePaths<false, true, false, Targets>
+                      : manyPaths ? tracePaths<true, true, false, Targets>
+                      : few       ? tracePaths<true, false, true, Targets>
+                                  : tracePaths<true, false, false, Targets>;
+  const std::size_t most = std::min(sharedMemoryFor(kernel), sharedBytes);
+  const auto bytesOf = [&](int together) {
+    const int batches = together * launch.batchesTogether;
+    return sharedBesideBins(launch.view, together * launch.warps, batches) +
+           (inShared ? batches * launch.warps * launch.binCount * sizeof(BinSums<float>) : 0);
+  };
+  launch.slicesTogether = (few ? shapeOfFew : shapeOfMany).warps / launch.warps;
+  while (launch.slicesTogether > 1 && bytesOf(launch.slicesTogether) > most)
+  {
+    --launch.slicesTogether;
+  }
   if (!launch.view.startsApart)
   {
-    startLines<<<ceilDiv(lines, blockWarps), blockPaths, 0, stream>>>(launch, lines);
+    startLines<<<ceilDiv(lines, startWarps), startWarps * warpLanes, 0, stream>>>(launch, lines);
   }
   if (launch.depthOffset)
   {
     timeLines<<<lines, flightThreads, 0, stream>>>(launch);
   }
-  kernel<<<dim3(blocks, lines), launch.warps * warpLanes, bytes, stream>>>(launch);
+  kernel<<<ceilDiv(launch.sliceCount, launch.slicesTogether), launch.slicesTogether * launch.warps * warpLanes,
+           bytesOf(launch.slicesTogether), stream>>>(launch);
   const int parts = manyPaths ? launch.slices * launch.warps : launch.slices;
   finishLines<<<dim3(ceilDiv(launch.binCount, 128), lines), 128, 0, stream>>>(launch, parts);
   check(cudaGetLastError(), "tracing");
@@ -172,12 +182,11 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
   const int batches = std::min(batchCount, paths_);
   const int longest = ceilDiv(paths_, batches);
   // The cut depends on the job alone, and so does the result.
-  const int warps = std::min(blockWarps, ceilDiv(longest, warpLanes));
+  const int warps = std::min(mostSliceWarps, ceilDiv(longest, warpLanes));
   const int wanted = std::max(1, launchWarps / (warps * std::max(1, batches * linesPerImage_)));
   const int slices = std::max(1, std::min(wanted, ceilDiv(longest, warps * warpLanes)));
   const std::size_t binBytes = warps * bins * sizeof(BinSums<float>);
-  const std::size_t sharedLimit =
-    std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, blocksOfMany, BvhTargets>));
+  const std::size_t sharedLimit = std::min(sharedBytes, sharedMemoryFor(tracePaths<true, true, false, BvhTargets>));
   const bool inShared = binBytes + sharedBesideBins(view_, warps, 1) <= sharedLimit;
   const bool manyPaths = !inShared || paths_ > fewPaths;
   const int parts = manyPaths ? slices * warps : slices;
@@ -246,6 +255,9 @@ void DeviceTracer::run(int first, int count, const Progress& progress, cudaStrea
                    slices,
                    warps,
                    together,
+                   0,
+                   0,
+                   1,
                    together > 1 ? longest : warpLanes,
                    binCount_,
                    binMm_,

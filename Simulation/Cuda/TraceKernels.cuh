@@ -14,12 +14,15 @@
 
 namespace sono {
 
-constexpr int blockWarps = 4;
-constexpr int blockPaths = blockWarps * warpLanes;
-// Blocks of 128 threads on a multiprocessor for which registers are shared out. With many warps it is worth some
-// spilled registers to have more; few warps are faster with all they can use.
-constexpr int blocksOfMany = 6;
-constexpr int blocksOfFew = 3;
+/// Warps of a block, which step together, and such blocks on a multiprocessor, for which registers are shared out.
+struct BlockShape
+{
+  int warps;
+  int together;
+};
+constexpr BlockShape shapeOfMany{ 8, 2 };
+constexpr BlockShape shapeOfFew{ 4, 3 }; // few warps are faster with all the registers that they can use
+constexpr int mostSliceWarps = 4;
 constexpr unsigned allLanes = 0xffffffffu;
 constexpr int restBits = 28; // of what rounding leaves of an echo
 
@@ -42,9 +45,12 @@ struct TraceLaunch
   int linesPerImage;
   int paths;
   int batches;
-  int slices;          // of a batch, each traced by one block
-  int warps;           // of a block: no more than have paths
+  int slices;          // of a batch, each traced by warps of one block
+  int warps;           // of a slice: no more than have paths
   int batchesTogether; // in a warp, where they are small; 1: a batch has warps of its own
+  int slicesOfLine;    // of all its batches
+  int sliceCount;      // of all lines
+  int slicesTogether;  // in a block
   int batchLanes;      // of a warp, that each of those has
   int binCount;
   float binMm;
@@ -157,7 +163,7 @@ struct CommonSink : PathSink
 template<class Targets>
 __global__ void startLines(TraceLaunch<Targets> launch, int count)
 {
-  const int line = blockIdx.x * blockWarps + threadIdx.x / warpLanes;
+  const int line = int(blockIdx.x * blockDim.x + threadIdx.x) / warpLanes;
   if (line >= count)
   {
     return;
@@ -279,34 +285,49 @@ __device__ inline void foldBins(int binCount, int lane, BinSums<float>* bins, Bi
   }
 }
 
-/// One block traces one slice of a batch of a line, or some small batches whole, each lane one path after the other.
-/// The paths of a warp step together, each to its next boundary, and lanes whose paths have ended begin the next ones
-/// together; what they leave is added to the warp's bins by all its lanes, one segment after the other. As on the CPU
+/// A slice is a part of a batch of a line, or some small batches whole; a block traces a few, each lane one path after
+/// the other. The paths of a block step together, each to its next boundary, and lanes whose paths have ended begin the
+/// next ones together; what they leave is added to their warp's bins by all its lanes, one segment after the other.
+/// Warps wait for each other at every part of a step, or each would ask for other instructions, which are far more than
+/// a multiprocessor's cache holds: two thirds of the time would go into that (see notes.md). As on the CPU
 /// (LineTally), a long sum of floats would lose its last digits: where there are many paths, warps fold their bins into
 /// doubles of their own, which are added up in the end, and keep what rounding leaves of echoes. No sum depends on
 /// which warp is first.
-template<bool BinsInShared, bool ManyPaths, int Blocks, class Targets>
-__global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Targets> launch)
+template<bool BinsInShared, bool ManyPaths, bool FewWarps, class Targets>
+__global__ void __launch_bounds__((FewWarps ? shapeOfFew : shapeOfMany).warps* warpLanes,
+                                  (FewWarps ? shapeOfFew : shapeOfMany).together)
+  tracePaths(TraceLaunch<Targets> launch)
 {
   extern __shared__ BinSums<float> dynamic[];
-  const int slice = blockIdx.x % launch.slices;
-  const int line = blockIdx.y;
   const int lane = threadIdx.x % warpLanes;
-  const int warp = threadIdx.x / warpLanes;
-  const int firstBatch = blockIdx.x / launch.slices * launch.batchesTogether;
-  const int batches = min(launch.batchesTogether, launch.batches - firstBatch);
+  const int warp = threadIdx.x / warpLanes; // of the block
+  const int sliceThreads = launch.warps * warpLanes;
+  const int thread = threadIdx.x % sliceThreads; // of the slice
+  const int sliceOfBlock = threadIdx.x / sliceThreads;
+  const int number = int(blockIdx.x) * launch.slicesTogether + sliceOfBlock; // of the slice
+  const bool isThere = number < launch.sliceCount;
+  const int line = isThere ? number / launch.slicesOfLine : 0;
+  const int slice = number % launch.slicesOfLine % launch.slices;
+  const int firstBatch = number % launch.slicesOfLine / launch.slices * launch.batchesTogether;
+  const int batches = isThere ? min(launch.batchesTogether, launch.batches - firstBatch) : 0;
   const int ofBatches = lane / launch.batchLanes; // in the warp
   const int batch = firstBatch + ofBatches;
 
   // Bins of the block's warps, then their segments, then the batch's scrambles.
-  const int slots = BinsInShared ? launch.warps * launch.batchesTogether : 0;
+  const int warps = launch.slicesTogether * launch.warps;
+  const int slots = BinsInShared ? warps * launch.batchesTogether : 0;
   auto* segmentsOfWarps = reinterpret_cast<StagedSegment*>(dynamic + std::size_t(slots) * launch.binCount);
-  auto* scrambles = reinterpret_cast<BounceScramble*>(segmentsOfWarps + launch.warps * warpLanes);
+  const int scrambled = scrambleCount(launch.view);
+  auto* scrambles = reinterpret_cast<BounceScramble*>(segmentsOfWarps + warps * warpLanes) +
+                    sliceOfBlock * launch.batchesTogether * scrambled;
   StagedSegment* staged = segmentsOfWarps + warp * warpLanes;
   const std::size_t row = (std::size_t(line) * launch.batches + firstBatch) * launch.slices + slice;
-  const std::size_t warpRow = (row * launch.warps + warp) * launch.binCount;
-  BinSums<float>* bins = BinsInShared ? dynamic + std::size_t(warp) * launch.binCount : launch.bins + warpRow;
-  for (int b = lane; b < launch.batchesTogether * launch.binCount; b += warpLanes)
+  const std::size_t warpRow = (row * launch.warps + warp % launch.warps) * launch.binCount;
+  BinSums<float>* ofSlice =
+    dynamic + std::size_t(sliceOfBlock) * launch.warps * launch.batchesTogether * launch.binCount;
+  BinSums<float>* bins =
+    BinsInShared ? ofSlice + std::size_t(warp % launch.warps) * launch.binCount : launch.bins + warpRow;
+  for (int b = lane; b < batches * launch.binCount; b += warpLanes)
   {
     bins[b] = {};
     if (ManyPaths)
@@ -323,16 +344,15 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
                                         launch.cellMm + lineBins,
                                         lineKey,
                                         launch.tissueBins() };
-  const int scrambled = scrambleCount(launch.view);
-  for (int b = threadIdx.x; b < batches * scrambled; b += blockDim.x)
+  for (int b = thread; b < batches * scrambled; b += sliceThreads)
   {
     scrambles[b] = makeScramble(launch.view, seed, lineKey, std::uint32_t(firstBatch + b / scrambled), b % scrambled);
   }
   __syncthreads();
 
   const int end = ofBatches < batches ? batchRange(launch.paths, launch.batches, batch).count() : 0;
-  const int step = launch.slices * int(blockDim.x);
-  const int place = slice * int(blockDim.x) + int(threadIdx.x) - ofBatches * launch.batchLanes;
+  const int step = launch.slices * sliceThreads;
+  const int place = slice * sliceThreads + thread - ofBatches * launch.batchLanes;
   TraceLine beam = launch.lines[line];
   LaneSink<ManyPaths, TraceLaunch<Targets>> sink(launch, line, beam, staged[lane]);
   PathKey key{ lineKey, std::uint32_t(batch), std::uint32_t(place - step), seed, scrambles + ofBatches * scrambled };
@@ -340,7 +360,7 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   bool walks = false;
   bool active = launch.view.startsApart || launch.starts[line].meets; // until the lane has no more paths
   int untilFold = pathsPerFold;                                       // a path adds to a bin but a few times
-  while (__any_sync(allLanes, active))
+  while (__syncthreads_or(active))
   {
     sink.clear();
     if (active && !walks)
@@ -350,11 +370,21 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
       walks = active && beginPath(launch, line, key, beam, path, sink);
     }
     // A path that has met coupling leaves that first.
-    if (walks && !sink.holdsSegment())
+    const bool steps = walks && !sink.holdsSegment();
+    PathBoundary boundary;
+    PieceEnd pieceEnd = PieceEnd::Path;
+    if (steps)
     {
-      walks = stepPath(launch.view, launch.space, beam, key, path, sink);
+      pieceEnd = walkPiece(launch.view, launch.space, beam, path, boundary, sink);
+      walks = pieceEnd == PieceEnd::Medium;
     }
-    __syncwarp();
+    __syncthreads();
+    if (steps && pieceEnd == PieceEnd::Boundary)
+    {
+      walks = arriveAtBoundary(launch.view, path, boundary, sink) &&
+              passBoundary(launch.view, launch.space, boundary, key, path, sink);
+    }
+    __syncthreads();
     unsigned waiting = __ballot_sync(allLanes, sink.holdsSegment());
     untilFold -= __popc(waiting);
     const unsigned reverberating = waiting & __ballot_sync(allLanes, staged[lane].reverberates != 0u);
@@ -393,16 +423,19 @@ __global__ void __launch_bounds__(blockPaths, Blocks) tracePaths(TraceLaunch<Tar
   }
   if (ManyPaths)
   {
-    foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
+    if (isThere)
+    {
+      foldBins(launch.binCount, lane, bins, launch.sums + warpRow);
+    }
     return;
   }
   __syncthreads();
-  for (int b = threadIdx.x; b < batches * launch.binCount; b += blockDim.x)
+  for (int b = thread; b < batches * launch.binCount; b += sliceThreads)
   {
     BinSums<double> sum{};
     for (int g = 0; g < launch.warps; ++g)
     {
-      addBins(dynamic[std::size_t(g) * launch.binCount + b], sum);
+      addBins(ofSlice[std::size_t(g) * launch.binCount + b], sum);
     }
     launch.sums[row * launch.binCount + b] = sum;
   }

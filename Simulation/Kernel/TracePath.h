@@ -48,8 +48,8 @@
 //           when.
 //
 // The loop around the steps belongs to whoever has the threads. A CPU follows one path to its end: tracePath(). A GPU
-// has a path in every lane of a warp and lets the lanes step together by stepPath(); a lane whose path ends takes up
-// the next (Cuda/TraceKernels.cuh). Between steps PathState says all about a path.
+// has a path in every lane of a warp and lets the lanes of a block take the parts of stepPath() together; a lane whose
+// path ends takes up the next (Cuda/TraceKernels.cuh). Between steps PathState says all about a path.
 //
 // Lengths in mm and positions in the region's local coordinates (see CellSpace); intensity 1 at the face; frequencies
 // are in the media's decay already. Nothing here allocates, throws or knows a global.
