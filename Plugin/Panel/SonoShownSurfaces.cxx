@@ -10,6 +10,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPVDataInformation.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 
@@ -38,16 +39,27 @@ vtkDataObject* SonoShownSurfaces::fetch(vtkSMProxy* source, int port)
   {
     return nullptr;
   }
+  const bool isRemote = vtkSMSessionClient::SafeDownCast(source->GetSession()) != nullptr;
   auto& fetcher = this->Fetchers[qMakePair(source, port)];
   if (!fetcher)
   {
-    // From a remote server, too; it runs again only when the data have changed.
-    fetcher.TakeReference(source->GetSessionProxyManager()->NewProxy("filters", "ClientServerMoveData"));
-    vtkSMPropertyHelper(fetcher, "Input").Set(source, static_cast<unsigned int>(port));
+    // It runs again only when the data have changed.
+    vtkSMSessionProxyManager* manager = source->GetSessionProxyManager();
+    fetcher.TakeReference(manager->NewProxy("filters", "ClientServerMoveData"));
+    vtkSmartPointer<vtkSMProxy> moved = source;
+    if (isRemote)
+    {
+      moved.TakeReference(manager->NewProxy("sono_server", "SonoCoarseSurfaces"));
+      vtkSMPropertyHelper(moved, "Input").Set(source, static_cast<unsigned int>(port));
+      moved->UpdateVTKObjects();
+    }
+    vtkSMPropertyHelper(fetcher, "Input").Set(moved, isRemote ? 0 : static_cast<unsigned int>(port));
   }
   const bool isComposite = about->GetCompositeDataSetType() > 0;
   vtkSMPropertyHelper(fetcher, "OutputDataType")
-    .Set(isComposite ? about->GetCompositeDataSetType() : about->GetDataSetType());
+    .Set(isRemote      ? VTK_MULTIBLOCK_DATA_SET
+         : isComposite ? about->GetCompositeDataSetType()
+                       : about->GetDataSetType());
   fetcher->UpdateVTKObjects();
   vtkSMSourceProxy::SafeDownCast(fetcher)->UpdatePipeline();
   return vtkAlgorithm::SafeDownCast(fetcher->GetClientSideObject())->GetOutputDataObject(0);
