@@ -1,9 +1,9 @@
 #include "SonoServerStops.h"
 
+#include "SonoTell.h"
 #include "vtkSonoServerStop.h"
 
 #include "pqPipelineSource.h"
-#include "vtkClientServerStream.h"
 #include "vtkCommand.h"
 #include "vtkPVProgressHandler.h"
 #include "vtkSMProxy.h"
@@ -92,10 +92,5 @@ bool SonoServerStops::isOn(pqPipelineSource* source) const
 bool SonoServerStops::waits(pqPipelineSource* source) const
 {
   vtkSMProxy* proxy = source->getProxy();
-  vtkClientServerStream question;
-  question << vtkClientServerStream::Invoke << VTKOBJECT(servers_.at(proxy->GetSession()).stop) << "Waits"
-           << VTKOBJECT(proxy) << vtkClientServerStream::End;
-  proxy->GetSession()->ExecuteStream(vtkPVSession::DATA_SERVER_ROOT, question);
-  bool answer = false;
-  return proxy->GetSession()->GetLastResult(vtkPVSession::DATA_SERVER_ROOT).GetArgument(0, 0, &answer) && answer;
+  return sonoAsk<bool>(servers_.at(proxy->GetSession()).stop, "Waits", VTKOBJECT(proxy));
 }

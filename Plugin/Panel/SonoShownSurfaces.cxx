@@ -1,5 +1,6 @@
 #include "SonoShownSurfaces.h"
 
+#include "SonoTell.h"
 #include "vtkSonoUltrasound.h"
 
 #include "pqDataRepresentation.h"
@@ -39,36 +40,55 @@ vtkDataObject* SonoShownSurfaces::fetch(vtkSMProxy* source, int port)
   {
     return nullptr;
   }
-  const bool isRemote = vtkSMSessionClient::SafeDownCast(source->GetSession()) != nullptr;
-  auto& fetcher = this->Fetchers[qMakePair(source, port)];
+  if (vtkSMSessionClient::SafeDownCast(source->GetSession()))
+  {
+    return this->fetchCoarse(source, port);
+  }
+  auto& fetcher = this->Fetched[qMakePair(source, port)].producer;
   if (!fetcher)
   {
     // It runs again only when the data have changed.
-    vtkSMSessionProxyManager* manager = source->GetSessionProxyManager();
-    fetcher.TakeReference(manager->NewProxy("filters", "ClientServerMoveData"));
-    vtkSmartPointer<vtkSMProxy> moved = source;
-    if (isRemote)
-    {
-      moved.TakeReference(manager->NewProxy("sono_server", "SonoCoarseSurfaces"));
-      vtkSMPropertyHelper(moved, "Input").Set(source, static_cast<unsigned int>(port));
-      moved->UpdateVTKObjects();
-    }
-    vtkSMPropertyHelper(fetcher, "Input").Set(moved, isRemote ? 0 : static_cast<unsigned int>(port));
+    fetcher.TakeReference(source->GetSessionProxyManager()->NewProxy("filters", "ClientServerMoveData"));
+    vtkSMPropertyHelper(fetcher, "Input").Set(source, static_cast<unsigned int>(port));
   }
   const bool isComposite = about->GetCompositeDataSetType() > 0;
   vtkSMPropertyHelper(fetcher, "OutputDataType")
-    .Set(isRemote      ? VTK_MULTIBLOCK_DATA_SET
-         : isComposite ? about->GetCompositeDataSetType()
-                       : about->GetDataSetType());
+    .Set(isComposite ? about->GetCompositeDataSetType() : about->GetDataSetType());
   fetcher->UpdateVTKObjects();
   vtkSMSourceProxy::SafeDownCast(fetcher)->UpdatePipeline();
   return vtkAlgorithm::SafeDownCast(fetcher->GetClientSideObject())->GetOutputDataObject(0);
 }
 
+/// From a server, when it has others than those that have come over.
+vtkDataObject* SonoShownSurfaces::fetchCoarse(vtkSMProxy* source, int port)
+{
+  Surfaces& known = this->Fetched[qMakePair(source, port)];
+  vtkSMSessionProxyManager* manager = source->GetSessionProxyManager();
+  if (!known.producer)
+  {
+    known.producer.TakeReference(manager->NewProxy("sono_server", "SonoCoarseSurfaces"));
+    vtkSMPropertyHelper(known.producer, "Input").Set(source, static_cast<unsigned int>(port));
+    known.producer->UpdateVTKObjects();
+  }
+  vtkSMSourceProxy::SafeDownCast(known.producer)->UpdatePipeline();
+  const int version = sonoAsk<int>(known.producer, "GetVersion");
+  if (known.version != version)
+  {
+    const auto mover = vtkSmartPointer<vtkSMProxy>::Take(manager->NewProxy("filters", "ClientServerMoveData"));
+    vtkSMPropertyHelper(mover, "Input").Set(known.producer);
+    vtkSMPropertyHelper(mover, "OutputDataType").Set(VTK_MULTIBLOCK_DATA_SET);
+    mover->UpdateVTKObjects();
+    vtkSMSourceProxy::SafeDownCast(mover)->UpdatePipeline();
+    known.data = vtkAlgorithm::SafeDownCast(mover->GetClientSideObject())->GetOutputDataObject(0);
+    known.version = version;
+  }
+  return known.data;
+}
+
 void SonoShownSurfaces::forget(vtkSMProxy* source)
 {
-  for (auto each = this->Fetchers.begin(); each != this->Fetchers.end();)
+  for (auto each = this->Fetched.begin(); each != this->Fetched.end();)
   {
-    each = each.key().first == source ? this->Fetchers.erase(each) : std::next(each);
+    each = each.key().first == source ? this->Fetched.erase(each) : std::next(each);
   }
 }

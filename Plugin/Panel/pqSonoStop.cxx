@@ -104,16 +104,23 @@ void pqSonoStop::startup()
   QObject::connect(manager, &pqProgressManager::abort, this, [this] { stop_ = busy_; });
   servers_ = std::make_unique<SonoServerStops>([this] { return wantsStop(); });
   pqServerManagerModel* model = pqApplicationCore::instance()->getServerManagerModel();
-  QObject::connect(model, &pqServerManagerModel::sourceAdded, this,
-                   [this](pqPipelineSource* source) { servers_->listenFor(source); });
-  QObject::connect(model, &pqServerManagerModel::preServerRemoved, this,
-                   [this](pqServer* server) { servers_->forget(server->session()); });
+  QObject::connect(model, &pqServerManagerModel::sourceAdded, this, [this](pqPipelineSource* source) {
+    if (servers_)
+    {
+      servers_->listenFor(source);
+    }
+  });
+  QObject::connect(model, &pqServerManagerModel::preServerRemoved, this, [this](pqServer* server) {
+    if (servers_)
+    {
+      servers_->forget(server->session());
+    }
+  });
 }
 
 void pqSonoStop::shutdown()
 {
   sono::setInterrupter(nullptr);
-  pqApplicationCore::instance()->getServerManagerModel()->disconnect(this);
   servers_.reset();
 }
 

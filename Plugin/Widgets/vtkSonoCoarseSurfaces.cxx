@@ -1,27 +1,26 @@
 #include "vtkSonoCoarseSurfaces.h"
 
-#include "vtkCellArray.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkQuadricClustering.h"
-#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <utility>
 
 vtkStandardNewMacro(vtkSonoCoarseSurfaces);
 
 namespace {
 
 /// Points and triangles alone.
-vtkSmartPointer<vtkPolyData> coarse(vtkPolyData* mesh, double cubeMm)
+vtkSmartPointer<vtkPolyData> coarse(vtkPoints* points, vtkCellArray* polygons, double cubeMm)
 {
   vtkNew<vtkPolyData> bare;
-  bare->SetPoints(mesh->GetPoints());
-  bare->SetPolys(mesh->GetPolys());
+  bare->SetPoints(points);
+  bare->SetPolys(polygons);
   vtkNew<vtkQuadricClustering> clustering;
   clustering->SetInputData(bare);
   clustering->SetDivisionOrigin(0.0, 0.0, 0.0);
@@ -40,6 +39,7 @@ void vtkSonoCoarseSurfaces::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "CubeMm: " << this->CubeMm << endl;
+  os << indent << "Version: " << this->Version << endl;
 }
 
 int vtkSonoCoarseSurfaces::FillInputPortInformation(int, vtkInformation* info)
@@ -50,14 +50,24 @@ int vtkSonoCoarseSurfaces::FillInputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
+bool vtkSonoCoarseSurfaces::IsMadeOf(const std::vector<Shape>& shapes) const
+{
+  const auto isSame = [](const Shape& a, const Shape& b) {
+    return a.points == b.points && a.polygons == b.polygons && a.time == b.time;
+  };
+  return this->Version > 0 && this->CubeMm == this->MadeCubeMm &&
+         std::equal(shapes.begin(), shapes.end(), this->Made.begin(), this->Made.end(), isSame);
+}
+
 int vtkSonoCoarseSurfaces::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(output);
+  std::vector<Shape> shapes;
   const auto add = [&](vtkDataObject* data) {
     vtkPolyData* mesh = vtkPolyData::SafeDownCast(data);
     if (mesh && mesh->GetNumberOfPolys() > 0)
     {
-      blocks->SetBlock(blocks->GetNumberOfBlocks(), coarse(mesh, this->CubeMm));
+      shapes.push_back(
+        { mesh->GetPoints(), mesh->GetPolys(), std::max(mesh->GetPoints()->GetMTime(), mesh->GetPolys()->GetMTime()) });
     }
   };
   vtkDataObject* data = vtkDataObject::GetData(input[0]);
@@ -73,5 +83,17 @@ int vtkSonoCoarseSurfaces::RequestData(vtkInformation*, vtkInformationVector** i
   {
     add(data);
   }
+  if (!this->IsMadeOf(shapes))
+  {
+    this->Kept->Initialize();
+    for (const Shape& shape : shapes)
+    {
+      this->Kept->SetBlock(this->Kept->GetNumberOfBlocks(), coarse(shape.points, shape.polygons, this->CubeMm));
+    }
+    this->Made = std::move(shapes);
+    this->MadeCubeMm = this->CubeMm;
+    ++this->Version;
+  }
+  vtkMultiBlockDataSet::GetData(output)->ShallowCopy(this->Kept);
   return 1;
 }
