@@ -1,6 +1,5 @@
 #include "SonoShownSurfaces.h"
 
-#include "SonoTell.h"
 #include "vtkSonoUltrasound.h"
 
 #include "pqDataRepresentation.h"
@@ -71,7 +70,8 @@ vtkDataObject* SonoShownSurfaces::fetchCoarse(vtkSMProxy* source, int port)
     known.producer->UpdateVTKObjects();
   }
   vtkSMSourceProxy::SafeDownCast(known.producer)->UpdatePipeline();
-  const int version = sonoAsk<int>(known.producer, "GetVersion");
+  known.producer->UpdatePropertyInformation();
+  const int version = vtkSMPropertyHelper(known.producer, "Version").GetAsInt();
   if (known.version != version)
   {
     const auto mover = vtkSmartPointer<vtkSMProxy>::Take(manager->NewProxy("filters", "ClientServerMoveData"));

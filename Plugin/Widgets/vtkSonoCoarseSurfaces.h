@@ -28,7 +28,7 @@ public:
 
   ///@{
   /**
-   * Edge of the cubes in mm, 0.1 to 100. Default 4.
+   * Edge of the cubes in mm, 0.1 to 100. Default 6.
    */
   vtkSetClampMacro(CubeMm, double, 0.1, 100.0);
   vtkGetMacro(CubeMm, double);
@@ -59,7 +59,7 @@ private:
   };
   bool IsMadeOf(const std::vector<Shape>& shapes) const;
 
-  double CubeMm = 4.0;
+  double CubeMm = 6.0;
   int Version = 0;
   double MadeCubeMm = 0.0;
   std::vector<Shape> Made;
