@@ -14,7 +14,6 @@ from person import Person
 FAN = (757, 122)  # in the toolbar
 FROM, TO = (538, 539), (499, 516)  # in the view with the body: where the probe lies at first, and up the chest
 STEPS = 12
-SCREEN = 3 * 1400 * 900
 SCRIPT = """
 from paraview.simple import *
 SetActiveSource(ThoraxPhantom(Spacingmm=2))
@@ -119,6 +118,15 @@ class TestGuiRemote(GuiCase):
         script.write_text(SCRIPT)
         self.play_with(act, script)
         print(down)
+        # The body's triangles once, few of them; half a picture and none when the button is pressed again.
+        self.assertLess(down["press"], 4e6)
+        self.assertLess(down["second press"], 1e6)
+        views = 3 * (408 * 508 + 411 * 307)  # bytes of the two views' pixels
+        for which in ("drag", "second drag"):
+            self.assertGreater(min(down[which]), 0)
+            self.assertLess(max(down[which]), 2 * views)  # a hand may be seen at two places in a step
+            self.assertLess(sum(down[which]) / STEPS, views)
+            self.assertLess(down[f"rest after {which}"], 4 * views)
 
 
 if __name__ == "__main__":
