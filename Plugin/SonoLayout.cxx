@@ -59,8 +59,8 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
   vtkSMRenderViewProxy::SafeDownCast(view)->ResetCamera(true);
 }
 
-/// A server draws its views itself, if it can: their pictures cross the link, not the meshes they are drawn from, nor an
-/// image as a mesh.
+/// A server draws its views itself, if it can: their pictures cross the link, not the meshes they are drawn from, nor
+/// an image as a mesh.
 void drawOnServer(vtkSMViewProxy* view)
 {
   if (vtkSMSessionClient::SafeDownCast(view->GetSession()))
