@@ -123,7 +123,7 @@ class TestGuiRemote(GuiCase):
         self.assertLess(down["second press"], 1e6)
         views = 3 * (408 * 508 + 411 * 307)  # bytes of the two views' pixels
         for which in ("drag", "second drag"):
-            self.assertGreater(min(down[which]), 0)
+            self.assertGreater(sum(down[which]), 100_000 * STEPS)  # of a step on a busy machine it may come in the next one
             self.assertLess(max(down[which]), 2 * views)  # a hand may be seen at two places in a step
             self.assertLess(sum(down[which]) / STEPS, views)
             self.assertLess(down[f"rest after {which}"], 4 * views)
