@@ -249,6 +249,21 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   return traced;
 }
 
+void UltrasoundStages::prepareMoving()
+{
+  if (!simulator_.scene() || field_.preview)
+  {
+    return;
+  }
+  try
+  {
+    simulator_.prepareInteractive(makeScanLines(settings_.geometry, field_.pose), settings_.tracing);
+  }
+  catch (const Error&) // of a probe that is off the body: make() says it
+  {
+  }
+}
+
 bool UltrasoundStages::offerBetter()
 {
   isBetterOffered_ = hasBetter();

@@ -82,6 +82,8 @@ public:
   bool offerBetter();
   /// Whether it is still to be taken over.
   bool isBetterOffered() const { return isBetterOffered_ && hasBetter(); }
+  /// Begins what the first picture of a moving probe needs.
+  void prepareMoving();
   /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
   /// stop.
   void make(int port, vtkInformationVector** input, vtkInformationVector* output);

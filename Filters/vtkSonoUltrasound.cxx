@@ -115,6 +115,11 @@ bool vtkSonoUltrasound::HasBetter()
   return this->Inside->offerBetter();
 }
 
+void vtkSonoUltrasound::PrepareMoving()
+{
+  this->Inside->prepareMoving();
+}
+
 vtkMTimeType vtkSonoUltrasound::GetMTime()
 {
   if (this->Inside->isLeftWanted() || (this->Progressive && this->Inside->isBetterOffered()))

@@ -118,6 +118,12 @@ public:
   ///@}
 
   /**
+   * Begins in the background what the first picture of a moving probe needs (Scene::beginInteractiveRegion), for a
+   * picture that was made; changes none. For a GUI, when nothing else is to be done.
+   */
+  void PrepareMoving();
+
+  /**
    * An output is made when it is asked for: the images by Update(), another by Update(port).
    */
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** input,

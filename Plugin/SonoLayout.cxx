@@ -8,6 +8,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyIterator.h"
 #include "vtkSMRenderViewProxy.h"
+#include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
@@ -58,9 +59,22 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
   vtkSMRenderViewProxy::SafeDownCast(view)->ResetCamera(true);
 }
 
+/// A server draws its views itself, if it can: their pictures cross the link, not the meshes they are drawn from, nor
+/// an image as a mesh.
+void drawOnServer(vtkSMViewProxy* view)
+{
+  if (vtkSMSessionClient::SafeDownCast(view->GetSession()))
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
+    vtkSMPropertyHelper(view, "RemoteRenderThreshold", true).Set(0.0); // from no megabytes on
+    view->UpdateVTKObjects();
+  }
+}
+
 /// Anatomy, probe and image from the patient's front, a little from the left and from above.
 void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
+  drawOnServer(view);
   {
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
     // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
@@ -110,6 +124,7 @@ void showOpaque(vtkSMProxy* representation)
 /// Grey on black, the transducer on top, with what a scanner draws and writes beside it.
 void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
+  drawOnServer(view);
   {
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
     const double black[3] = { 0.0, 0.0, 0.0 };

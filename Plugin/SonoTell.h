@@ -14,3 +14,13 @@ void sonoTell(vtkSMProxy* proxy, const char* method, Values... values)
   (stream << ... << values) << vtkClientServerStream::End;
   proxy->GetSession()->ExecuteStream(proxy->GetLocation(), stream);
 }
+
+/// The same for a method that gives an answer, which the client waits for; Answer() where there is none.
+template<class Answer, class... Values>
+Answer sonoAsk(vtkSMProxy* proxy, const char* method, Values... values)
+{
+  sonoTell(proxy, method, values...);
+  Answer answer{};
+  proxy->GetSession()->GetLastResult(proxy->GetLocation()).GetArgument(0, 0, &answer);
+  return answer;
+}

@@ -10,6 +10,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPVDataInformation.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 
@@ -38,10 +39,14 @@ vtkDataObject* SonoShownSurfaces::fetch(vtkSMProxy* source, int port)
   {
     return nullptr;
   }
-  auto& fetcher = this->Fetchers[qMakePair(source, port)];
+  if (vtkSMSessionClient::SafeDownCast(source->GetSession()))
+  {
+    return this->fetchCoarse(source, port);
+  }
+  auto& fetcher = this->Fetched[qMakePair(source, port)].producer;
   if (!fetcher)
   {
-    // From a remote server, too; it runs again only when the data have changed.
+    // It runs again only when the data have changed.
     fetcher.TakeReference(source->GetSessionProxyManager()->NewProxy("filters", "ClientServerMoveData"));
     vtkSMPropertyHelper(fetcher, "Input").Set(source, static_cast<unsigned int>(port));
   }
@@ -53,10 +58,37 @@ vtkDataObject* SonoShownSurfaces::fetch(vtkSMProxy* source, int port)
   return vtkAlgorithm::SafeDownCast(fetcher->GetClientSideObject())->GetOutputDataObject(0);
 }
 
+/// From a server, when it has others than those that have come over.
+vtkDataObject* SonoShownSurfaces::fetchCoarse(vtkSMProxy* source, int port)
+{
+  Surfaces& known = this->Fetched[qMakePair(source, port)];
+  vtkSMSessionProxyManager* manager = source->GetSessionProxyManager();
+  if (!known.producer)
+  {
+    known.producer.TakeReference(manager->NewProxy("sono_server", "SonoCoarseSurfaces"));
+    vtkSMPropertyHelper(known.producer, "Input").Set(source, static_cast<unsigned int>(port));
+    known.producer->UpdateVTKObjects();
+  }
+  vtkSMSourceProxy::SafeDownCast(known.producer)->UpdatePipeline();
+  known.producer->UpdatePropertyInformation();
+  const int version = vtkSMPropertyHelper(known.producer, "Version").GetAsInt();
+  if (known.version != version)
+  {
+    const auto mover = vtkSmartPointer<vtkSMProxy>::Take(manager->NewProxy("filters", "ClientServerMoveData"));
+    vtkSMPropertyHelper(mover, "Input").Set(known.producer);
+    vtkSMPropertyHelper(mover, "OutputDataType").Set(VTK_MULTIBLOCK_DATA_SET);
+    mover->UpdateVTKObjects();
+    vtkSMSourceProxy::SafeDownCast(mover)->UpdatePipeline();
+    known.data = vtkAlgorithm::SafeDownCast(mover->GetClientSideObject())->GetOutputDataObject(0);
+    known.version = version;
+  }
+  return known.data;
+}
+
 void SonoShownSurfaces::forget(vtkSMProxy* source)
 {
-  for (auto each = this->Fetchers.begin(); each != this->Fetchers.end();)
+  for (auto each = this->Fetched.begin(); each != this->Fetched.end();)
   {
-    each = each.key().first == source ? this->Fetchers.erase(each) : std::next(each);
+    each = each.key().first == source ? this->Fetched.erase(each) : std::next(each);
   }
 }

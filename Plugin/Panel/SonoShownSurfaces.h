@@ -12,7 +12,8 @@ class vtkMultiBlockDataSet;
 class vtkSMProxy;
 
 /**
- * The surfaces that a view shows, on the client, whatever server they are on.
+ * The surfaces that a view shows, on the client, whatever server they are on. From a server they come once, with fewer
+ * triangles (vtkSonoCoarseSurfaces).
  */
 class SonoShownSurfaces
 {
@@ -24,9 +25,16 @@ public:
   void forget(vtkSMProxy* source);
 
 private:
+  struct Surfaces
+  {
+    vtkSmartPointer<vtkSMProxy> producer; // here, of all; on a server, of fewer triangles
+    int version = 0;                      // of what has come from a server
+    vtkSmartPointer<vtkDataObject> data;
+  };
   vtkDataObject* fetch(vtkSMProxy* source, int port);
+  vtkDataObject* fetchCoarse(vtkSMProxy* source, int port);
 
-  QMap<QPair<vtkSMProxy*, int>, vtkSmartPointer<vtkSMProxy>> Fetchers;
+  QMap<QPair<vtkSMProxy*, int>, Surfaces> Fetched;
 };
 
 #endif

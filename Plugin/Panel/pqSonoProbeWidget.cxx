@@ -4,6 +4,7 @@
 #include "SonoFreeze.h"
 #include "SonoMovingViews.h"
 #include "SonoProbeGroup.h"
+#include "SonoTell.h"
 #include "SonoWaiting.h"
 #include "SonoWindows.h"
 #include "pqSonoLiveSettings.h"
@@ -489,9 +490,16 @@ void pqSonoProbeWidget::setView(pqView* next)
 
 void pqSonoProbeWidget::prepare()
 {
-  // Not from a server: all that is shown would come over unasked.
-  if (!this->Moving && this->isWidgetVisible() && !vtkSMSessionClient::SafeDownCast(this->proxy()->GetSession()) &&
-      !this->proxy()->GetSession()->GetPendingProgress())
+  if (this->Moving || !this->isWidgetVisible() || this->proxy()->GetSession()->GetPendingProgress())
+  {
+    return;
+  }
+  if (isUltrasound(this->proxy()))
+  {
+    sonoTell(this->proxy(), "PrepareMoving");
+  }
+  // Not from a server: surfaces would come over unasked.
+  if (!vtkSMSessionClient::SafeDownCast(this->proxy()->GetSession()))
   {
     this->findSkin();
     this->probe()->GetSkin()->Prepare();

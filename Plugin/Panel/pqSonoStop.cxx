@@ -1,15 +1,20 @@
 #include "pqSonoStop.h"
 
+#include "SonoServerStops.h"
+#include "SonoTell.h"
+
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqPipelineSource.h"
 #include "pqProgressManager.h"
 #include "pqProgressWidget.h"
 #include "pqPropertiesPanel.h"
+#include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "vtkAlgorithm.h"
 #include "vtkOutputWindow.h"
 #include "vtkSMProxy.h"
+#include "vtkSMSession.h"
 
 #include <QApplication>
 #include <QKeyEvent>
@@ -97,11 +102,26 @@ void pqSonoStop::startup()
   pqProgressManager* manager = progressManager();
   QObject::connect(manager, &pqProgressManager::enableProgress, this, [this](bool on) { on ? begin() : end(); });
   QObject::connect(manager, &pqProgressManager::abort, this, [this] { stop_ = busy_; });
+  servers_ = std::make_unique<SonoServerStops>([this] { return wantsStop(); });
+  pqServerManagerModel* model = pqApplicationCore::instance()->getServerManagerModel();
+  QObject::connect(model, &pqServerManagerModel::sourceAdded, this, [this](pqPipelineSource* source) {
+    if (servers_)
+    {
+      servers_->listenFor(source);
+    }
+  });
+  QObject::connect(model, &pqServerManagerModel::preServerRemoved, this, [this](pqServer* server) {
+    if (servers_)
+    {
+      servers_->forget(server->session());
+    }
+  });
 }
 
 void pqSonoStop::shutdown()
 {
   sono::setInterrupter(nullptr);
+  servers_.reset();
 }
 
 void pqSonoStop::begin()
@@ -117,7 +137,7 @@ void pqSonoStop::end()
 {
   busy_ = false;
   progressManager()->setEnableAbort(false);
-  if (stop_ || !held_.empty())
+  if (stop_ || !held_.empty() || !waiting_.empty())
   {
     afterwards_.start();
   }
@@ -240,9 +260,45 @@ void pqSonoStop::offerApply()
   }
 }
 
+/// A source that was stopped; true: it did not wait before.
+bool pqSonoStop::await(pqPipelineSource* source)
+{
+  if (std::find(waiting_.begin(), waiting_.end(), source) != waiting_.end())
+  {
+    return false;
+  }
+  waiting_.emplace_back(source);
+  source->setProperty(waitsForApply, true);
+  return true;
+}
+
+/// Those on servers tell of nothing and are asked.
+void pqSonoStop::settleServers(QStringList& names)
+{
+  for (auto* source : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  {
+    if (!servers_->isOn(source))
+    {
+      continue;
+    }
+    const auto known = std::find(waiting_.begin(), waiting_.end(), source);
+    if (servers_->waits(source))
+    {
+      if (this->await(source))
+      {
+        names << source->getSMName();
+      }
+    }
+    else if (known != waiting_.end())
+    {
+      source->setProperty(waitsForApply, false);
+      waiting_.erase(known);
+    }
+  }
+}
+
 void pqSonoStop::settle()
 {
-  stop_ = false;
   QStringList names;
   for (vtkAlgorithm* filter : std::exchange(stopped_, {}))
   {
@@ -250,12 +306,12 @@ void pqSonoStop::settle()
     if (source && !names.contains(source->getSMName()))
     {
       names << source->getSMName();
-      if (std::find(waiting_.begin(), waiting_.end(), source) == waiting_.end())
-      {
-        waiting_.emplace_back(source);
-        source->setProperty(waitsForApply, true);
-      }
+      this->await(source);
     }
+  }
+  if (std::exchange(stop_, false) || !waiting_.empty())
+  {
+    this->settleServers(names);
   }
   this->offerApply();
   if (!names.isEmpty())
@@ -296,7 +352,7 @@ void pqSonoStop::runAgain(pqProxy* applied)
     waiting_.erase(found);
     applied->setProperty(waitsForApply, false);
     vtkSMProxy* proxy = applied->getProxy();
-    vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->Modified();
+    sonoTell(proxy, "Modified");
     proxy->MarkModified(proxy);
   }
 }

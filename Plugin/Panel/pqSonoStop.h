@@ -12,15 +12,16 @@
 #include <vector>
 
 class QEvent;
+class SonoServerStops;
 class QWindow;
 class pqPipelineSource;
 class pqProxy;
 
-/// Lets ParaView's abort button (and Escape) stop our filters while they run in the GUI's own process. ParaView 5.11
-/// shows progress but handles no events meanwhile; this handles them, several times a second, while one of our filters
-/// works. Only the button, Escape and closing the window are acted on, which stops the run. Other input waits for its
-/// end, as it does without us; timers wait, too, so that nothing starts a run inside a run. While a mouse button that
-/// was pressed before the run is held, as in a drag, nothing is handled at all.
+/// Lets ParaView's abort button (and Escape) stop our filters while they run, in the GUI's own process or on a server.
+/// ParaView 5.11 shows progress but handles no events meanwhile; this handles them, several times a second, while one
+/// of our filters works. Only the button, Escape and closing the window are acted on, which stops the run. Other input
+/// waits for its end, as it does without us; timers wait, too, so that nothing starts a run inside a run. While a mouse
+/// button that was pressed before the run is held, as in a drag, nothing is handled at all.
 ///
 /// The filter that was stopped goes on showing what it made before, and waits for Apply.
 class pqSonoStop
@@ -51,6 +52,8 @@ private:
   void begin();
   void end();
   void settle();
+  void settleServers(QStringList& names);
+  bool await(pqPipelineSource* source);
   void offerApply();
   void runAgain(pqProxy* applied);
   void look();
@@ -68,4 +71,5 @@ private:
   std::vector<std::pair<QPointer<QObject>, std::unique_ptr<QEvent>>> held_;
   std::vector<vtkAlgorithm*> stopped_; // not told to the user yet
   std::vector<QPointer<pqPipelineSource>> waiting_;
+  std::unique_ptr<SonoServerStops> servers_;
 };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -184,6 +185,44 @@ void RegionOnDemand::bakeAround(const Vec3d& middleMm, double reachMm, const Pro
     return glm::dot(away, away) <= reachMm * reachMm;
   };
   bakeBlocks(isNear, progress);
+}
+
+void RegionOnDemand::bakeBeside(const RegionOnDemand& other, const std::function<bool()>& goesOn) const
+{
+  const Vec3i theirs = other.baking_->blocks;
+  const auto bake = [&](const Vec3i& volumeBlock) {
+    const Vec3i block = volumeBlock - baking_->first;
+    const bool isMine =
+      glm::all(glm::greaterThanEqual(block, Vec3i(0))) && glm::all(glm::lessThan(block, baking_->blocks));
+    if (isMine && !baking_->flag(block).load(std::memory_order_acquire))
+    {
+      bakeBlock(block);
+    }
+  };
+  for (const int away : { 0, 1 }) // what is there first, which is copied
+  {
+    for (int i = 0; i < theirs.x * theirs.y * theirs.z; ++i)
+    {
+      const Vec3i block(i % theirs.x, i / theirs.x % theirs.y, i / theirs.x / theirs.y);
+      if (!other.baking_->flag(block).load(std::memory_order_acquire))
+      {
+        continue;
+      }
+      for (int n = 0; n < 27; ++n)
+      {
+        const Vec3i step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        if (std::max({ std::abs(step.x), std::abs(step.y), std::abs(step.z) }) != away)
+        {
+          continue;
+        }
+        if (!goesOn())
+        {
+          return;
+        }
+        bake(other.baking_->first + block + step);
+      }
+    }
+  }
 }
 
 int RegionOnDemand::bakedBlocks() const

@@ -6,6 +6,7 @@
 #include "Scene/VoxelBox.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -42,6 +43,9 @@ public:
   void bakeAll(const Progress& progress = {}) const;
   /// Those that lie within so many mm of a place, in the volume's local mm, and some around them.
   void bakeAround(const Vec3d& middleMm, double reachMm, const Progress& progress = {}) const;
+  /// The blocks that `other`, a region of the same voxels, has baked by now, and those that touch them, one after the
+  /// other on this thread, until `goesOn` says no.
+  void bakeBeside(const RegionOnDemand& other, const std::function<bool()>& goesOn) const;
   /// Bakes the block around a voxel of the box that has a record, and gives that record.
   [[gnu::cold]] std::uint32_t bakeAt(const Vec3i& voxel) const;
   /// Blocks that were baked so far.

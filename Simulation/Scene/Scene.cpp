@@ -95,6 +95,32 @@ struct Scene::Making
   std::shared_future<SharedRegion> region; ///< null where memory ran out; its end is waited for
 };
 
+/// Records that a moving probe's first paths will ask for, baked in the background while the probe rests: those that
+/// the resting one's have met, and beside them. Ends when it is dropped.
+struct Scene::Foreseeing
+{
+  Foreseeing(std::shared_ptr<const Making> making, SharedRegion met)
+    : done(std::async(std::launch::async, [this, making = std::move(making), met = std::move(met)] {
+      while (making->region.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+      {
+        if (unwanted)
+        {
+          return;
+        }
+      }
+      if (const SharedRegion region = making->region.get())
+      {
+        region->bakeBeside(*met, [this] { return !unwanted; });
+      }
+    }))
+  {
+  }
+  ~Foreseeing() { unwanted = true; }
+
+  std::atomic<bool> unwanted{ false };
+  std::future<void> done; ///< its end is waited for
+};
+
 Scene::Scene(LabelVolume volume, const TissueTable& table, std::string outsideTissue, std::vector<std::uint8_t> detail,
              std::shared_ptr<const TissueMotion> motion)
   : id_(nextId())
@@ -391,6 +417,7 @@ Scene::SharedRegion Scene::finishedInteractive() const
 std::shared_ptr<const RegionOnDemand> Scene::interactiveRegion(const VoxelBox& box, const Progress& progress) const
 {
   const auto making = makingInteractive(box, false);
+  foresee(nullptr); // all cores for what is asked for
   while (making->region.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
   {
     report(progress, making->done);
@@ -409,7 +436,20 @@ std::shared_ptr<const RegionOnDemand> Scene::interactiveRegion(const VoxelBox& b
 
 void Scene::beginInteractiveRegion(const VoxelBox& box, bool allRecords) const
 {
-  makingInteractive(box, allRecords);
+  const auto making = makingInteractive(box, allRecords);
+  if (!allRecords)
+  {
+    foresee(making);
+  }
+}
+
+/// From now on with what the last region has baked, or, for null, no longer.
+void Scene::foresee(std::shared_ptr<const Making> making) const
+{
+  std::unique_ptr<Foreseeing> before; // ends after the lock
+  const std::lock_guard<std::mutex> lock(mutex_);
+  before =
+    std::exchange(foreseeing_, making && region_ ? std::make_unique<Foreseeing>(std::move(making), region_) : nullptr);
 }
 
 bool Scene::hasInteractiveRegion() const

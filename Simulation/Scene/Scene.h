@@ -101,7 +101,8 @@ public:
   /// 512 voxels or at the volume's end. A volume up to that size is one box, so that all poses share it; of a longer
   /// one it takes what is near. Kept beside the other.
   std::shared_ptr<const RegionOnDemand> interactiveRegion(const VoxelBox& box, const Progress& progress = {}) const;
-  /// Begins to build that in the background, where it is not there yet; with all of its records if wanted. The build of
+  /// Begins to build that in the background, where it is not there yet; with all of its records if wanted, else with
+  /// those that the last `regionOnDemand` has baked and those beside them, until somebody asks for it. The build of
   /// another one that nobody waits for is cancelled.
   void beginInteractiveRegion(const VoxelBox& box, bool allRecords) const;
   /// Whether there is such a cache, or one in the making.
@@ -113,6 +114,8 @@ private:
   VoxelBox clipped(const VoxelBox& box) const;
   struct Making;
   std::shared_ptr<const Making> makingInteractive(const VoxelBox& box, bool allRecords) const;
+  struct Foreseeing;
+  void foresee(std::shared_ptr<const Making> making) const;
   SharedRegion finishedInteractive() const; ///< null where it is still being made
   template<class Find, class Make, class Keep>
   auto findOrMake(const void* thing, const Find& find, const Make& make, const Keep& keep) const;
@@ -142,7 +145,8 @@ private:
   mutable std::unique_ptr<FibreField> fibres_;
   mutable std::unique_ptr<SurfacePieces> pieces_;
   mutable SharedRegion region_;
-  mutable std::shared_ptr<const Making> interactive_; // the last, since its end is waited for and needs the rest
+  mutable std::shared_ptr<const Making> interactive_; // their ends are waited for and need the rest
+  mutable std::unique_ptr<Foreseeing> foreseeing_;
 };
 
 } // namespace sono

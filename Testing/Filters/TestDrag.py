@@ -72,6 +72,28 @@ class TestDrag(unittest.TestCase):
         chain.converter.Update()
         self.assertTrue(prepared())
 
+    def test_a_window_that_is_idle_has_the_moving_probe_prepared(self):
+        """Of a picture that was made, which stays; what moves looks as without."""
+        thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
+        thorax.Update()
+        pictures = []
+        for prepares in (False, True):
+            ultrasound = ultrasound_on(thorax, LineCount=12, PathsPerLine=20)
+            ultrasound.PrepareMoving()  # of what, is not known yet
+            ultrasound.Update()
+            prepared = lambda: "moving probe: yes" in str(
+                ultrasound.GetOutput().GetFieldData().GetAbstractArray("SonoScene"))
+            self.assertFalse(prepared())
+            time = ultrasound.GetMTime()
+            if prepares:
+                ultrasound.PrepareMoving()
+            self.assertEqual((prepared(), ultrasound.GetMTime()), (prepares, time))
+            ultrasound.GetProbe().SetPreview(True)
+            ultrasound.GetProbe().SetPositionMm(*moved(ultrasound.GetProbe().GetPositionMm(), 2))
+            ultrasound.Update()
+            pictures.append(array(ultrasound.GetOutput()))
+        np.testing.assert_array_equal(*pictures)
+
     def test_picture_does_not_depend_on_the_way(self):
         thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
         thorax.Update()

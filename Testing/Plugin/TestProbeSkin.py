@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 from probecase import angle, pose, sphere, turned
-from sonovdb.vtkSonoWidgets import vtkSonoProbeRepresentation as Probe, vtkSonoSkin
+from sonovdb.vtkSonoWidgets import vtkSonoCoarseSurfaces, vtkSonoProbeRepresentation as Probe, vtkSonoSkin
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData, vtkStaticCellLocator
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkRegularPolygonSource
@@ -28,6 +28,38 @@ class TestSkin(unittest.TestCase):
                 self.assertTrue(skin.Meet(300 * direction, -300 * direction, place, normal))
                 np.testing.assert_allclose(place, 100 * direction, atol=0.05)
                 self.assertLess(angle(normal, direction), 0.5)
+
+    def test_coarse_surfaces_are_as_good_to_stand_on(self):
+        """A skin as of a label map, a thin shell, with a fiftieth of its triangles: what a client gets of it."""
+        fine = blocks(sphere(100, steps=800), sphere(98, steps=800, inwards=True))
+        made = vtkSonoCoarseSurfaces()
+        made.SetInputData(fine)
+        made.Update()
+        counts = [sum(mesh.GetBlock(i).GetNumberOfPolys() for i in range(2)) for mesh in (fine, made.GetOutput())]
+        self.assertLess(counts[1], counts[0] / 50)
+        self.assertEqual(made.GetOutput().GetBlock(0).GetPointData().GetNumberOfArrays(), 0)
+        skin = vtkSonoSkin()
+        skin.SetSurfaces(made.GetOutput())
+        place, normal = [0.0] * 3, [0.0] * 3
+        for direction in np.random.default_rng(3).standard_normal((200, 3)):
+            direction /= np.linalg.norm(direction)
+            self.assertTrue(skin.Meet(300 * direction, 0 * direction, place, normal))
+            self.assertLess(np.linalg.norm(place - 100 * direction), 0.5)
+            self.assertLess(angle(normal, direction), 3)
+
+    def test_coarse_surfaces_are_kept_while_the_meshes_are_the_same(self):
+        mesh = sphere(50)
+        made = vtkSonoCoarseSurfaces()
+        for version, change in ((1, lambda: None), (1, made.Modified), (2, mesh.GetPoints().Modified),
+                                (3, lambda: made.SetCubeMm(9)), (4, lambda: mesh.SetPolys(sphere(50).GetPolys()))):
+            change()
+            again = vtkPolyData()
+            again.ShallowCopy(mesh)  # as a pipeline hands it on
+            made.SetInputData(blocks(again))
+            made.Update()
+            self.assertEqual(made.GetVersion(), version)
+            self.assertEqual(made.GetOutput().GetNumberOfBlocks(), 1)
+            self.assertGreater(made.GetOutput().GetBlock(0).GetNumberOfPolys(), 50)
 
     def test_noise_does_not_shake_the_normal(self):
         skin = vtkSonoSkin()

@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
+#include <thread>
 
 namespace sono {
 namespace {
@@ -94,6 +96,25 @@ TEST(RegionOnDemand, WhatAnotherRegionKnowsIsTheSame)
   compareRecords(regionOnDemand(*scene, box, other), wholeRegion(*scene, box));
 }
 
+TEST(RegionOnDemand, WhatLiesBesideAnothersBlocksIsBakedAndTheSame)
+{
+  const auto scene = makeBusyScene();
+  const VoxelBox box{ Vec3i(8, 0, 0), scene->placement().size };
+  const TraceRegion whole = wholeRegion(*scene, box);
+  const RegionOnDemand other = regionOnDemand(*scene, { Vec3i(0), scene->placement().size });
+  other.bakeAround(Vec3d(other.region().box.last) * scene->placement().spacingMm / 2.0, 1.0);
+  const int met = other.bakedBlocks();
+  ASSERT_GT(met, 0);
+  const RegionOnDemand region = regionOnDemand(*scene, box);
+  int asked = 0;
+  region.bakeBeside(other, [&] { return ++asked <= 3; }); // stopped
+  EXPECT_LE(region.bakedBlocks(), 3);
+  region.bakeBeside(other, [] { return true; });
+  EXPECT_GT(region.bakedBlocks(), met);
+  EXPECT_LE(region.bakedBlocks(), 27 * met);
+  compareRecords(region, whole);
+}
+
 TEST(RegionOnDemand, PathsMeetAFewOfTheRecordsAndGiveTheSameBits)
 {
   const auto scene = makeBusyScene();
@@ -171,6 +192,25 @@ TEST(InteractiveProbe, ImageIsThatOfAFreshScene)
   expectSameBits(last, trace(*makeBusyScene(), end, settings));
   // And what the probe sees at rest does not depend on the way either, though it takes over what was baked.
   expectSameBits(trace(*scene, end, atRest), trace(*makeBusyScene(), end, atRest));
+}
+
+TEST(InteractiveProbe, FindsWhatTheProbeAtRestHasMet)
+{
+  const auto scene = makeBusyScene();
+  const TraceSettings settings = busySettings();
+  const auto lines = fan(9);
+  trace(*scene, lines, settings);
+  const VoxelBox box = fanBox(*scene, lines, settings);
+  const int met = scene->regionOnDemand(box)->bakedBlocks();
+  EXPECT_EQ(scene->interactiveRegion(box)->bakedBlocks(), 0);
+  int found = 0;
+  for (int wait = 0; wait < 1000 && found < met; ++wait)
+  {
+    scene->beginInteractiveRegion(box, false); // bakes in the background, until somebody asks
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    found = scene->interactiveRegion(box)->bakedBlocks();
+  }
+  EXPECT_GE(found, met);
 }
 
 TEST(InteractiveProbe, OneRegionIsPreparedForAllPoses)
