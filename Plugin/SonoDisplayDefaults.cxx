@@ -1,6 +1,8 @@
 #include "SonoDisplayDefaults.h"
 
 #include "SonoFirstPose.h"
+#include "SonoLabelColors.h"
+#include "SonoPythonRecord.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
@@ -182,7 +184,9 @@ bool isNeedless(vtkSMProxy* bar)
 {
   vtkSMProxy* colors = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
   const char* name = colors ? bar->GetSessionProxyManager()->GetProxyName("lookup_tables", colors) : nullptr;
-  return name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode"));
+  const bool isLabels = name && std::strstr(name, "Labels.PVLookupTable") &&
+                        vtkSMPropertyHelper(colors, "Discretize").GetAsInt() == 0; // by sonoShowLabelColors
+  return name && (isLabels || std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode"));
 }
 
 /// Takes a needless bar away when ParaView shows it by itself for the first time, by either of its two switches.
@@ -254,6 +258,7 @@ public:
       return;
     }
     const unsigned int port = helper.GetOutputPort();
+    sonoShowLabelColors(input, port);
     if (isOutput(input, port, "SonoSceneBuilder", vtkSonoUltrasound::ANATOMY) ||
         equal(input->GetXMLName(), "SonoSceneReader"))
     {
@@ -344,6 +349,7 @@ void sonoInstallDisplayDefaults()
     notColors + R"json("]}}})json";
   vtkSMSettings::GetInstance()->AddCollectionFromString(settings, 0.0);
   hideFromColors(notColors);
+  sonoInstallPythonRecord();
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
 }

@@ -1,6 +1,7 @@
 #include "pqSonoToolBar.h"
 
 #include "SonoLayout.h"
+#include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
 
 #include "vtkDataObjectTypes.h"
@@ -79,6 +80,7 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   layoutAction_->setToolTip(
     tr("Lay out the selected Simulate Ultrasound: in the body, flat with a depth scale, and one of its lines"));
   this->addWidget(new pqSonoFlatMenu(this));
+  new pqSonoDelete(this);
   auto* active = &pqActiveObjects::instance();
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });
   QObject::connect(active, &pqActiveObjects::dataUpdated, this, [this] { updateActions(); });

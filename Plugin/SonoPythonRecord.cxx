@@ -1,0 +1,90 @@
+#include "SonoPythonRecord.h"
+
+#include "vtkCommand.h"
+#include "vtkNew.h"
+#include "vtkPythonInterpreter.h"
+
+namespace {
+
+/// What ParaView's tracer, of which its states are made too, does for a source: where it is one of ours and the first,
+/// two lines that load the plugin stand before it, for a ParaView that has not loaded it by itself. Its module is
+/// changed as it is imported, since whoever asks for it earlier would import much of ParaView.
+constexpr const char* hook = R"python(
+def _sonovdb_record():
+    import importlib.abc
+    import importlib.util
+    import sys
+
+    def plugin_files(session):
+        """On the client, and of a remote session on the server."""
+        from paraview import servermanager as sm
+        plugins = sm.vtkSMProxyManager.GetProxyManager().GetPluginManager()
+        sides = [(plugins.GetLocalInformation(), False)]
+        if session.IsA("vtkSMSessionClient"):
+            sides.append((plugins.GetRemoteInformation(session), True))
+        for known, remote in sides:
+            for i in range(known.GetNumberOfPlugins()):
+                if known.GetPluginName(i) == "SonoVDB" and known.GetPluginFileName(i):
+                    yield known.GetPluginFileName(i), remote
+
+    def change(smtrace):
+        finalize = smtrace.RegisterPipelineProxy.finalize
+
+        def load_and_finalize(self):
+            output = smtrace.Trace.Output
+            proxy = self.Proxy.SMProxy
+            if proxy.GetXMLName().startswith("Sono") and not hasattr(output, "loadsSonoVDB"):
+                output.loadsSonoVDB = True
+                lines = ["    LoadPlugin(%r, remote=%s, ns=globals())" % each for each in plugin_files(proxy.GetSession())]
+                if lines:
+                    output.append_separated(["# load the plugin, where ParaView has not by itself",
+                                             "if 'SimulateUltrasound' not in globals():"] + lines)
+            finalize(self)
+
+        smtrace.RegisterPipelineProxy.finalize = load_and_finalize
+
+    class Finder(importlib.abc.MetaPathFinder):
+        def find_spec(self, name, path, target=None):
+            if name != "paraview.smtrace":
+                return None
+            sys.meta_path.remove(self)
+            spec = importlib.util.find_spec(name)
+            execute = spec.loader.exec_module
+
+            def execute_and_change(module):
+                execute(module)
+                change(module)
+
+            spec.loader.exec_module = execute_and_change
+            return spec
+
+    if "paraview.smtrace" in sys.modules:
+        change(sys.modules["paraview.smtrace"])
+    else:
+        sys.meta_path.insert(0, Finder())
+
+
+_sonovdb_record()
+del _sonovdb_record
+)python";
+
+class WhenPythonRuns : public vtkCommand
+{
+public:
+  static WhenPythonRuns* New() { return new WhenPythonRuns; }
+  void Execute(vtkObject*, unsigned long, void*) override { vtkPythonInterpreter::RunSimpleString(hook); }
+};
+
+} // namespace
+
+void sonoInstallPythonRecord()
+{
+  if (vtkPythonInterpreter::IsInitialized())
+  {
+    vtkPythonInterpreter::RunSimpleString(hook);
+    return;
+  }
+  static vtkNew<vtkPythonInterpreter> python; // it is told while it lives
+  vtkNew<WhenPythonRuns> runs;
+  python->AddObserver(vtkCommand::EnterEvent, runs);
+}
