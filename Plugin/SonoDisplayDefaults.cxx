@@ -2,6 +2,7 @@
 
 #include "SonoFirstPose.h"
 #include "SonoLabelColors.h"
+#include "SonoLayout.h"
 #include "SonoPythonRecord.h"
 
 #include "vtkCommand.h"
@@ -106,7 +107,8 @@ void showRays(vtkSMProxy* representation)
 /// Whether it draws onto a flat image, in colours of its own.
 bool isFlatDrawing(const char* name)
 {
-  return equal(name, "SonoFlatScale") || equal(name, "SonoFlatLabels") || equal(name, "SonoCaliper");
+  return equal(name, "SonoFlatScale") || equal(name, "SonoFlatLabels") || equal(name, "SonoCaliper") ||
+         equal(name, "SonoVentricleVolume");
 }
 
 /// The colours themselves, whatever the light.
@@ -303,6 +305,20 @@ public:
   }
 };
 
+/// Looks at what a state file has brought.
+class StateLoaded : public vtkCommand
+{
+public:
+  static StateLoaded* New() { return new StateLoaded; }
+  void Execute(vtkObject*, unsigned long, void*) override
+  {
+    if (vtkSMSessionProxyManager* manager = vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager())
+    {
+      sonoDrawEasily(manager);
+    }
+  }
+};
+
 /// Field arrays of our outputs, which say how they were made: nothing to colour by.
 const std::string notColors =
   "^(A4CAxial|A4CLateral|A4CPositionMm|ApertureMm|AssumedSoundSpeedMPerS|BoundaryEcho|"
@@ -352,4 +368,6 @@ void sonoInstallDisplayDefaults()
   sonoInstallPythonRecord();
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
+  vtkNew<StateLoaded> loaded;
+  vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::LoadStateEvent, loaded);
 }

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <functional>
 #include <initializer_list>
 #include <string>
@@ -58,19 +59,23 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
   vtkSMRenderViewProxy::SafeDownCast(view)->ResetCamera(true);
 }
 
+/// A view of the anatomy.
+void drawEasily(vtkSMProxy* view)
+{
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
+  // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
+  constexpr double fewTriangles = 0.1;
+  vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
+  // Each draws all triangles once more, and two order the nearest and the farthest pair of surfaces at each pixel.
+  constexpr int peels = 2;
+  vtkSMPropertyHelper(view, "MaximumNumberOfPeels", true).Set(peels);
+  view->UpdateVTKObjects();
+}
+
 /// Anatomy, probe and image from the patient's front, a little from the left and from above.
 void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
-  {
-    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
-    // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
-    constexpr double fewTriangles = 0.1;
-    vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
-    // Each draws all triangles once more, and two order the nearest and the farthest pair of surfaces at each pixel.
-    constexpr int peels = 2;
-    vtkSMPropertyHelper(view, "MaximumNumberOfPeels", true).Set(peels);
-    view->UpdateVTKObjects();
-  }
+  drawEasily(view);
   for (unsigned int port : { vtkSonoUltrasound::ANATOMY, vtkSonoUltrasound::PROBE, vtkSonoUltrasound::IMAGE })
   {
     showQuietly(ultrasound, port, view, controller);
@@ -283,4 +288,24 @@ vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* s
     view->StillRender();
   }
   return solid;
+}
+
+void sonoDrawEasily(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMProxyIterator> views;
+  views->SetSessionProxyManager(manager);
+  views->SetModeToOneGroup();
+  for (views->Begin("views"); !views->IsAtEnd(); views->Next())
+  {
+    const vtkSMPropertyHelper shown(views->GetProxy(), "Representations", true);
+    for (unsigned int i = 0; i < shown.GetNumberOfElements(); ++i)
+    {
+      const vtkSMPropertyHelper input(shown.GetAsProxy(i), "Input", true);
+      if (input.GetAsProxy() && std::strcmp(input.GetAsProxy()->GetXMLName(), "SonoUltrasound") == 0 &&
+          input.GetOutputPort() == vtkSonoUltrasound::ANATOMY)
+      {
+        drawEasily(views->GetProxy());
+      }
+    }
+  }
 }

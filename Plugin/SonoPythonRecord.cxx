@@ -7,8 +7,9 @@
 namespace {
 
 /// What ParaView's tracer, of which its states are made too, does for a source: where it is one of ours and the first,
-/// two lines that load the plugin stand before it, for a ParaView that has not loaded it by itself. Its module is
-/// changed as it is imported, since whoever asks for it earlier would import much of ParaView.
+/// two lines that load the plugin stand before it, for a ParaView that has not loaded it by itself. And what the layout
+/// sets of a view stays, which ParaView leaves out where its settings have the same. The tracer's module is changed as it
+/// is imported, since whoever asks for it earlier would import much of ParaView.
 constexpr const char* hook = R"python(
 def _sonovdb_record():
     import importlib.abc
@@ -42,6 +43,13 @@ def _sonovdb_record():
             finalize(self)
 
         smtrace.RegisterPipelineProxy.finalize = load_and_finalize
+        never = smtrace.ViewProxyFilter.should_never_trace
+
+        def never_but_layout(self, prop):
+            ours = prop.get_property_name() in ("MaximumNumberOfPeels", "LODResolution")
+            return never(self, prop) and not (ours and not prop.get_object().IsValueDefault())
+
+        smtrace.ViewProxyFilter.should_never_trace = never_but_layout
 
     class Finder(importlib.abc.MetaPathFinder):
         def find_spec(self, name, path, target=None):

@@ -3,14 +3,56 @@
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
+#include "pqDeleteReaction.h"
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
+#include "vtkSMOutputPort.h"
+#include "vtkSMProxySelectionModel.h"
+#include "vtkSMSourceProxy.h"
 
 #include <QAbstractButton>
+#include <QAction>
 #include <QEvent>
+#include <QSet>
 #include <QStringList>
 #include <QTimer>
+
+#include <algorithm>
+
+namespace {
+
+/// What is selected in the pipeline browser.
+QSet<pqPipelineSource*> selectedSources()
+{
+  QSet<pqPipelineSource*> sources;
+  vtkSMProxySelectionModel* selection = pqActiveObjects::instance().activeSourcesSelectionModel();
+  const unsigned int count = selection ? selection->GetNumberOfSelectedProxies() : 0;
+  for (unsigned int i = 0; i < count; ++i)
+  {
+    vtkSMProxy* proxy = selection->GetSelectedProxy(i);
+    auto* port = vtkSMOutputPort::SafeDownCast(proxy);
+    auto* source = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
+      port ? port->GetSourceProxy() : proxy);
+    if (source)
+    {
+      sources.insert(source);
+    }
+  }
+  return sources;
+}
+
+void addConsumers(pqPipelineSource* source, QSet<pqPipelineSource*>& sources)
+{
+  sources.insert(source);
+  for (pqPipelineSource* consumer : source->getAllConsumers())
+  {
+    addConsumers(consumer, sources);
+  }
+}
+
+} // namespace
 
 pqSonoDelete::pqSonoDelete(QObject* parent)
   : QObject(parent)
@@ -39,7 +81,38 @@ void pqSonoDelete::watch()
                      QMetaObject::invokeMethod(panel, "updateButtonState");
                      look();
                    });
+  for (const char* name : { "actionPBDeleteTree", "actionDeleteTree" })
+  {
+    if (auto* action = pqCoreUtilities::mainWidget()->findChild<QAction*>(name))
+    {
+      QObject::disconnect(action, &QAction::triggered, nullptr, nullptr);
+      QObject::connect(action, &QAction::triggered, this, [] { deleteTree(); });
+    }
+  }
   look();
+}
+
+void pqSonoDelete::deleteTree()
+{
+  if (!pqDeleteReaction::canDeleteTree())
+  {
+    return;
+  }
+  QSet<pqPipelineSource*> doomed;
+  for (pqPipelineSource* source : selectedSources())
+  {
+    addConsumers(source, doomed);
+  }
+  BEGIN_UNDO_SET(tr("Delete Downstream Pipeline"));
+  while (!doomed.isEmpty())
+  {
+    const auto last = std::find_if(doomed.begin(), doomed.end(),
+                                   [](const pqPipelineSource* source) { return source->getAllConsumers().isEmpty(); });
+    pqPipelineSource* source = last == doomed.end() ? *doomed.begin() : *last;
+    doomed.remove(source);
+    pqDeleteReaction::deleteSources({ source });
+  }
+  END_UNDO_SET();
 }
 
 bool pqSonoDelete::eventFilter(QObject* watched, QEvent* event)

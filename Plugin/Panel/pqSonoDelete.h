@@ -7,7 +7,8 @@
 class QAbstractButton;
 
 /// Greys the properties panel's Delete while anything depends on any output of the source that is shown there, as the
-/// menu's Delete is. ParaView's panel looks for those that depend on the first output alone.
+/// menu's Delete is, and has Delete Downstream Pipeline delete those that depend on others first, so that undo finds
+/// what they depend on. ParaView 5.11 looks in both for those that depend on the first output alone.
 class pqSonoDelete : public QObject
 {
   Q_OBJECT
@@ -21,6 +22,7 @@ protected:
 private:
   void watch();
   void look();
+  static void deleteTree();
 
   QPointer<QAbstractButton> button_;
   QString tip_; ///< ParaView's own

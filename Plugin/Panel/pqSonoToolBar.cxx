@@ -3,6 +3,7 @@
 #include "SonoLayout.h"
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
+#include "pqSonoLoading.h"
 
 #include "vtkDataObjectTypes.h"
 #include "vtkPVDataInformation.h"
@@ -81,6 +82,7 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
     tr("Lay out the selected Simulate Ultrasound: in the body, flat with a depth scale, and one of its lines"));
   this->addWidget(new pqSonoFlatMenu(this));
   new pqSonoDelete(this);
+  new pqSonoLoading(this);
   auto* active = &pqActiveObjects::instance();
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });
   QObject::connect(active, &pqActiveObjects::dataUpdated, this, [this] { updateActions(); });
