@@ -13,21 +13,20 @@ namespace {
 
 constexpr double neck = 5.0; // of the phantoms
 
-vtkSmartPointer<vtkSMSourceProxy> begin(vtkSMSessionProxyManager* manager, const char* group, const char* name)
+/// Makes a source or filter and hands it to `fill`; it is registered, so that it appears in the pipeline, once that is done.
+template<class Fill>
+vtkSMSourceProxy* make(vtkSMSessionProxyManager* manager, const char* group, const char* name, const Fill& fill)
 {
+  vtkNew<vtkSMParaViewPipelineController> controller;
   auto proxy =
     vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy(group, name)));
-  vtkNew<vtkSMParaViewPipelineController> controller;
   controller->PreInitializeProxy(proxy);
-  return proxy;
-}
-
-void end(vtkSMSourceProxy* proxy)
-{
-  vtkNew<vtkSMParaViewPipelineController> controller;
+  fill(proxy.Get());
   controller->PostInitializeProxy(proxy);
+  fill(proxy.Get()); // what was initialized by an input
   proxy->UpdateVTKObjects();
   controller->RegisterPipelineProxy(proxy);
+  return proxy;
 }
 
 template<class Names>
@@ -76,12 +75,12 @@ const std::vector<SonoExample>& sonoExamples()
       { { "DepthMm", 60.0 } },
       { -76.2, -90.8, 15.0, 0.6428, 0.766, 0.0, 0.0, 0.0, 1.0 } },
     { "Phantom",
-      "The first view of the calibration phantom: wires and cylinders",
+      "The middle view of the calibration phantom: wires and cylinders",
       "SonoPhantomSource",
       { { "Phantom", 0.0 }, { "SpacingMm", 0.5 } },
       "curvilinear_c5-2",
       { { "DepthMm", 160.0 } },
-      { -45.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0 },
+      { 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0 },
       false,
       {},
       true },
@@ -100,35 +99,38 @@ const std::vector<SonoExample>& sonoExamples()
 
 vtkSMSourceProxy* sonoMakeExample(const SonoExample& example, vtkSMSessionProxyManager* manager)
 {
-  const auto labels = begin(manager, "sources", example.source);
-  set(labels, example.ofSource);
-  end(labels);
+  vtkSMSourceProxy* labels = make(manager, "sources", example.source, [&](vtkSMSourceProxy* source) {
+    set(source, example.ofSource);
+  });
   labels->UpdatePipeline();
-
-  const auto ultrasound = begin(manager, "filters", "SonoUltrasound");
-  vtkSMPropertyHelper(ultrasound, "Input").Set(labels, 0);
-  const bool isCalibration =
-    labels->GetProperty("Phantom") && vtkSMPropertyHelper(labels, "Phantom").GetAsInt() == 0;
-  if (isCalibration)
-  {
-    vtkSMPropertyHelper(ultrasound, "Targets").Set(labels, 1);
-    vtkSMPropertyHelper(ultrasound, "Scatterers").Set(labels, 2);
-  }
+  vtkSMSourceProxy* needle = nullptr;
   if (example.hasNeedle)
   {
-    const auto needle = begin(manager, "sources", "SonoNeedle");
-    vtkSMPropertyHelper(needle, "HubMm").Set(example.needleMm.data(), 3);
-    vtkSMPropertyHelper(needle, "TipMm").Set(&example.needleMm[3], 3);
-    end(needle);
+    needle = make(manager, "sources", "SonoNeedle", [&](vtkSMSourceProxy* source) {
+      vtkSMPropertyHelper(source, "HubMm").Set(example.needleMm.data(), 3);
+      vtkSMPropertyHelper(source, "TipMm").Set(&example.needleMm[3], 3);
+    });
     needle->UpdatePipeline();
-    vtkSMPropertyHelper(ultrasound, "Targets").Set(needle, 0);
   }
-  set(ultrasound, sonoPresetNumbers(manager, example.preset));
-  set(ultrasound, example.ofUltrasound);
-  // Before the filter is registered: with a pose of its own none is looked for.
-  vtkSMPropertyHelper(ultrasound, "PositionMm").Set(&example.pose[0], 3);
-  vtkSMPropertyHelper(ultrasound, "Axial").Set(&example.pose[3], 3);
-  vtkSMPropertyHelper(ultrasound, "Lateral").Set(&example.pose[6], 3);
-  end(ultrasound);
-  return ultrasound;
+  const auto ofProbe = sonoPresetNumbers(manager, example.preset);
+  const bool isCalibration =
+    labels->GetProperty("Phantom") && vtkSMPropertyHelper(labels, "Phantom").GetAsInt() == 0;
+  // With a pose of its own before it is registered: else one is looked for.
+  return make(manager, "filters", "SonoUltrasound", [&](vtkSMSourceProxy* ultrasound) {
+    vtkSMPropertyHelper(ultrasound, "Input").Set(labels, 0);
+    if (isCalibration)
+    {
+      vtkSMPropertyHelper(ultrasound, "Targets").Set(labels, 1);
+      vtkSMPropertyHelper(ultrasound, "Scatterers").Set(labels, 2);
+    }
+    if (needle)
+    {
+      vtkSMPropertyHelper(ultrasound, "Targets").Set(needle, 0);
+    }
+    set(ultrasound, ofProbe);
+    set(ultrasound, example.ofUltrasound);
+    vtkSMPropertyHelper(ultrasound, "PositionMm").Set(&example.pose[0], 3);
+    vtkSMPropertyHelper(ultrasound, "Axial").Set(&example.pose[3], 3);
+    vtkSMPropertyHelper(ultrasound, "Lateral").Set(&example.pose[6], 3);
+  });
 }

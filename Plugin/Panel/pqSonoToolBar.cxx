@@ -145,7 +145,8 @@ void pqSonoToolBar::showLayout()
 
 void pqSonoToolBar::addExamples()
 {
-  auto* menu = new QMenu(this);
+  auto* button = new QToolButton(this);
+  auto* menu = new QMenu(button);
   menu->setObjectName("SonoExamplesMenu");
   menu->setToolTipsVisible(true);
   for (const SonoExample& example : sonoExamples())
@@ -154,7 +155,6 @@ void pqSonoToolBar::addExamples()
     action->setObjectName(QString("actionSonoExample") + example.name);
     action->setToolTip(tr(example.tip));
   }
-  auto* button = new QToolButton(this);
   button->setObjectName("SonoExamplesButton");
   button->setText(tr("Examples"));
   button->setToolTip(tr("Pictures of what comes with SonoVDB: heart, liver, thyroid, lung, phantom, needle"));

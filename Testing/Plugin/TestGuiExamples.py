@@ -1,0 +1,112 @@
+"""What a new user meets first: the examples of the toolbar, a label map's own colours, and Delete. Needs Xvfb; run by
+ctest -L gui."""
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from guicase import GuiCase, bytes_of
+
+# Of each Simulate Ultrasound of a state, in the order in which they were made: the shares of the flat image's labels, and the
+# greys.
+ASK = """
+import json
+from vtkmodules.util.numpy_support import vtk_to_numpy
+LoadState(sys.argv[1])
+found = []
+for (name, _), source in sorted(GetSources().items(), key=lambda item: (len(item[0][0]), item[0][0])):
+    if source.GetXMLName() != "SonoUltrasound":
+        continue
+    source.UpdatePipeline()
+    image = source.SMProxy.GetClientSideObject().GetOutputDataObject(7)
+    field, data = image.GetFieldData(), image.GetPointData()
+    names = {field.GetArray("LabelIds").GetValue(i): field.GetAbstractArray("LabelNames").GetValue(i)
+             for i in range(field.GetArray("LabelIds").GetNumberOfTuples())}
+    mask, labels, greys = (data.GetArray(name) for name in ("Mask", "Labels", "BMode"))
+    inside = vtk_to_numpy(mask) > 0
+    labels, greys = vtk_to_numpy(labels)[inside], vtk_to_numpy(greys)[inside]
+    shares = {names.get(int(id), "nothing"): float((labels == id).mean()) for id in set(labels.tolist())}
+    found.append({"shares": shares, "mean": float(greys.mean()), "bright": sorted(greys.tolist())[len(greys) * 99 // 100],
+                  "targets": bool(source.Targets)})
+with open(sys.argv[2], "w", encoding="utf-8") as file:
+    json.dump(found, file)
+"""
+# A slice of a label map as ParaView shows it by itself, and the colours that its labels have.
+SLICE = """
+import json
+thorax = ThoraxPhantom(Spacingmm=2)
+view = CreateView("RenderView")
+view.UseColorPaletteForBackground = 0
+view.Background = [0, 0, 0]
+view.OrientationAxesVisibility = 0
+Show(thorax, view)
+ResetCamera(view)
+SaveScreenshot(sys.argv[1], view, ImageResolution=[400, 400])
+field = thorax.SMProxy.GetClientSideObject().GetOutputDataObject(0).GetFieldData()
+colors = field.GetArray("LabelColors")
+with open(sys.argv[2], "w", encoding="utf-8") as file:
+    json.dump([colors.GetTuple(i) for i in range(colors.GetNumberOfTuples())], file)
+"""
+
+
+def proxies(state):
+    return [p.get("type") for p in ElementTree.parse(state).iter("Proxy")]
+
+
+class TestGuiExamples(GuiCase):
+    def test_each_example_shows_what_it_is_called(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("examples.xml", folder), [])
+            found = pathlib.Path(folder, "found.json")
+            self.run_script(ASK, folder, pathlib.Path(folder, "examples.pvsm"), found)
+            pictures = json.loads(found.read_text(encoding="utf-8"))
+        self.assertEqual(len(pictures), 6)
+        for picture in pictures:
+            self.assertTrue(20 < picture["mean"] < 140, picture)
+            self.assertGreater(picture["bright"], 120)
+        heart, liver, thyroid, lung, phantom, needle = (picture["shares"] for picture in pictures)
+        for chamber in ("left_ventricle", "right_ventricle", "left_atrium", "right_atrium"):
+            self.assertGreater(heart[chamber + "_blood"], 0.02)
+        self.assertEqual(max(liver, key=liver.get), "liver")
+        self.assertGreater(thyroid["thyroid_gland"], 0.1)
+        self.assertGreater(thyroid["nodule"], 0.01)
+        self.assertGreater(thyroid["carotid_jugular_blood"], 0.01)
+        self.assertEqual(max(lung, key=lung.get), "lung_right")
+        self.assertGreater(sum(share for name, share in phantom.items() if name.startswith("phantom")), 0.8)
+        self.assertGreater(sum(share for name, share in phantom.items() if name != "phantom_gel"), 0.02)
+        self.assertEqual(max(needle, key=needle.get), "liver")
+        self.assertEqual([picture["targets"] for picture in pictures], [False] * 4 + [True] * 2)
+
+    def test_a_label_map_is_shown_in_its_labels_colours(self):
+        """No pixel of a slice has another one."""
+        with tempfile.TemporaryDirectory() as folder:
+            picture, colors = (pathlib.Path(folder, name) for name in ("slice.png", "colors.json"))
+            self.run_script(SLICE, folder, picture, colors)
+            known = {tuple(round(255 * part) for part in color) for color in json.loads(colors.read_text())}
+            data = bytes_of(picture, 3 * 400 * 400)
+        seen = {tuple(data[i:i + 3]) for i in range(0, len(data), 3)}
+        apart = [min(max(abs(a - b) for a, b in zip(pixel, color, strict=True)) for color in known | {(0, 0, 0)})
+                 for pixel in seen]
+        self.assertGreater(len(seen), 10)
+        self.assertLessEqual(max(apart), 1)
+
+    def test_delete_leaves_nothing_without_its_input(self):
+        """The panel's button is grey while flat views depend on a filter; the tree goes as a whole, and comes back so."""
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.label_map(folder)
+            done = self.paraview(folder, f"--test-script={pathlib.Path(__file__).parent / 'gui' / 'delete.xml'}",
+                                 f"--data={data}", "--exit")
+            self.assertEqual(done.returncode, 0, done.stdout)
+            self.assertNotIn("property value is", done.stdout)
+            for sign in ("ERR|", "critical: In ./Qt/Core", "not registered"):
+                self.assertNotIn(sign, done.stdout)
+            before, deleted, undone = (proxies(pathlib.Path(folder, name + ".pvsm"))
+                                       for name in ("before", "deleted", "undone"))
+        for kind in ("SonoUltrasound", "SonoALine", "SonoFlatScale", "SonoFlatText"):
+            self.assertEqual([before.count(kind), deleted.count(kind), undone.count(kind)], [1, 0, 1], kind)
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())
