@@ -9,6 +9,7 @@
 #include "vtkSMProxyIterator.h"
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSettingsProxy.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMTransferFunctionManager.h"
@@ -59,9 +60,19 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
   vtkSMRenderViewProxy::SafeDownCast(view)->ResetCamera(true);
 }
 
-/// A view of the anatomy.
+/// A view of the anatomy. What it sets no longer follows ParaView's settings, which overwrite it in all views whenever a
+/// view is made.
 void drawEasily(vtkSMProxy* view)
 {
+  auto* settings =
+    vtkSMSettingsProxy::SafeDownCast(view->GetSessionProxyManager()->GetProxy("settings", "RenderViewSettings"));
+  for (const char* name : { "LODResolution", "MaximumNumberOfPeels" })
+  {
+    if (settings && settings->GetSourcePropertyName(view, name))
+    {
+      settings->RemoveLink(name, view, name);
+    }
+  }
   SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
   // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
   constexpr double fewTriangles = 0.1;

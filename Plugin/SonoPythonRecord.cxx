@@ -29,7 +29,12 @@ def _sonovdb_record():
                     yield known.GetPluginFileName(i), remote
 
     def change(smtrace):
+        from paraview import simple
         finalize = smtrace.RegisterPipelineProxy.finalize
+        ours = ("MaximumNumberOfPeels", "LODResolution")
+
+        def is_set(prop):
+            return prop is not None and not prop.IsValueDefault()
 
         def load_and_finalize(self):
             output = smtrace.Trace.Output
@@ -40,14 +45,17 @@ def _sonovdb_record():
                 if lines:
                     output.append_separated(["# load the plugin, where ParaView has not by itself",
                                              "if 'SimulateUltrasound' not in globals():"] + lines)
+                # A state has made all of its views by now, and each new one would overwrite this in the others.
+                for view in [view for view in simple.GetViews() if smtrace.Trace.has_accessor(view)]:
+                    output.append(["%s.%s = %r" % (smtrace.Trace.get_accessor(view), name, view.GetProperty(name).GetData())
+                                   for name in ours if is_set(view.GetProperty(name))])
             finalize(self)
 
         smtrace.RegisterPipelineProxy.finalize = load_and_finalize
         never = smtrace.ViewProxyFilter.should_never_trace
 
         def never_but_layout(self, prop):
-            ours = prop.get_property_name() in ("MaximumNumberOfPeels", "LODResolution")
-            return never(self, prop) and not (ours and not prop.get_object().IsValueDefault())
+            return never(self, prop) and not (prop.get_property_name() in ours and is_set(prop.get_object()))
 
         smtrace.ViewProxyFilter.should_never_trace = never_but_layout
 
