@@ -74,8 +74,8 @@ void addLabels(const std::vector<sono::LabelInfo>& labels, vtkTable* table, vtkS
   {
     const auto color = sono::displayColor(label);
     std::ostringstream row;
-    row << label.id << '\t' << label.name << '\t' << byte(color[0]) << '\t' << byte(color[1]) << '\t'
-        << byte(color[2]) << '\t' << label.tissue << '\t' << (label.guessed ? "yes" : "");
+    row << label.id << '\t' << label.name << '\t' << byte(color[0]) << '\t' << byte(color[1]) << '\t' << byte(color[2])
+        << '\t' << label.tissue << '\t' << (label.guessed ? "yes" : "");
     rows->InsertNextValue(row.str());
   }
 }

@@ -71,7 +71,8 @@ std::vector<Vec2d> contourOfLabels(vtkImageData* image, const std::string& ventr
   vtkDataArray* mask = image->GetPointData()->GetArray("Mask");
   if (!labels || !mask)
   {
-    throw sono::Error("The image has no point arrays 'Labels' and 'Mask'; connect the Flat Image of Simulate Ultrasound.");
+    throw sono::Error(
+      "The image has no point arrays 'Labels' and 'Mask'; connect the Flat Image of Simulate Ultrasound.");
   }
   const std::vector<sono::LabelInfo> names = sono::labelTableOf(image->GetFieldData());
   const std::set<int> inside = labelsOf(names, ventricle);
@@ -212,8 +213,8 @@ int vtkSonoVentricleVolume::FillInputPortInformation(int port, vtkInformation* i
 
 int vtkSonoVentricleVolume::RequestUpdateExtent(vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  return sono::requestWholeImage(input) && (input[1]->GetNumberOfInformationObjects() == 0 ||
-                                            sono::requestWholeImage(input, 1));
+  return sono::requestWholeImage(input) &&
+         (input[1]->GetNumberOfInformationObjects() == 0 || sono::requestWholeImage(input, 1));
 }
 
 int vtkSonoVentricleVolume::RequestData(vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
@@ -224,7 +225,8 @@ int vtkSonoVentricleVolume::RequestData(vtkInformation*, vtkInformationVector** 
     std::array<std::vector<Vec2d>, 2> contours;
     for (int view = 0; view < 2; ++view)
     {
-      vtkImageData* image = input[view]->GetNumberOfInformationObjects() > 0 ? vtkImageData::GetData(input[view]) : nullptr;
+      vtkImageData* image =
+        input[view]->GetNumberOfInformationObjects() > 0 ? vtkImageData::GetData(input[view]) : nullptr;
       if (image && this->Contour == Labels)
       {
         contours[view] = contourOfLabels(image, this->Ventricle, this->Atrium);

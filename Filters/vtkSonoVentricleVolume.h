@@ -12,12 +12,12 @@
  * @class vtkSonoVentricleVolume
  * @brief A ventricle's volume by Simpson's method of discs from contours in one or two flat images
  *
- * Port 0 takes the flat image of the apical four-chamber view, port 1, optional, that of the two-chamber view. A contour
- * is traced by hand, from one end of the annulus along the wall to the other, or is that of the ventricle's label. The
- * outputs lie in the frames of the two images, mm, x lateral and y depth: contour, long axis, discs and the volume as
- * letters. With both contours the volume is biplane, with one single-plane, with none there is no number. Field arrays of
- * both outputs: "VolumeMl", "FourChamberMl" and "TwoChamberMl" (single-plane), "LengthMm" (the longer axis), "Text" (as
- * it is drawn).
+ * Port 0 takes the flat image of the apical four-chamber view, port 1, optional, that of the two-chamber view. A
+ * contour is traced by hand, from one end of the annulus along the wall to the other, or is that of the ventricle's
+ * label. The outputs lie in the frames of the two images, mm, x lateral and y depth: contour, long axis, discs and the
+ * volume as letters. With both contours the volume is biplane, with one single-plane, with none there is no number.
+ * Field arrays of both outputs: "VolumeMl", "FourChamberMl" and "TwoChamberMl" (single-plane), "LengthMm" (the longer
+ * axis), "Text" (as it is drawn).
  */
 class VTKSONOFILTERS_EXPORT vtkSonoVentricleVolume : public vtkPolyDataAlgorithm
 {
@@ -42,8 +42,8 @@ public:
 
   ///@{
   /**
-   * Words of the names of ventricle and atrium, all of which are in a label's name; of several such labels those of blood
-   * count. Default "left ventricle" and "left atrium".
+   * Words of the names of ventricle and atrium, all of which are in a label's name; of several such labels those of
+   * blood count. Default "left ventricle" and "left atrium".
    */
   vtkSetMacro(Ventricle, std::string);
   vtkGetMacro(Ventricle, std::string);

@@ -13,13 +13,13 @@ namespace {
 
 constexpr double neck = 5.0; // of the phantoms
 
-/// Makes a source or filter and hands it to `fill`; it is registered, so that it appears in the pipeline, once that is done.
+/// Makes a source or filter and hands it to `fill`; it is registered, so that it appears in the pipeline, once that is
+/// done.
 template<class Fill>
 vtkSMSourceProxy* make(vtkSMSessionProxyManager* manager, const char* group, const char* name, const Fill& fill)
 {
   vtkNew<vtkSMParaViewPipelineController> controller;
-  auto proxy =
-    vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy(group, name)));
+  auto proxy = vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy(group, name)));
   controller->PreInitializeProxy(proxy);
   fill(proxy.Get());
   controller->PostInitializeProxy(proxy);
@@ -99,9 +99,8 @@ const std::vector<SonoExample>& sonoExamples()
 
 vtkSMSourceProxy* sonoMakeExample(const SonoExample& example, vtkSMSessionProxyManager* manager)
 {
-  vtkSMSourceProxy* labels = make(manager, "sources", example.source, [&](vtkSMSourceProxy* source) {
-    set(source, example.ofSource);
-  });
+  vtkSMSourceProxy* labels =
+    make(manager, "sources", example.source, [&](vtkSMSourceProxy* source) { set(source, example.ofSource); });
   labels->UpdatePipeline();
   vtkSMSourceProxy* needle = nullptr;
   if (example.hasNeedle)
@@ -113,8 +112,7 @@ vtkSMSourceProxy* sonoMakeExample(const SonoExample& example, vtkSMSessionProxyM
     needle->UpdatePipeline();
   }
   const auto ofProbe = sonoPresetNumbers(manager, example.preset);
-  const bool isCalibration =
-    labels->GetProperty("Phantom") && vtkSMPropertyHelper(labels, "Phantom").GetAsInt() == 0;
+  const bool isCalibration = labels->GetProperty("Phantom") && vtkSMPropertyHelper(labels, "Phantom").GetAsInt() == 0;
   // With a pose of its own before it is registered: else one is looked for.
   return make(manager, "filters", "SonoUltrasound", [&](vtkSMSourceProxy* ultrasound) {
     vtkSMPropertyHelper(ultrasound, "Input").Set(labels, 0);

@@ -60,8 +60,8 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
   vtkSMRenderViewProxy::SafeDownCast(view)->ResetCamera(true);
 }
 
-/// A view of the anatomy. What it sets no longer follows ParaView's settings, which overwrite it in all views whenever a
-/// view is made.
+/// A view of the anatomy. What it sets no longer follows ParaView's settings, which overwrite it in all views whenever
+/// a view is made.
 void drawEasily(vtkSMProxy* view)
 {
   auto* settings =

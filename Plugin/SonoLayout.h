@@ -17,6 +17,6 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
 /// side.
 vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);
 
-/// Has the views of anatomies draw as the layout's do. A state file loses that: ParaView's settings for all views overwrite
-/// it there.
+/// Has the views of anatomies draw as the layout's do. A state file loses that: ParaView's settings for all views
+/// overwrite it there.
 void sonoDrawEasily(vtkSMSessionProxyManager* manager);

@@ -8,8 +8,8 @@ namespace {
 
 /// What ParaView's tracer, of which its states are made too, does for a source: where it is one of ours and the first,
 /// two lines that load the plugin stand before it, for a ParaView that has not loaded it by itself. And what the layout
-/// sets of a view stays, which ParaView leaves out where its settings have the same. The tracer's module is changed as it
-/// is imported, since whoever asks for it earlier would import much of ParaView.
+/// sets of a view stays, which ParaView leaves out where its settings have the same. The tracer's module is changed as
+/// it is imported, since whoever asks for it earlier would import much of ParaView.
 constexpr const char* hook = R"python(
 def _sonovdb_record():
     import importlib.abc

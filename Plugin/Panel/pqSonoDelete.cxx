@@ -73,7 +73,8 @@ void pqSonoDelete::watch()
   button_->installEventFilter(this);
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::sourceChanged, this, [this] { look(); });
-  QObject::connect(model, QOverload<pqPipelineSource*, pqPipelineSource*, int>::of(&pqServerManagerModel::connectionAdded),
+  QObject::connect(model,
+                   QOverload<pqPipelineSource*, pqPipelineSource*, int>::of(&pqServerManagerModel::connectionAdded),
                    this, [this] { look(); });
   QObject::connect(model,
                    QOverload<pqPipelineSource*, pqPipelineSource*, int>::of(&pqServerManagerModel::connectionRemoved),

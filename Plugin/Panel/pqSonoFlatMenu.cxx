@@ -115,7 +115,8 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
   add("actionSonoAngle", tr("Angle (degrees)"), tr("Measure an angle in the flat view"),
       [this] { measure(vtkSonoCaliper::Angle, tr("Angle")); });
   add("actionSonoVentricle", tr("Ventricle Volume (ml)"),
-      tr("Simpson's method of discs: click from one end of the annulus along the wall to the other, in this flat view and, "
+      tr("Simpson's method of discs: click from one end of the annulus along the wall to the other, in this flat view "
+         "and, "
          "for biplane, in that of the two-chamber view"),
       [this] { measureVentricle(); });
   menu->addSeparator();

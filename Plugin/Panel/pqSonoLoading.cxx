@@ -49,8 +49,8 @@ void pqSonoLoading::draw()
   {
     QWidget* widget = view->widget();
     const bool isOne = widget && std::any_of(unpainted.begin(), unpainted.end(), [widget](const auto& one) {
-      return one && (one == widget || widget->isAncestorOf(one));
-    });
+                         return one && (one == widget || widget->isAncestorOf(one));
+                       });
     if (isOne)
     {
       view->forceRender();

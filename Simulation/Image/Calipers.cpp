@@ -182,9 +182,8 @@ std::vector<Vec2d> outlineOf(int width, int height, const std::function<bool(int
 std::vector<Vec2d> convexContour(const std::vector<Vec2d>& outline, const Vec2d& atrium)
 {
   std::vector<Vec2d> sorted = outline;
-  std::sort(sorted.begin(), sorted.end(), [](const Vec2d& a, const Vec2d& b) {
-    return std::make_pair(a.x, a.y) < std::make_pair(b.x, b.y);
-  });
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Vec2d& a, const Vec2d& b) { return std::make_pair(a.x, a.y) < std::make_pair(b.x, b.y); });
   if (sorted.size() < 3)
   {
     return {};
@@ -211,8 +210,7 @@ std::vector<Vec2d> convexContour(const std::vector<Vec2d>& outline, const Vec2d&
   for (std::size_t i = 0; i < hull.size(); ++i)
   {
     const std::size_t next = (i + 1) % hull.size();
-    const bool isFaced =
-      crossed(sight, hull[i] - middle) <= 0.0 && crossed(sight, hull[next] - middle) > 0.0;
+    const bool isFaced = crossed(sight, hull[i] - middle) <= 0.0 && crossed(sight, hull[next] - middle) > 0.0;
     if (isFaced)
     {
       std::rotate(hull.begin(), hull.begin() + long(next), hull.end());

@@ -39,8 +39,8 @@ TracedVentricle tracedVentricle(const std::vector<Vec2d>& contour);
 /// count. Throws Error for fewer than 3 points or an axis without length.
 std::vector<double> discDiametersMm(const TracedVentricle& ventricle, int count);
 
-/// The two ends of each of these diameters, in mm, from the base on; both in the axis where the contour has none. Throws
-/// Error as discDiametersMm().
+/// The two ends of each of these diameters, in mm, from the base on; both in the axis where the contour has none.
+/// Throws Error as discDiametersMm().
 std::vector<std::pair<Vec2d, Vec2d>> discEnds(const TracedVentricle& ventricle, int count);
 
 /// Simpson's biplane method of discs: V = pi / 4 * L / n * sum a_i b_i in ml, where a_i, b_i are the discs' diameters

@@ -25,8 +25,9 @@ struct TestObjectSettings
   void validate() const;
 };
 
-/// The object's label map, its labels named by their tissues, those of the neck by their structures. Spheres lie in gel of 100 x 80 x 120 mm, the rib in
-/// 120 x 60 x 120 mm, both below the surface z = 0; the neck is 100 x 50 x 60 mm. Throws Error for settings out of range.
+/// The object's label map, its labels named by their tissues, those of the neck by their structures. Spheres lie in gel
+/// of 100 x 80 x 120 mm, the rib in 120 x 60 x 120 mm, both below the surface z = 0; the neck is 100 x 50 x 60 mm.
+/// Throws Error for settings out of range.
 LabelVolume makeTestObject(TestObject object, const TestObjectSettings& settings = {});
 
 } // namespace sono

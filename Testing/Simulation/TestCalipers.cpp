@@ -109,8 +109,8 @@ TEST(Calipers, TwelveClicksGiveATriaxialVolumeWithinAFewPercent)
 
 TEST(Calipers, PixelsGiveAContourThatPassesOverWhatReachesIntoThem)
 {
-  // Half an ellipse of pixels of 0.25 mm over an atrium, with a muscle in it and an opening between two leaflets: what its
-  // contour says is what the equation says of the whole.
+  // Half an ellipse of pixels of 0.25 mm over an atrium, with a muscle in it and an opening between two leaflets: what
+  // its contour says is what the equation says of the whole.
   constexpr double pixelMm = 0.25;
   constexpr int width = 240;
   constexpr int height = 400;
