@@ -38,10 +38,14 @@ vtkSmartPointer<vtkPolyData> polyData(const TriangleSurface& surface, const std:
     points->SetPoint(static_cast<vtkIdType>(i), surface.points[i].data());
   }
   vtkNew<vtkCellArray> triangles;
+  // Millions of them: half of VTK's own 64 bits a number, and no room to grow.
+  triangles->Use32BitStorage();
+  const auto count = static_cast<vtkIdType>(surface.triangles.size());
+  triangles->AllocateExact(count, 3 * count);
   vtkNew<vtkUnsignedCharArray> colors;
   colors->SetName("Color");
   colors->SetNumberOfComponents(3);
-  colors->SetNumberOfTuples(static_cast<vtkIdType>(surface.triangles.size()));
+  colors->SetNumberOfTuples(count);
   for (int c = 0; c < 3; ++c)
   {
     colors->FillComponent(c, std::round(255.0 * color[c]));

@@ -6,6 +6,7 @@
 #include "vtkSonoSceneHandle.h"
 
 #include "vtkDoubleArray.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
@@ -49,6 +50,34 @@ std::string numbersOf(const sono::Tissue& tissue)
 int byte(float part)
 {
   return static_cast<int>(std::lround(255.0f * part));
+}
+
+/// As columns and as text.
+void addLabels(const std::vector<sono::LabelInfo>& labels, vtkTable* table, vtkStringArray* rows)
+{
+  addColumn<vtkIntArray>(
+    "id", labels, [](const auto& label) { return label.id; }, table);
+  addColumn<vtkStringArray>(
+    "name", labels, [](const auto& label) { return label.name; }, table);
+  for (int part = 0; part < 3; ++part)
+  {
+    const char* names[] = { "red", "green", "blue" };
+    addColumn<vtkIntArray>(
+      names[part], labels, [=](const auto& label) { return byte(sono::displayColor(label)[part]); }, table);
+  }
+  addColumn<vtkStringArray>(
+    "tissue", labels, [](const auto& label) { return label.tissue; }, table);
+  addColumn<vtkIntArray>(
+    "guess", labels, [](const auto& label) { return label.guessed ? 1 : 0; }, table);
+  rows->InsertNextValue("id\tname\tr\tg\tb\ttissue\tguess");
+  for (const sono::LabelInfo& label : labels)
+  {
+    const auto color = sono::displayColor(label);
+    std::ostringstream row;
+    row << label.id << '\t' << label.name << '\t' << byte(color[0]) << '\t' << byte(color[1]) << '\t' << byte(color[2])
+        << '\t' << label.tissue << '\t' << (label.guessed ? "yes" : "");
+    rows->InsertNextValue(row.str());
+  }
 }
 
 } // namespace
@@ -115,6 +144,7 @@ std::string vtkSonoLabelTable::Meaning(const std::string& column)
 int vtkSonoLabelTable::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   return 1;
 }
 
@@ -123,6 +153,12 @@ int vtkSonoLabelTable::RequestData(vtkInformation*, vtkInformationVector** input
   return sono::runStage(this, output, [&] {
     this->LabelRows->Reset();
     this->TissueRows->Reset();
+    vtkTable* table = vtkTable::GetData(output);
+    if (vtkImageData* image = vtkImageData::GetData(input[0]))
+    {
+      addLabels(sono::labelTableOf(image->GetFieldData()), table, this->LabelRows);
+      return;
+    }
     vtkMultiBlockDataSet* blocks = vtkMultiBlockDataSet::GetData(input[0]);
     const auto scene = vtkSonoSceneHandle::Get(blocks);
     const auto tissues = vtkSonoSceneHandle::GetTissues(blocks->GetFieldData());
@@ -131,37 +167,13 @@ int vtkSonoLabelTable::RequestData(vtkInformation*, vtkInformationVector** input
       return scene->tissues()[scene->tissueOfLabel()[std::size_t(label.id)]];
     };
 
-    vtkTable* table = vtkTable::GetData(output);
-    addColumn<vtkIntArray>(
-      "id", labels, [](const auto& label) { return label.id; }, table);
-    addColumn<vtkStringArray>(
-      "name", labels, [](const auto& label) { return label.name; }, table);
-    for (int part = 0; part < 3; ++part)
-    {
-      const char* names[] = { "red", "green", "blue" };
-      addColumn<vtkIntArray>(
-        names[part], labels, [=](const auto& label) { return byte(sono::displayColor(label)[part]); }, table);
-    }
-    addColumn<vtkStringArray>(
-      "tissue", labels, [](const auto& label) { return label.tissue; }, table);
-    addColumn<vtkIntArray>(
-      "guess", labels, [](const auto& label) { return label.guessed ? 1 : 0; }, table);
+    addLabels(labels, table, this->LabelRows);
     std::string columns = "tissue";
     for (const sono::TissueColumn& column : sono::tissueColumns())
     {
       addColumn<vtkDoubleArray>(
         column.name, labels, [&](const auto& label) { return tissueOf(label).*column.member; }, table);
       columns += std::string("\t") + column.name;
-    }
-
-    this->LabelRows->InsertNextValue("id\tname\tr\tg\tb\ttissue\tguess");
-    for (const sono::LabelInfo& label : labels)
-    {
-      const auto color = sono::displayColor(label);
-      std::ostringstream row;
-      row << label.id << '\t' << label.name << '\t' << byte(color[0]) << '\t' << byte(color[1]) << '\t'
-          << byte(color[2]) << '\t' << label.tissue << '\t' << (label.guessed ? "yes" : "");
-      this->LabelRows->InsertNextValue(row.str());
     }
     this->TissueRows->InsertNextValue(columns + "\tsource");
     for (const sono::Tissue& tissue : tissues->tissues())

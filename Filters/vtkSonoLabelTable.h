@@ -13,9 +13,9 @@ class vtkStringArray;
  * @class vtkSonoLabelTable
  * @brief The labels of a scene with their tissues and their numbers, as a table
  *
- * Takes a scene of vtkSonoSceneBuilder. The output has one row a label: id, name, red, green, blue (0 to 255), tissue,
- * guess (1 where the tissue is one that a person should look at), and the columns of the tissue table. The tissue
- * editor works with the same as text.
+ * Takes a scene of vtkSonoSceneBuilder, or a label map, of which there are no tissues' numbers. The output has one row
+ * a label: id, name, red, green, blue (0 to 255), tissue, guess (1 where the tissue is one that a person should look
+ * at), and the columns of the tissue table. The tissue editor works with the same as text.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoLabelTable : public vtkTableAlgorithm
 {

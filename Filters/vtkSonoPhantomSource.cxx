@@ -116,8 +116,8 @@ std::vector<sono::PhantomTarget> vtkSonoPhantomSource::Targets() const
 
 std::shared_ptr<const sono::LabelVolume> vtkSonoPhantomSource::MakeVolume() const
 {
-  sono::requireInRange(this->Phantom >= Calibration && this->Phantom <= SpeckleCube, "phantom", this->Phantom,
-                       "0 (calibration) to 4 (speckle cube)");
+  sono::requireInRange(this->Phantom >= Calibration && this->Phantom <= Neck, "phantom", this->Phantom,
+                       "0 (calibration) to 5 (neck)");
   if (this->Phantom == Calibration)
   {
     return std::make_shared<const sono::LabelVolume>(

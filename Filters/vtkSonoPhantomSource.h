@@ -40,7 +40,8 @@ public:
     EnhancementSphere,
     ShadowSphere,
     Rib,
-    SpeckleCube
+    SpeckleCube,
+    Neck
   };
 
   ///@{

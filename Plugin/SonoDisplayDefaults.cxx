@@ -1,6 +1,9 @@
 #include "SonoDisplayDefaults.h"
 
 #include "SonoFirstPose.h"
+#include "SonoLabelColors.h"
+#include "SonoLayout.h"
+#include "SonoPythonRecord.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
@@ -104,7 +107,8 @@ void showRays(vtkSMProxy* representation)
 /// Whether it draws onto a flat image, in colours of its own.
 bool isFlatDrawing(const char* name)
 {
-  return equal(name, "SonoFlatScale") || equal(name, "SonoFlatLabels") || equal(name, "SonoCaliper");
+  return equal(name, "SonoFlatScale") || equal(name, "SonoFlatLabels") || equal(name, "SonoCaliper") ||
+         equal(name, "SonoVentricleVolume");
 }
 
 /// The colours themselves, whatever the light.
@@ -182,7 +186,9 @@ bool isNeedless(vtkSMProxy* bar)
 {
   vtkSMProxy* colors = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
   const char* name = colors ? bar->GetSessionProxyManager()->GetProxyName("lookup_tables", colors) : nullptr;
-  return name && (std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode"));
+  const bool isLabels = name && std::strstr(name, "Labels.PVLookupTable") &&
+                        vtkSMPropertyHelper(colors, "Discretize").GetAsInt() == 0; // by sonoShowLabelColors
+  return name && (isLabels || std::strstr(name, "Color.PVLookupTable") || std::strstr(name, "BMode"));
 }
 
 /// Takes a needless bar away when ParaView shows it by itself for the first time, by either of its two switches.
@@ -254,6 +260,7 @@ public:
       return;
     }
     const unsigned int port = helper.GetOutputPort();
+    sonoShowLabelColors(input, port);
     if (isOutput(input, port, "SonoSceneBuilder", vtkSonoUltrasound::ANATOMY) ||
         equal(input->GetXMLName(), "SonoSceneReader"))
     {
@@ -294,6 +301,20 @@ public:
     {
       vtkSMPropertyHelper(registered->Proxy, "LineWidth", true).Set(3.0);
       registered->Proxy->UpdateVTKObjects();
+    }
+  }
+};
+
+/// Looks at what a state file has brought.
+class StateLoaded : public vtkCommand
+{
+public:
+  static StateLoaded* New() { return new StateLoaded; }
+  void Execute(vtkObject*, unsigned long, void*) override
+  {
+    if (vtkSMSessionProxyManager* manager = vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager())
+    {
+      sonoDrawEasily(manager);
     }
   }
 };
@@ -344,6 +365,9 @@ void sonoInstallDisplayDefaults()
     notColors + R"json("]}}})json";
   vtkSMSettings::GetInstance()->AddCollectionFromString(settings, 0.0);
   hideFromColors(notColors);
+  sonoInstallPythonRecord();
   vtkNew<DisplayDefaults> defaults;
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, defaults);
+  vtkNew<StateLoaded> loaded;
+  vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::LoadStateEvent, loaded);
 }

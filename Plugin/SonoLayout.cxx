@@ -10,6 +10,7 @@
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSettingsProxy.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMTransferFunctionManager.h"
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <functional>
 #include <initializer_list>
 #include <string>
@@ -59,32 +61,53 @@ void setCamera(vtkSMProxy* view, std::initializer_list<double> position, std::in
   vtkSMRenderViewProxy::SafeDownCast(view)->ResetCamera(true);
 }
 
+/// From now on a view's own: it no longer follows ParaView's settings, which overwrite it in all views whenever a view
+/// is made.
+void keepOwn(vtkSMProxy* view, std::initializer_list<const char*> names)
+{
+  auto* settings =
+    vtkSMSettingsProxy::SafeDownCast(view->GetSessionProxyManager()->GetProxy("settings", "RenderViewSettings"));
+  for (const char* name : names)
+  {
+    if (settings && settings->GetSourcePropertyName(view, name))
+    {
+      settings->RemoveLink(name, view, name);
+    }
+  }
+}
+
 /// A server draws its views itself, if it can: their pictures cross the link, not the meshes they are drawn from, nor
 /// an image as a mesh.
-void drawOnServer(vtkSMViewProxy* view)
+void drawOnServer(vtkSMProxy* view)
 {
   if (vtkSMSessionClient::SafeDownCast(view->GetSession()))
   {
+    keepOwn(view, { "RemoteRenderThreshold" });
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
     vtkSMPropertyHelper(view, "RemoteRenderThreshold", true).Set(0.0); // from no megabytes on
     view->UpdateVTKObjects();
   }
 }
 
+/// A view of the anatomy.
+void drawEasily(vtkSMProxy* view)
+{
+  keepOwn(view, { "LODResolution", "MaximumNumberOfPeels" });
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
+  // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
+  constexpr double fewTriangles = 0.1;
+  vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
+  // Each draws all triangles once more, and two order the nearest and the farthest pair of surfaces at each pixel.
+  constexpr int peels = 2;
+  vtkSMPropertyHelper(view, "MaximumNumberOfPeels", true).Set(peels);
+  view->UpdateVTKObjects();
+}
+
 /// Anatomy, probe and image from the patient's front, a little from the left and from above.
 void fillSolidView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
   drawOnServer(view);
-  {
-    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
-    // While the view is turned or a probe moves; those of ParaView's 0.5 take twice as long to make.
-    constexpr double fewTriangles = 0.1;
-    vtkSMPropertyHelper(view, "LODResolution", true).Set(fewTriangles);
-    // Each draws all triangles once more, and two order the nearest and the farthest pair of surfaces at each pixel.
-    constexpr int peels = 2;
-    vtkSMPropertyHelper(view, "MaximumNumberOfPeels", true).Set(peels);
-    view->UpdateVTKObjects();
-  }
+  drawEasily(view);
   for (unsigned int port : { vtkSonoUltrasound::ANATOMY, vtkSonoUltrasound::PROBE, vtkSonoUltrasound::IMAGE })
   {
     showQuietly(ultrasound, port, view, controller);
@@ -298,4 +321,24 @@ vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* s
     view->StillRender();
   }
   return solid;
+}
+
+void sonoDrawEasily(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkSMProxyIterator> views;
+  views->SetSessionProxyManager(manager);
+  views->SetModeToOneGroup();
+  for (views->Begin("views"); !views->IsAtEnd(); views->Next())
+  {
+    const vtkSMPropertyHelper shown(views->GetProxy(), "Representations", true);
+    for (unsigned int i = 0; i < shown.GetNumberOfElements(); ++i)
+    {
+      const vtkSMPropertyHelper input(shown.GetAsProxy(i), "Input", true);
+      if (input.GetAsProxy() && std::strcmp(input.GetAsProxy()->GetXMLName(), "SonoUltrasound") == 0 &&
+          input.GetOutputPort() == vtkSonoUltrasound::ANATOMY)
+      {
+        drawEasily(views->GetProxy());
+      }
+    }
+  }
 }

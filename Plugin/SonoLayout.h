@@ -2,6 +2,7 @@
 
 #include <functional>
 
+class vtkSMSessionProxyManager;
 class vtkSMSourceProxy;
 class vtkSMViewProxy;
 
@@ -15,3 +16,7 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
 /// A tab "Split Screen" with the body of the first of two Simulate Ultrasounds, and the flat views of both side by
 /// side.
 vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);
+
+/// Has the views of anatomies draw as the layout's do. A state file loses that: ParaView's settings for all views
+/// overwrite it there.
+void sonoDrawEasily(vtkSMSessionProxyManager* manager);

@@ -8,6 +8,7 @@
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
+#include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
@@ -113,6 +114,11 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
       [this] { measure(vtkSonoCaliper::Ellipse, tr("Ellipse")); });
   add("actionSonoAngle", tr("Angle (degrees)"), tr("Measure an angle in the flat view"),
       [this] { measure(vtkSonoCaliper::Angle, tr("Angle")); });
+  add("actionSonoVentricle", tr("Ventricle Volume (ml)"),
+      tr("Simpson's method of discs: click from one end of the annulus along the wall to the other, in this flat view "
+         "and, "
+         "for biplane, in that of the two-chamber view"),
+      [this] { measureVentricle(); });
   menu->addSeparator();
   add("actionSonoSplit", tr("Split Screen"),
       tr("A second Simulate Ultrasound of the same probe, with settings of its own, beside the first"),
@@ -178,6 +184,49 @@ void pqSonoFlatMenu::measure(int kind, const QString& step)
   pqActiveObjects::instance().setActiveView(view);
   pqActiveObjects::instance().setActiveSource(caliper); // whose points can be dragged then
   view->render();
+}
+
+void pqSonoFlatMenu::measureVentricle()
+{
+  pqRenderView* view = flatView();
+  if (!view)
+  {
+    return;
+  }
+  const auto portOf = [](pqRenderView* of) {
+    const SonoShownImage image = sonoFlatImageOf(of->getProxy());
+    auto* source = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(image.source);
+    return source ? source->getOutputPort(static_cast<int>(image.port)) : nullptr;
+  };
+  QMap<QString, QList<pqOutputPort*>> inputs;
+  inputs["Input"] << portOf(view);
+  pqRenderView* second = nullptr;
+  for (auto* other : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>())
+  {
+    if (!second && sonoIsFlatView(other->getProxy()) && portOf(other) != portOf(view))
+    {
+      second = other;
+      inputs["TwoChamber"] << portOf(other);
+    }
+  }
+  BEGIN_UNDO_SET(tr("Ventricle Volume"));
+  pqPipelineSource* volume = pqApplicationCore::instance()->getObjectBuilder()->createFilter(
+    "filters", "SonoVentricleVolume", inputs, view->getServer());
+  vtkSMPropertyHelper(volume->getProxy(), "DigitMm")
+    .Set(0.08 * view->getRenderViewProxy()->GetActiveCamera()->GetParallelScale());
+  volume->getProxy()->UpdateVTKObjects();
+  volume->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  auto* proxy = vtkSMSourceProxy::SafeDownCast(volume->getProxy());
+  controller->Show(proxy, 0, view->getViewProxy());
+  if (second)
+  {
+    controller->Show(proxy, 1, second->getViewProxy());
+  }
+  END_UNDO_SET();
+  pqActiveObjects::instance().setActiveView(view);
+  pqActiveObjects::instance().setActiveSource(volume); // whose contours are traced then
+  pqApplicationCore::instance()->render();
 }
 
 void pqSonoFlatMenu::split()

@@ -1,6 +1,7 @@
 #include "pqSonoLinePicker.h"
 
 #include "SonoPickLine.h"
+#include "SonoTracePoint.h"
 
 #include "vtkCommand.h"
 #include "vtkNew.h"
@@ -10,7 +11,9 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqPipelineSource.h"
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
@@ -77,6 +80,13 @@ void pqSonoLinePicker::release(vtkObject* caller, pqView* view)
   pressedAt_[0] = pressedAt_[1] = -1000; // a release whose press a widget took is none of ours
   if (!isClick || interactor->GetShiftKey() || interactor->GetControlKey())
   {
+    return;
+  }
+  const pqPipelineSource* active = pqActiveObjects::instance().activeSource();
+  if (active && sonoTracePoint(vtkSMSourceProxy::SafeDownCast(active->getProxy()),
+                               vtkSMRenderViewProxy::SafeDownCast(view->getProxy()), at[0], at[1]))
+  {
+    pqApplicationCore::instance()->render();
     return;
   }
   const SonoPickedLine picked = sonoPickLine(vtkSMRenderViewProxy::SafeDownCast(view->getProxy()), at[0], at[1]);

@@ -1,10 +1,15 @@
 #include "pqSonoToolBar.h"
 
+#include "SonoExamples.h"
 #include "SonoLayout.h"
+#include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
+#include "pqSonoLoading.h"
 
 #include "vtkDataObjectTypes.h"
 #include "vtkPVDataInformation.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMRenderViewProxy.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMViewProxy.h"
 #include "vtkSonoUltrasound.h"
@@ -16,6 +21,7 @@
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
+#include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
@@ -23,6 +29,8 @@
 #include <QAction>
 #include <QCoreApplication>
 #include <QEventLoop>
+#include <QMenu>
+#include <QToolButton>
 
 #include <cstring>
 
@@ -79,6 +87,9 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   layoutAction_->setToolTip(
     tr("Lay out the selected Simulate Ultrasound: in the body, flat with a depth scale, and one of its lines"));
   this->addWidget(new pqSonoFlatMenu(this));
+  addExamples();
+  new pqSonoDelete(this);
+  new pqSonoLoading(this);
   auto* active = &pqActiveObjects::instance();
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });
   QObject::connect(active, &pqActiveObjects::dataUpdated, this, [this] { updateActions(); });
@@ -130,6 +141,63 @@ void pqSonoToolBar::showLayout()
   pqActiveObjects::instance().setActiveView(
     pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(solid));
   pqApplicationCore::instance()->render();
+}
+
+void pqSonoToolBar::addExamples()
+{
+  auto* button = new QToolButton(this);
+  auto* menu = new QMenu(button);
+  menu->setObjectName("SonoExamplesMenu");
+  menu->setToolTipsVisible(true);
+  for (const SonoExample& example : sonoExamples())
+  {
+    QAction* action = menu->addAction(tr(example.name), this, [this, &example] { showExample(example); });
+    action->setObjectName(QString("actionSonoExample") + example.name);
+    action->setToolTip(tr(example.tip));
+  }
+  button->setObjectName("SonoExamplesButton");
+  button->setText(tr("Examples"));
+  button->setToolTip(tr("Pictures of what comes with SonoVDB: heart, liver, thyroid, lung, phantom, needle"));
+  button->setPopupMode(QToolButton::InstantPopup);
+  button->setMenu(menu);
+  this->addWidget(button);
+}
+
+void pqSonoToolBar::showExample(const SonoExample& example)
+{
+  const pqServer* server = pqActiveObjects::instance().activeServer();
+  if (!server)
+  {
+    return;
+  }
+  BEGIN_UNDO_SET(tr("Example %1").arg(tr(example.name)));
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  const QList<pqPipelineSource*> before = model->findItems<pqPipelineSource*>();
+  vtkSMSourceProxy* ultrasound = sonoMakeExample(example, server->proxyManager());
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    if (!before.contains(source))
+    {
+      source->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+    }
+  }
+  pqActiveObjects::instance().setActiveSource(model->findItem<pqPipelineSource*>(ultrasound));
+  showLayout();
+  END_UNDO_SET();
+  const pqView* body = pqActiveObjects::instance().activeView();
+  if (auto* view = body && example.depthIsDown ? vtkSMRenderViewProxy::SafeDownCast(body->getProxy()) : nullptr)
+  {
+    // The way a phantom stands before a person.
+    const double from[3] = { 0.5, -1.0, -0.35 };
+    const double at[3] = { 0.0, 0.0, 0.0 };
+    const double up[3] = { 0.0, 0.0, -1.0 };
+    vtkSMPropertyHelper(view, "CameraPosition").Set(from, 3);
+    vtkSMPropertyHelper(view, "CameraFocalPoint").Set(at, 3);
+    vtkSMPropertyHelper(view, "CameraViewUp").Set(up, 3);
+    view->UpdateVTKObjects();
+    view->ResetCamera(true);
+    pqApplicationCore::instance()->render();
+  }
 }
 
 void pqSonoToolBar::showUnshown()

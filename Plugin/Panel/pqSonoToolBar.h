@@ -4,9 +4,11 @@
 #include <QToolBar>
 
 class pqPipelineSource;
+struct SonoExample;
 
 /// The toolbar "Ultrasound": simulate the selected label map and show the layout, all in one click; show the layout of
-/// the selected Simulate Ultrasound. One whose first run was stopped is laid out once Apply has made its picture.
+/// the selected Simulate Ultrasound; show one of the examples. One whose first run was stopped is laid out once Apply
+/// has made its picture.
 class pqSonoToolBar : public QToolBar
 {
   Q_OBJECT
@@ -19,6 +21,8 @@ private:
   void simulate();
   void showLayout();
   void showUnshown();
+  void addExamples();
+  void showExample(const SonoExample& example);
 
   QAction* simulateAction_;
   QAction* layoutAction_;

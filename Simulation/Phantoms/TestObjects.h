@@ -11,7 +11,8 @@ enum class TestObject
   EnhancementSphere, ///< a ball of water in gel: what lies behind it is lit more strongly
   ShadowSphere,      ///< a ball of bone in gel: nothing behind it is lit
   Rib,               ///< skin, fat and muscle over liver, with a rib across the beam
-  SpeckleCube        ///< 40 mm of scatterers that are all alike
+  SpeckleCube,       ///< 40 mm of scatterers that are all alike
+  Neck               ///< thyroid with a nodule, trachea, carotids, jugular veins, muscles and a vertebra
 };
 
 struct TestObjectSettings
@@ -24,8 +25,9 @@ struct TestObjectSettings
   void validate() const;
 };
 
-/// The object's label map, its labels named by their tissues. Spheres lie in gel of 100 x 80 x 120 mm, the rib in
-/// 120 x 60 x 120 mm, both below the surface z = 0. Throws Error for settings out of range.
+/// The object's label map, its labels named by their tissues, those of the neck by their structures. Spheres lie in gel
+/// of 100 x 80 x 120 mm, the rib in 120 x 60 x 120 mm, both below the surface z = 0; the neck is 100 x 50 x 60 mm.
+/// Throws Error for settings out of range.
 LabelVolume makeTestObject(TestObject object, const TestObjectSettings& settings = {});
 
 } // namespace sono

@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 from chain import label_image, listen, make
-from sonovdb.vtkSonoFilters import vtkSonoLabelTable, vtkSonoSceneBuilder
+from sonovdb.vtkSonoFilters import vtkSonoLabelTable, vtkSonoSceneBuilder, vtkSonoThoraxSource
 
 NUMBERS = ("impedance_MRayl", "sound_speed_m_per_s", "attenuation_dB_per_cm_MHz", "mu0", "sigma0", "mu1", "tau", "gamma",
            "roughness_mm", "correlation_mm", "backscatter_1MHz_per_cm_sr", "backscatter_exponent", "fibre_anisotropy_dB",
@@ -49,6 +49,16 @@ class TestLabelTable(unittest.TestCase):
         self.assertEqual(rows[0], ["tissue", *NUMBERS, "source"])
         self.assertIn("cortical_bone", [fields[0] for fields in rows])
         self.assertEqual(table.GetLabelRows().GetValue(2).split("\t")[:2], ["7", "label_7"])
+
+    def test_a_label_map_itself_has_names_and_colours_alone(self):
+        thorax = make(vtkSonoThoraxSource, SpacingMm=5.0)
+        table = vtkSonoLabelTable()
+        table.SetInputConnection(thorax.GetOutputPort())
+        table.Update()
+        rows = [table.GetLabelRows().GetValue(i).split("\t") for i in range(table.GetLabelRows().GetNumberOfValues())]
+        self.assertIn(["left_ventricle_blood", "217", "26", "26"], [row[1:5] for row in rows])  # as the phantom is drawn
+        self.assertEqual(table.GetTissueRows().GetNumberOfValues(), 0)
+        self.assertEqual(table.GetOutput().GetNumberOfColumns(), 7)
 
     def test_a_table_of_ones_own(self):
         _, table = self.table(LabelTableFile=self.file("id,name,r,g,b,tissue\n7,my liver,200,100,50,liver\n"))

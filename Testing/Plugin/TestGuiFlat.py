@@ -3,13 +3,12 @@ split screen. Needs Xvfb; run by ctest -L gui."""
 import json
 import math
 import pathlib
-import subprocess
 import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from guicase import PLAYBACKS, GuiCase
+from guicase import PLAYBACKS, GuiCase, bytes_of
 
 # What a state's filters say, what its flat image has at a place, and its flat view as a picture.
 ASK = """
@@ -70,9 +69,7 @@ def place_in_flat_view(state, across, down):
 
 def pixels(path):
     """Rows of three bytes a pixel."""
-    raw = path.with_suffix(".ppm")
-    subprocess.run(["oiiotool", str(path), "--ch", "R,G,B", "-o", str(raw)], check=True)
-    data = raw.read_bytes()[-3 * 416 * 313:]
+    data = bytes_of(path, 3 * 416 * 313)
     return [data[3 * 416 * y:3 * 416 * (y + 1)] for y in range(313)]
 
 
@@ -114,6 +111,21 @@ class TestGuiFlat(GuiCase):
         self.assertLess(math.dist(ends[0][:2], wanted), 2.5)
         self.assertAlmostEqual(measured["caliper"][0], math.dist(*ends), places=3)
         self.assertEqual(measured["caliper"][1], f"{math.dist(*ends):.1f} mm")
+
+    def test_clicks_trace_a_ventricle(self):
+        """One point each, where the picture was clicked; undo takes one back, and no scan line is picked meanwhile."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.play("ventricle.xml", folder, f"--data={self.label_map(folder)}"), [])
+            states = [pathlib.Path(folder, name + ".pvsm") for name in ("four", "five", "again")]
+            four, five, again = (numbers(proxies(state, "SonoVentricleVolume")[0], "FourChamberPoints") for state in states)
+            line = numbers(proxies(states[1], "SonoALine")[0], "Line")
+            wanted = [place_in_flat_view(states[1], x, y) for x, y in
+                      ((0.45, 0.6), (0.47, 0.4), (0.5, 0.25), (0.53, 0.4), (0.55, 0.6))]
+        self.assertEqual(five[:8], four)
+        self.assertEqual(again, four)
+        self.assertEqual(line, [64])
+        for i, place in enumerate(wanted):
+            self.assertLess(math.dist(five[2 * i:2 * i + 2], place), 1.0)
 
     def test_the_name_under_the_pointer_is_that_of_its_pixel(self):
         with tempfile.TemporaryDirectory() as folder:

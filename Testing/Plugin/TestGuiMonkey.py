@@ -34,10 +34,8 @@ KNOWN = {
     # So says the Slice of a Wavelet, too, when somebody clicks on it with the right button after its source was changed and
     # before it was drawn again: the picking draws without updating.
     r"vtkPVImageSliceMapper.*Mapper has no vtkImageData input",
-    # A filter of a state that was saved after what it depends on was deleted, by a script or by the panel's Delete, which looks
-    # for those that depend on the first output alone (pqPipelineSource::getNumberOfConsumers): a Simulate Ultrasound can be
-    # deleted under its flat views. An Elevation of a deleted Wavelet fails, too. ParaView connects the first port of whatever
-    # its menus make.
+    # A filter of a state that was saved after what it depends on was deleted, by a script. An Elevation of a deleted Wavelet
+    # fails, too. ParaView connects the first port of whatever its menus make.
     DANGLING,
     # The same, split into two screens.
     r"Some proxy is added as input but was not registered",

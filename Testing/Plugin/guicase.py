@@ -35,6 +35,13 @@ def save_screen(path, xwd, cut=VIEW, size="50%"):
                        check=True)
 
 
+def bytes_of(picture, count):
+    """The last so many of a picture's bytes, three a pixel: all of its pixels, where that is how many there are."""
+    raw = picture.with_suffix(".ppm")
+    subprocess.run(["oiiotool", str(picture), "--ch", "R,G,B", "-o", str(raw)], check=True)
+    return raw.read_bytes()[-count:]
+
+
 class GuiCase(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
