@@ -120,7 +120,7 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   grid->addWidget(this->Live, row + 5, 2, 1, 2);
   if (isUltrasound(smproxy))
   {
-    auto* finder = new pqSonoWindowFinder(smproxy, this);
+    auto* finder = new pqSonoWindowFinder(smproxy, this->widgetProxy(), this);
     grid->addWidget(finder, row + 6, 0, 1, 4);
     this->connect(finder, &pqSonoWindowFinder::chosen, this, &pqSonoProbeWidget::stand);
     this->connect(finder, &pqSonoWindowFinder::said, this, [this](const QString& said) { this->showMessage(said); });
