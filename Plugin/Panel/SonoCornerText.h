@@ -18,7 +18,7 @@ inline void sonoSayInCorner(const char* name, Qt::Corner corner, const QString& 
     label = new QLabel(view);
     label->setObjectName(name);
     label->setAttribute(Qt::WA_TransparentForMouseEvents);
-    label->setStyleSheet(QString("QLabel { color: %1; background: rgba(0, 0, 0, 160); padding: 2px; }").arg(colour));
+    label->setStyleSheet(QString("QLabel { color: %1; background: rgba(0, 0, 0, 130); padding: 2px; }").arg(colour));
   }
   if (label->text() != words)
   {

@@ -19,7 +19,8 @@ namespace {
 // What a standard view that was found may be off its ideal plane (docs/views.md).
 constexpr double withinMm = 5.0;
 constexpr double withinDeg = 5.0;
-constexpr double withinDepthMm = 5.0;
+constexpr double leastMm = 2.0; // of a slide that is worth a line
+const QChar across(0x21c5);     // to or from who looks at the picture
 
 sono::PoseNumbers poseNow(vtkSMProxy* proxy)
 {
@@ -33,12 +34,13 @@ sono::PoseNumbers poseNow(vtkSMProxy* proxy)
   return pose;
 }
 
-/// Of the three numbers from `first` on, the side of the patient to which they point most, LPS.
-QString sideOf(const double* way)
+/// The side of the patient to which a direction, LPS, points most; `sign` below 0: the opposite direction.
+QString sideOf(const double* direction, double sign)
 {
-  const double* most = std::max_element(way, way + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
-  const bool isPositive = *most > 0.0;
-  switch (most - way)
+  const double* most =
+    std::max_element(direction, direction + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const bool isPositive = *most * sign > 0.0;
+  switch (most - direction)
   {
     case 0:
       return isPositive ? pqSonoGuide::tr("the patient's left") : pqSonoGuide::tr("the patient's right");
@@ -49,11 +51,9 @@ QString sideOf(const double* way)
   }
 }
 
-/// A row of the overlay: what is to be done, or a tick where nothing is.
-QString row(bool isDone, const QString& name, const QString& arrow, const QString& what)
+QString row(QChar arrow, const QString& what)
 {
-  return isDone ? QString("<tr><td style='color:#70c070'>&#10003;</td><td style='color:#909090'>%1</td></tr>").arg(name)
-                : QString("<tr><td>%1&nbsp;</td><td><b>%2</b> %3</td></tr>").arg(arrow, name, what);
+  return QString("<br>%1 %2").arg(arrow).arg(what);
 }
 
 QString mm(double value)
@@ -141,59 +141,55 @@ void pqSonoGuide::look()
   }
 }
 
+/// One line a movement that is still to be made, short enough for the corner that a fan leaves free.
 QString pqSonoGuide::words() const
 {
   const sono::PoseNumbers at = poseNow(this->Widget);
   const sono::Guidance way = sono::guidance(at, this->Goal->pose);
-  const QString name = QString::fromStdString(this->Goal->sentence).section(':', 0, 0).toHtmlEscaped();
+  const QString name = QString::fromStdString(this->Goal->sentence).section(QRegExp("[,:]"), 0, 0).toHtmlEscaped();
+  if (way.isReached(withinMm, withinDeg))
+  {
+    return QString("<b style='color:#70e070'>%1</b>").arg(tr("%1 reached").arg(name));
+  }
   const double awayMm = std::hypot(way.slideLateralMm, way.slideElevationMm, way.pressMm);
-  const double depthMm = vtkSMPropertyHelper(this->Widget, "DepthMm").GetAsDouble();
-  QString text = QString("<b>%1</b>: ").arg(name);
-  text += way.isReached(withinMm, withinDeg)
-            ? QString("<span style='color:#70e070'><b>%1</b></span>").arg(tr("reached"))
-            : tr("%1 away").arg(mm(awayMm));
-  text += "<table>";
+  QString text = QString("<b>%1</b>").arg(tr("%1: %2 away").arg(name, mm(awayMm)));
   const double* axial = at.data() + 3;
   const double* lateral = at.data() + 6;
   const double elevation[] = { axial[1] * lateral[2] - axial[2] * lateral[1],
                                axial[2] * lateral[0] - axial[0] * lateral[2],
                                axial[0] * lateral[1] - axial[1] * lateral[0] };
-  const auto along = [](const double* axis, double sign) {
-    const double way[] = { std::copysign(1.0, sign) * axis[0], std::copysign(1.0, sign) * axis[1],
-                           std::copysign(1.0, sign) * axis[2] };
-    return sideOf(way);
-  };
-  // All within what is allowed together.
-  const bool isThere = awayMm <= withinMm;
-  constexpr double leastMm = 2.0;
-  const auto isNear = [&](double slideMm) { return isThere || std::abs(slideMm) < leastMm; };
-  const QString left(QChar(0x2190));
-  const QString right(QChar(0x2192));
-  text +=
-    row(isNear(way.slideLateralMm), tr("Slide along the picture"), way.slideLateralMm > 0.0 ? right : left,
-        tr("%1 %2, to %3")
-          .arg(mm(way.slideLateralMm), way.slideLateralMm > 0.0 ? tr("towards the marker") : tr("away from the marker"),
-               along(lateral, way.slideLateralMm)));
-  text += row(isNear(way.slideElevationMm), tr("Slide across it"), QChar(0x21c5),
-              tr("%1 to %2").arg(mm(way.slideElevationMm), along(elevation, way.slideElevationMm)));
-  // Over a curved skin the rest of the way comes by itself with the slides.
-  if (isNear(way.slideLateralMm) && isNear(way.slideElevationMm) && !isThere)
+  const auto isFar = [&](double slideMm) { return awayMm > withinMm && std::abs(slideMm) >= leastMm; };
+  const auto sideways = [](double amount) { return QChar(amount > 0.0 ? 0x2192 : 0x2190); };
+  if (isFar(way.slideLateralMm))
   {
-    text += row(false, way.pressMm > 0.0 ? tr("Press") : tr("Lift"), QChar(way.pressMm > 0.0 ? 0x2193 : 0x2191),
-                mm(way.pressMm));
+    text += row(sideways(way.slideLateralMm),
+                tr("Slide %1 to %2").arg(mm(way.slideLateralMm), sideOf(lateral, way.slideLateralMm)));
   }
-  text += row(std::abs(way.rotateDeg) <= withinDeg, tr("Rotate"), QChar(way.rotateDeg > 0.0 ? 0x21bb : 0x21ba),
-              tr("%1 %2, seen from the cable")
-                .arg(degrees(way.rotateDeg), way.rotateDeg > 0.0 ? tr("clockwise") : tr("counterclockwise")));
-  text += row(std::abs(way.tiltDeg) <= withinDeg, tr("Tilt (fan)"), QChar(0x21c5),
-              tr("%1, the beam to %2").arg(degrees(way.tiltDeg), along(elevation, way.tiltDeg)));
-  text += row(std::abs(way.rockDeg) <= withinDeg, tr("Rock"), way.rockDeg > 0.0 ? right : left,
-              tr("%1, the beam %2")
-                .arg(degrees(way.rockDeg), way.rockDeg > 0.0 ? tr("towards the marker") : tr("away from the marker")));
-  text += "</table>";
-  if (this->Goal->depthMm > 0.0 && std::abs(this->Goal->depthMm - depthMm) > withinDepthMm)
+  if (isFar(way.slideElevationMm))
   {
-    text += tr("Its depth: %1").arg(mm(this->Goal->depthMm));
+    text +=
+      row(across, tr("Slide across %1 to %2").arg(mm(way.slideElevationMm), sideOf(elevation, way.slideElevationMm)));
+  }
+  // Over a curved skin this part of the way comes by itself with the slides.
+  if (isFar(way.pressMm) && !isFar(way.slideLateralMm) && !isFar(way.slideElevationMm))
+  {
+    text += row(QChar(way.pressMm > 0.0 ? 0x2193 : 0x2191),
+                (way.pressMm > 0.0 ? tr("Press %1") : tr("Lift %1")).arg(mm(way.pressMm)));
+  }
+  if (std::abs(way.rotateDeg) > withinDeg)
+  {
+    text += row(
+      QChar(way.rotateDeg > 0.0 ? 0x21bb : 0x21ba),
+      (way.rotateDeg > 0.0 ? tr("Rotate %1 clockwise") : tr("Rotate %1 counterclockwise")).arg(degrees(way.rotateDeg)));
+  }
+  if (std::abs(way.tiltDeg) > withinDeg)
+  {
+    text += row(across, tr("Tilt (fan) %1, beam to %2").arg(degrees(way.tiltDeg), sideOf(elevation, way.tiltDeg)));
+  }
+  if (std::abs(way.rockDeg) > withinDeg)
+  {
+    text +=
+      row(sideways(way.rockDeg), tr("Rock %1, beam to %2").arg(degrees(way.rockDeg), sideOf(lateral, way.rockDeg)));
   }
   return text;
 }

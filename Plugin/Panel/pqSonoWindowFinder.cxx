@@ -57,7 +57,8 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widge
   this->IsGuided->setObjectName("Guide");
   this->IsGuided->setToolTip(
     tr("The probe stays where it is; the views say how far the chosen place is and which way to slide (mm), rotate, "
-       "tilt and rock (degrees), until it is reached within 5 mm and 5 degrees. Off: a choice puts the probe there."));
+       "tilt and rock it (degrees), seen from its cable, until it is reached within 5 mm and 5 degrees. Arrows: "
+       "left and right in the picture; up and down together, across it. Off: a choice puts the probe there."));
   this->IsGuided->hide();
   grid->addWidget(this->IsGuided, 3, 0, 1, 2);
   QObject::connect(this->IsGuided, &QCheckBox::toggled, this,
