@@ -4,6 +4,8 @@
 #include "pqProxy.h"
 #include "pqServerManagerModel.h"
 
+#include <QVariant>
+
 /// Of a source: whether its picture stays as it is while the probe moves. The display's settings still change it. It is
 /// the scanner panel's alone, and neither undo nor a state file knows it.
 inline constexpr const char* sonoFrozen = "SonoFrozen";

@@ -2,6 +2,7 @@
 
 #include "SonoComboBox.h"
 #include "pqSonoGuide.h"
+#include "pqSonoThumbnails.h"
 
 #include "vtkSMSourceProxy.h"
 
@@ -18,6 +19,7 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widge
   , Candidate(new SonoComboBox(this))
   , IsGuided(new QCheckBox(tr("Guide Me There"), this))
   , Guide(new pqSonoGuide(ultrasound, widget, this))
+  , Pictures(new pqSonoThumbnails(ultrasound, this))
 {
   this->setObjectName("SonoWindow");
   auto* grid = new QGridLayout(this);
@@ -40,10 +42,18 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widge
                         "and takes the probe and the depth for it. Where the label map is cut is no skin."));
   this->Candidate->setObjectName("WindowCandidate");
   this->Candidate->setToolTip(
-    tr("The best places, at most five, or the standard views, and what the probe sees from each."));
+    tr("The best places, at most five, or the standard views, and what the probe sees from each. Small pictures, of "
+       "few lines and paths, come one by one while nothing else is done."));
   this->Candidate->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  this->Candidate->setMinimumContentsLength(20);
+  this->Candidate->setMinimumContentsLength(12);
+  this->Candidate->setIconSize(pqSonoThumbnails::size);
   this->Candidate->hide();
+  QObject::connect(this->Pictures, &pqSonoThumbnails::made, this, [this](int place, const QPixmap& picture) {
+    if (place < int(this->Windows.size()))
+    {
+      this->Candidate->setItemIcon(place, QIcon(picture));
+    }
+  });
   grid->addWidget(this->Target, 0, 0);
   auto* views = new QPushButton(tr("Standard Views"), this);
   views->setObjectName("StandardViews");
@@ -114,6 +124,7 @@ void pqSonoWindowFinder::offer(SonoWindows found, bool areRanked)
   this->Candidate->setCurrentIndex(areRanked ? 0 : -1); // the first is the best; of views a person chooses
   this->Candidate->setVisible(this->Candidate->count() > 0);
   this->IsGuided->setVisible(!this->Windows.empty());
+  this->Pictures->begin(this->Windows);
   this->Guide->stop(); // until a place of these is chosen
   if (this->Windows.empty())
   {

@@ -10,6 +10,7 @@
 class QCheckBox;
 class QComboBox;
 class pqSonoGuide;
+class pqSonoThumbnails;
 class vtkSMProxy;
 
 /// The part of a probe's panel that looks for places on the skin: from which an organ is seen (a name, a button), or of
@@ -41,6 +42,7 @@ private:
   QComboBox* Candidate;
   QCheckBox* IsGuided; // instead of going there
   pqSonoGuide* Guide;
+  pqSonoThumbnails* Pictures;
   std::vector<SonoWindow> Windows;
 };
 
