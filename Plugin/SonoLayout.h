@@ -15,3 +15,7 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
 /// A tab "Split Screen" with the body of the first of two Simulate Ultrasounds, and the flat views of both side by
 /// side.
 vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);
+
+/// The A-Line's line over time, of the phases of the label map, in a view below another one of the same layout. Makes
+/// an M-Mode, unless there is one; all phases are simulated for it.
+void sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside);

@@ -1,6 +1,7 @@
 #include "pqSonoFlatMenu.h"
 
 #include "SonoFlatView.h"
+#include "SonoLayout.h"
 #include "SonoOutputFilter.h"
 #include "SonoSplitScreen.h"
 #include "pqSonoCaliperFollow.h"
@@ -10,7 +11,9 @@
 #include "pqObjectBuilder.h"
 #include "pqPipelineSource.h"
 #include "pqRenderView.h"
+#include "pqServer.h"
 #include "pqServerManagerModel.h"
+#include "pqTimeKeeper.h"
 #include "pqUndoStack.h"
 #include "vtkCamera.h"
 #include "vtkNew.h"
@@ -117,6 +120,11 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
   add("actionSonoSplit", tr("Split Screen"),
       tr("A second Simulate Ultrasound of the same probe, with settings of its own, beside the first"),
       [this] { split(); });
+  mMode_ =
+    add("actionSonoMMode", tr("M-Mode"),
+        tr("The scan line of the A-Line over time, below the flat view, of a label map with phases; all of them are "
+           "simulated for it"),
+        [this] { showMMode(); });
   QObject::connect(menu, &QMenu::aboutToShow, this, [this] { update(); });
 }
 
@@ -137,6 +145,8 @@ void pqSonoFlatMenu::update()
   {
     action->setEnabled(view != nullptr);
   }
+  pqPipelineSource* ultrasound = ultrasoundOf(view);
+  mMode_->setEnabled(ultrasound && ultrasound->getServer()->getTimeKeeper()->getTimeSteps().size() > 1);
   text_->setChecked(isShown(view, textKind));
   labels_->setChecked(isShown(view, labelsKind));
 }
@@ -191,5 +201,18 @@ void pqSonoFlatMenu::split()
     // Where the probe can be seen and dragged.
     pqActiveObjects::instance().setActiveView(split.body);
     pqApplicationCore::instance()->render();
+  }
+}
+
+void pqSonoFlatMenu::showMMode()
+{
+  pqRenderView* view = flatView();
+  if (pqPipelineSource* ultrasound = ultrasoundOf(view))
+  {
+    BEGIN_UNDO_SET(tr("M-Mode"));
+    sonoShowMMode(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()), view->getViewProxy());
+    END_UNDO_SET();
+    pqActiveObjects::instance().setActiveSource(ultrasound);
+    pqActiveObjects::instance().setActiveView(view);
   }
 }

@@ -23,9 +23,11 @@ private:
   void toggle(const char* kind, const QString& step);
   void measure(int kind, const QString& step);
   void split();
+  void showMMode();
 
   QAction* text_;
   QAction* labels_;
+  QAction* mMode_;
 };
 
 #endif
