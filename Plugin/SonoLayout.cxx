@@ -289,7 +289,7 @@ vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* s
   return solid;
 }
 
-void sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside)
+vtkSMViewProxy* sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside)
 {
   vtkNew<Controller> controller;
   vtkSMSourceProxy* line = sonoFindFilterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine");
@@ -315,4 +315,5 @@ void sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside)
   }
   setCamera(view, { 0.0, 0.0, -1.0 }, { 0.0, -1.0, 0.0 });
   view->StillRender();
+  return laidOut(ultrasound, ultrasound->GetSessionProxyManager());
 }

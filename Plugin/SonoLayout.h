@@ -17,5 +17,5 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
 vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);
 
 /// The A-Line's line over time, of the phases of the label map, in a view below another one of the same layout. Makes
-/// an M-Mode, unless there is one; all phases are simulated for it.
-void sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside);
+/// an M-Mode, unless there is one; all phases are simulated for it. The view with the anatomy, if there is one.
+vtkSMViewProxy* sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside);

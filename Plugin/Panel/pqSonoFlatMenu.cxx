@@ -210,9 +210,12 @@ void pqSonoFlatMenu::showMMode()
   if (pqPipelineSource* ultrasound = ultrasoundOf(view))
   {
     BEGIN_UNDO_SET(tr("M-Mode"));
-    sonoShowMMode(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()), view->getViewProxy());
+    vtkSMViewProxy* body = sonoShowMMode(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()), view->getViewProxy());
     END_UNDO_SET();
     pqActiveObjects::instance().setActiveSource(ultrasound);
-    pqActiveObjects::instance().setActiveView(view);
+    // Where the probe can be seen and dragged.
+    auto* model = pqApplicationCore::instance()->getServerManagerModel();
+    pqActiveObjects::instance().setActiveView(body ? model->findItem<pqView*>(body) : view);
+    pqApplicationCore::instance()->render();
   }
 }
