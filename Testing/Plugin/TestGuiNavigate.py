@@ -11,11 +11,12 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
-from events import (MAIN, PROBE, SCANNER, check, click, event, pause, save_state, select, undo, view, write)
+from events import MAIN, PROBE, SCANNER, check, click, event, pause, play_on, save_state, select, undo, view, write
 from guicase import PLAYBACKS, GuiCase
 
 WINDOW = f"{PROBE}/SonoWindow"
 PATH = f"{SCANNER}/SonoPath"
+BEAT = f"{SCANNER}/SonoBeat/Beat"
 VIEWS = """
 import json
 views = StandardViews(Input=ThoraxPhantom(Spacingmm=4))
@@ -66,7 +67,7 @@ def frame(pose):
 
 
 class TestGuiNavigate(GuiCase):
-    def play_on(self, scene, folder, *events):
+    def play_events(self, scene, folder, *events):
         return self.play(write(pathlib.Path(folder, "events.xml"), *events), folder, f"--script={PLAYBACKS / scene}")
 
     def said_at(self, scene, folder, widget, *events):
@@ -117,11 +118,11 @@ class TestGuiNavigate(GuiCase):
     def test_a_path_is_recorded_played_swept_and_made_a_data_set(self):
         turn = (click(f"{PROBE}/RotatePlus"), pause(200))
         with tempfile.TemporaryDirectory() as folder:
-            errors = self.play_on(
+            errors = self.play_events(
                 "scanner.py", folder, select(0, 0), pause(1000), click(f"{MAIN}/SonoToolBar/SonoScannerButton"), pause(500),
                 check(f"{PATH}/Play", "enabled", "false"), click(f"{PATH}/Record"), *turn * 4, pause(1500),
                 click(f"{PATH}/Record"), pause(500), click(f"{PROBE}/TiltPlus"), pause(1500),
-                save_state("recorded"), check(f"{PATH}/Play", "enabled", "true"), click(f"{PATH}/Play"), pause(4000), save_state("played"),
+                save_state("recorded"), check(f"{PATH}/Play", "enabled", "true"), click(f"{PATH}/Play"), play_on(4000), pause(2000), save_state("played"),
                 undo(), pause(1500), save_state("undone"),
                 click(f"{PATH}/DataSet"),
                 event(f"{MAIN}/SonoPathDataSetDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/path.json"), pause(500),
@@ -147,8 +148,10 @@ class TestGuiNavigate(GuiCase):
         # Played: from its beginning to its end, in between as well; undone at once.
         self.assertEqual(poses["undone"], poses["recorded"])
         np.testing.assert_allclose(frame(poses["played"])[1], last, atol=1e-6)
-        begun = max(i for i, line in enumerate(drawn) if line["Preview"] == 1 and np.allclose(line["Lateral"], recorded[0, 7:], atol=1e-6))
-        moved = [line["Lateral"] for line in drawn[begun:] if line["Preview"] == 1]
+        tilted = frame(poses["recorded"])[1][:, 2]
+        rested = max(i for i, line in enumerate(drawn) if line["Preview"] == 0 and np.allclose(line["Axial"], tilted, atol=1e-6)
+                     and np.allclose(line["Lateral"], poses["recorded"][6:], atol=1e-6) and i < len(drawn) - 3)
+        moved = [line["Lateral"] for line in drawn[rested:] if line["Preview"] == 1]
         angles = np.degrees(np.arccos(np.clip(moved @ first[:, 0], -1, 1)))
         self.assertGreater(len(set(angles.round(3))), 3)
         self.assertTrue((np.diff(angles[:angles.argmax() + 1]) > -1e-3).all(), angles)
@@ -157,6 +160,39 @@ class TestGuiNavigate(GuiCase):
         self.assertEqual(len(declared["patients"][0]["views"]), len(recorded))
         self.assertEqual(declared["probe"]["lineCount"], 24)
         self.assertEqual(len(images), len(recorded))
+
+    def test_a_heart_beats_while_its_probe_moves(self):
+        turn = (click(f"{PROBE}/RotatePlus"), play_on(500))
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder, "beating.py")
+            scene.write_text((PLAYBACKS / "scanner.py").read_text().replace("Spacingmm=4", "Spacingmm=4, Phases=4"))
+            errors = self.play_events(
+                scene, folder, select(0, 0), pause(1000), click(f"{MAIN}/SonoToolBar/SonoScannerButton"), pause(500),
+                save_state("before"), click(BEAT), play_on(6000), *turn * 3, play_on(2000),
+                click(BEAT), pause(4000),
+                save_state("after"), undo(), pause(2500), save_state("undone"))
+            self.assertEqual(errors, [])
+            drawn = [json.loads(line) for line in pathlib.Path(folder, "scanner.jsonl").read_text().splitlines()]
+            before, after, undone = (pose_of(pathlib.Path(folder, name + ".pvsm")) for name in ("before", "after", "undone"))
+        beating = [line for line in drawn if line["Preview"] == 1]
+        # Phases of one second of 4, in turn but for those that are left out.
+        self.assertEqual({line["ViewTime"] for line in beating}, {0.0, 0.25, 0.5, 0.75})
+        # As at rest and turned by 15 degrees, each phase is another picture, and the same one in each beat.
+        for lateral in (before[6:], after[6:]):
+            seen = {}
+            for line in beating:
+                if np.allclose(line["Lateral"], lateral, atol=1e-6):
+                    seen.setdefault(line["ViewTime"], set()).add(line["picture"])
+            self.assertTrue(all(len(pictures) == 1 for pictures in seen.values()), seen)
+            self.assertEqual(len(set().union(*seen.values())), len(seen))
+            self.assertGreater(len(seen), 2)
+        turns = np.degrees(np.arccos(np.clip(np.array([line["Lateral"] for line in beating]) @ frame(before)[1][:, 0], -1, 1)))
+        self.assertEqual(sorted(set(turns.round())), [0, 5, 10, 15])
+        # Then it rests, in full, and one undo turns it back.
+        resting = [line for line in drawn[drawn.index(beating[-1]):] if line["Preview"] == 0]
+        self.assertEqual(resting[0]["ViewTime"], beating[-1]["ViewTime"])
+        self.assertEqual(resting[0]["Lateral"], beating[-1]["Lateral"])
+        self.assertEqual(undone, before)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,11 @@ def pause(milliseconds):
     return event(MAIN, "pause", milliseconds)
 
 
+def play_on(milliseconds):
+    """Lets ParaView work on: a pause alone keeps timers from firing, but not what is between two of them."""
+    return "\n".join([pause(50)] * (milliseconds // 50))
+
+
 def select(*rows):
     """A source in the pipeline browser, by its row among its siblings, from the outermost on."""
     path = "/".join(f"{row}:0" for row in rows)
