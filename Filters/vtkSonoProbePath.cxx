@@ -46,12 +46,12 @@ vtkSonoProbePath::~vtkSonoProbePath() = default;
 void vtkSonoProbePath::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "NumberOfPoses: " << this->GetNumberOfPoses() << endl;
+  os << indent << "NumberOfPoses: " << this->Count() << endl;
 }
 
 void vtkSonoProbePath::SetNumberOfPoses(int count)
 {
-  if (count >= 0 && count != this->GetNumberOfPoses())
+  if (count >= 0 && count != this->Count())
   {
     this->Numbers.resize(std::size_t(count) * perPose);
     this->Modified();
@@ -65,13 +65,13 @@ void vtkSonoProbePath::SetPose(int index, double timeS, double x, double y, doub
   {
     return;
   }
-  this->SetNumberOfPoses(std::max(index + 1, this->GetNumberOfPoses()));
+  this->SetNumberOfPoses(std::max(index + 1, this->Count()));
   const double pose[perPose] = { timeS, x, y, z, axialX, axialY, axialZ, lateralX, lateralY, lateralZ };
   std::copy(pose, pose + perPose, this->Numbers.begin() + std::ptrdiff_t(index) * perPose);
   this->Modified();
 }
 
-int vtkSonoProbePath::GetNumberOfPoses()
+int vtkSonoProbePath::Count() const
 {
   return int(this->Numbers.size()) / perPose;
 }
@@ -79,7 +79,7 @@ int vtkSonoProbePath::GetNumberOfPoses()
 int vtkSonoProbePath::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::runStage(this, output, [&] {
-    const int count = this->GetNumberOfPoses();
+    const int count = this->Count();
     if (count == 0)
     {
       throw sono::Error("The path has no poses; record one with Record of the panel Ultrasound Scanner.");

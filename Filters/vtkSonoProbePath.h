@@ -27,7 +27,6 @@ public:
   void SetNumberOfPoses(int count);
   void SetPose(int index, double timeS, double x, double y, double z, double axialX, double axialY, double axialZ,
                double lateralX, double lateralY, double lateralZ);
-  int GetNumberOfPoses();
   ///@}
 
 protected:
@@ -39,6 +38,8 @@ protected:
 private:
   vtkSonoProbePath(const vtkSonoProbePath&) = delete;
   void operator=(const vtkSonoProbePath&) = delete;
+
+  int Count() const;
 
   std::vector<double> Numbers; // ten a pose
 };

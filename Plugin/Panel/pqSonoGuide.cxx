@@ -93,7 +93,10 @@ pqSonoGuide::pqSonoGuide(vtkSMProxy* ultrasound, vtkSMProxy* widget, QObject* pa
   , Ultrasound(ultrasound)
   , Widget(widget)
 {
-  pqCoreUtilities::connect(widget, vtkCommand::PropertyModifiedEvent, this, SLOT(look()));
+  this->Soon.setSingleShot(true);
+  this->Soon.setInterval(0);
+  this->connect(&this->Soon, SIGNAL(timeout()), SLOT(look()));
+  pqCoreUtilities::connect(widget, vtkCommand::PropertyModifiedEvent, &this->Soon, SLOT(start()));
 }
 
 pqSonoGuide::~pqSonoGuide()

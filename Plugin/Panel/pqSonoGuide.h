@@ -6,6 +6,7 @@
 #include <QObject>
 #include <QPointer>
 #include <QString>
+#include <QTimer>
 
 #include <optional>
 
@@ -39,6 +40,7 @@ private:
   vtkSMProxy* Ultrasound;
   vtkSMProxy* Widget;
   std::optional<SonoWindow> Goal;
+  QTimer Soon; // once for all properties of a movement
 };
 
 #endif

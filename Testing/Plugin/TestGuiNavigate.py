@@ -38,8 +38,8 @@ for number in range(int(sys.argv[2])):
     made.ImageNumber = number
     made.UpdatePipeline()
     image = made.SMProxy.GetClientSideObject().GetOutputDataObject(0)
-    info = image.GetFieldData().GetAbstractArray("Info")
-    said.append({"info": json.loads(info.GetValue(0)) if info else {}, "size": image.GetDimensions()})
+    info = json.loads(image.GetFieldData().GetAbstractArray("Info").GetValue(0))
+    said.append(info["pose"]["axial"] + info["pose"]["lateral"])
 with open(sys.argv[3], "w", encoding="utf-8") as file:
     json.dump(said, file)
 """
@@ -159,7 +159,7 @@ class TestGuiNavigate(GuiCase):
         self.assertEqual(numbers(sweep, "PathsPerLine"), [512])
         self.assertEqual(len(declared["patients"][0]["views"]), len(recorded))
         self.assertEqual(declared["probe"]["lineCount"], 24)
-        self.assertEqual(len(images), len(recorded))
+        np.testing.assert_allclose(images, recorded[:, 4:], atol=1e-6)
 
     def test_a_heart_beats_while_its_probe_moves(self):
         turn = (click(f"{PROBE}/RotatePlus"), play_on(500))
