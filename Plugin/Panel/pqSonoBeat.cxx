@@ -27,6 +27,12 @@ constexpr double usualPerMin = 60.0;
 constexpr double shortestCycleS = 0.3;
 constexpr double longestCycleS = 2.0;
 
+/// None while its server is being left.
+pqTimeKeeper* timeKeeperOf(const pqPipelineSource* source)
+{
+  return source && source->getServer() ? source->getServer()->getTimeKeeper() : nullptr;
+}
+
 /// How many beats a minute equidistant phases of one cycle make.
 double rateOf(const QList<double>& times)
 {
@@ -70,21 +76,22 @@ pqSonoBeat::pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent
 void pqSonoBeat::follow(pqPipelineSource* source)
 {
   play_->setChecked(false);
-  if (source_)
+  if (pqTimeKeeper* before = timeKeeperOf(source_))
   {
-    source_->getServer()->getTimeKeeper()->disconnect(this);
+    before->disconnect(this);
   }
   source_ = source;
-  if (source_)
+  if (pqTimeKeeper* now = timeKeeperOf(source_))
   {
-    this->connect(source_->getServer()->getTimeKeeper(), SIGNAL(timeStepsChanged()), SLOT(showState()));
+    this->connect(now, SIGNAL(timeStepsChanged()), SLOT(showState()));
   }
   this->showState();
 }
 
 QList<double> pqSonoBeat::times() const
 {
-  return source_ ? source_->getServer()->getTimeKeeper()->getTimeSteps() : QList<double>();
+  const pqTimeKeeper* keeper = timeKeeperOf(source_);
+  return keeper ? keeper->getTimeSteps() : QList<double>();
 }
 
 void pqSonoBeat::showState()
@@ -147,7 +154,7 @@ void pqSonoBeat::step()
   phase_ = phase;
   {
     SCOPED_UNDO_EXCLUDE();
-    source_->getServer()->getTimeKeeper()->setTime(times[phase]);
+    timeKeeperOf(source_)->setTime(times[phase]);
   }
   widget_->showAgain();
 }

@@ -114,7 +114,11 @@ void pqSonoThumbnails::forget()
 /// All that differs between the pictures of an anatomy, but the display.
 QString pqSonoThumbnails::key(const SonoWindow& place) const
 {
-  QString key = QString("%1 %2").arg(QString::fromStdString(place.preset)).arg(place.depthMm);
+  vtkSMProxy* labels = vtkSMPropertyHelper(this->Ultrasound, "Input").GetAsProxy();
+  QString key = QString("%1 %2 %3")
+                  .arg(labels ? labels->GetGlobalID() : 0)
+                  .arg(QString::fromStdString(place.preset))
+                  .arg(place.depthMm);
   for (const double number : place.pose)
   {
     key += QString(" %1").arg(number, 0, 'g', 12);
