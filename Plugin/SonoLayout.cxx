@@ -144,19 +144,23 @@ void showOpaque(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
+/// Black, and looked at without turning it.
+void makeFlat(vtkSMViewProxy* view)
+{
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
+  const double black[3] = { 0.0, 0.0, 0.0 };
+  vtkSMPropertyHelper(view, "UseColorPaletteForBackground", true).Set(0);
+  vtkSMPropertyHelper(view, "Background", true).Set(black, 3);
+  vtkSMPropertyHelper(view, "OrientationAxesVisibility", true).Set(0);
+  vtkSMPropertyHelper(view, "InteractionMode", true).Set(1); // 2D
+  view->UpdateVTKObjects();
+}
+
 /// Grey on black, the transducer on top, with what a scanner draws and writes beside it.
 void fillFlatView(vtkSMViewProxy* view, vtkSMSourceProxy* ultrasound, Controller* controller)
 {
   drawOnServer(view);
-  {
-    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", view);
-    const double black[3] = { 0.0, 0.0, 0.0 };
-    vtkSMPropertyHelper(view, "UseColorPaletteForBackground", true).Set(0);
-    vtkSMPropertyHelper(view, "Background", true).Set(black, 3);
-    vtkSMPropertyHelper(view, "OrientationAxesVisibility", true).Set(0);
-    vtkSMPropertyHelper(view, "InteractionMode", true).Set(1); // 2D
-    view->UpdateVTKObjects();
-  }
+  makeFlat(view);
   showOpaque(showQuietly(ultrasound, vtkSonoUltrasound::FLAT_IMAGE, view, controller));
   for (const char* beside : { "SonoFlatScale", "SonoFlatText" })
   {
@@ -341,4 +345,33 @@ void sonoDrawEasily(vtkSMSessionProxyManager* manager)
       }
     }
   }
+}
+
+vtkSMViewProxy* sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside)
+{
+  vtkNew<Controller> controller;
+  vtkSMSourceProxy* line = sonoFindFilterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine");
+  const auto mode = sonoFilterOf(ultrasound, vtkSonoUltrasound::BMODE_LINES, "SonoMMode");
+  if (line)
+  {
+    vtkSMPropertyHelper(mode, "Line").Set(vtkSMPropertyHelper(line, "Line").GetAsInt());
+    mode->UpdateVTKObjects();
+  }
+  const auto view = makeView("RenderView", controller, ultrasound->GetSessionProxyManager());
+  vtkSMViewLayoutProxy* layout = vtkSMViewLayoutProxy::FindLayout(beside);
+  const int cells = layout->SplitVertical(layout->GetViewLocation(beside), 0.6);
+  layout->AssignView(cells + 1, view);
+  makeFlat(view);
+  showQuietly(mode, 0, view, controller);
+  if (vtkSMProxy* axes = vtkSMPropertyHelper(view, "AxesGrid", true).GetAsProxy())
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", axes);
+    vtkSMPropertyHelper(axes, "Visibility").Set(1);
+    vtkSMPropertyHelper(axes, "XTitle").Set("Time (10 ms)"); // as wide as a mm (SonoDisplayDefaults)
+    vtkSMPropertyHelper(axes, "YTitle").Set("Depth (mm)");
+    axes->UpdateVTKObjects();
+  }
+  setCamera(view, { 0.0, 0.0, -1.0 }, { 0.0, -1.0, 0.0 });
+  view->StillRender();
+  return laidOut(ultrasound, ultrasound->GetSessionProxyManager());
 }

@@ -20,3 +20,7 @@ vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* s
 /// Has the views of anatomies draw as the layout's do. A state file loses that: ParaView's settings for all views
 /// overwrite it there.
 void sonoDrawEasily(vtkSMSessionProxyManager* manager);
+
+/// The A-Line's line over time, of the phases of the label map, in a view below another one of the same layout. Makes
+/// an M-Mode, unless there is one; all phases are simulated for it. The view with the anatomy, if there is one.
+vtkSMViewProxy* sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside);

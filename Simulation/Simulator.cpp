@@ -9,6 +9,7 @@
 #include "Image/ErrorMap.h"
 #include "Image/GreyBytes.h"
 #include "Image/LabelSlice.h"
+#include "KeptMoving.h"
 #include "LastResults.h"
 #include "Trace/TraceSetup.h"
 #include "TraceByMode.h"
@@ -99,7 +100,6 @@ struct Simulator::Last
   LastResult<FieldFrom, std::shared_ptr<const ArrayField>> arrayField;
   LastResult<TraceFrom, TracedResult> traced;
   std::unique_ptr<BackgroundTrace> rounds; ///< of what was traced last; null: all of them are made
-  LastResult<MovingFrom, std::shared_ptr<const PointScatterers>> moving;
   LastResult<EchoJobFrom, std::shared_ptr<const EchoJob>> echoJob;
   LastResult<RfFrom, RfResult> rf;
   LastResult<BModeJobFrom, std::shared_ptr<const BModeJob>> bmodeJob;
@@ -121,6 +121,7 @@ struct Simulator::Last
 Simulator::Simulator(std::shared_ptr<const Scene> scene)
   : scene_(std::move(scene))
   , last_(std::make_unique<Last>())
+  , moving_(std::make_unique<KeptMoving>())
 {
 }
 
@@ -239,7 +240,7 @@ std::shared_ptr<const PointScatterers> Simulator::withMoving(const std::shared_p
     return points;
   }
   const MovingStatistics statistics = movingStatistics(*scene_, settings, model);
-  return last_->moving.get({ statistics, points }, [&] {
+  return moving_->get(scene_, { statistics, points }, [&] {
     std::vector<PointScatterer> all = movingScatterers(*scene_, statistics, progress);
     if (points)
     {

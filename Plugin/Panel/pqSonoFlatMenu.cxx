@@ -1,6 +1,7 @@
 #include "pqSonoFlatMenu.h"
 
 #include "SonoFlatView.h"
+#include "SonoLayout.h"
 #include "SonoOutputFilter.h"
 #include "SonoSplitScreen.h"
 #include "pqSonoCaliperFollow.h"
@@ -11,7 +12,9 @@
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqRenderView.h"
+#include "pqServer.h"
 #include "pqServerManagerModel.h"
+#include "pqTimeKeeper.h"
 #include "pqUndoStack.h"
 #include "vtkCamera.h"
 #include "vtkNew.h"
@@ -123,6 +126,11 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
   add("actionSonoSplit", tr("Split Screen"),
       tr("A second Simulate Ultrasound of the same probe, with settings of its own, beside the first"),
       [this] { split(); });
+  mMode_ =
+    add("actionSonoMMode", tr("M-Mode"),
+        tr("The scan line of the A-Line over time, below the flat view, of a label map with phases; all of them are "
+           "simulated for it"),
+        [this] { showMMode(); });
   QObject::connect(menu, &QMenu::aboutToShow, this, [this] { update(); });
 }
 
@@ -143,6 +151,8 @@ void pqSonoFlatMenu::update()
   {
     action->setEnabled(view != nullptr);
   }
+  pqPipelineSource* ultrasound = ultrasoundOf(view);
+  mMode_->setEnabled(ultrasound && ultrasound->getServer()->getTimeKeeper()->getTimeSteps().size() > 1);
   text_->setChecked(isShown(view, textKind));
   labels_->setChecked(isShown(view, labelsKind));
 }
@@ -239,6 +249,22 @@ void pqSonoFlatMenu::split()
     pqActiveObjects::instance().setActiveSource(split.second);
     // Where the probe can be seen and dragged.
     pqActiveObjects::instance().setActiveView(split.body);
+    pqApplicationCore::instance()->render();
+  }
+}
+
+void pqSonoFlatMenu::showMMode()
+{
+  pqRenderView* view = flatView();
+  if (pqPipelineSource* ultrasound = ultrasoundOf(view))
+  {
+    BEGIN_UNDO_SET(tr("M-Mode"));
+    vtkSMViewProxy* body = sonoShowMMode(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()), view->getViewProxy());
+    END_UNDO_SET();
+    pqActiveObjects::instance().setActiveSource(ultrasound);
+    // Where the probe can be seen and dragged.
+    auto* model = pqApplicationCore::instance()->getServerManagerModel();
+    pqActiveObjects::instance().setActiveView(body ? model->findItem<pqView*>(body) : view);
     pqApplicationCore::instance()->render();
   }
 }

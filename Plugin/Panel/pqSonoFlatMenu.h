@@ -24,9 +24,11 @@ private:
   void measure(int kind, const QString& step);
   void measureVentricle();
   void split();
+  void showMMode();
 
   QAction* text_;
   QAction* labels_;
+  QAction* mMode_;
 };
 
 #endif

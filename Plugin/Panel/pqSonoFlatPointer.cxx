@@ -1,5 +1,6 @@
 #include "pqSonoFlatPointer.h"
 
+#include "SonoCornerText.h"
 #include "SonoFlatView.h"
 
 #include "pqApplicationCore.h"
@@ -17,13 +18,10 @@
 #include "vtkSMSourceProxy.h"
 
 #include <QApplication>
-#include <QLabel>
 
 #include <functional>
 
 namespace {
-
-constexpr const char* labelName = "SonoUnderPointer";
 
 /// Of an interactor.
 class PointerMoved : public vtkCommand
@@ -35,25 +33,9 @@ public:
   std::function<void(unsigned long)> happened;
 };
 
-/// In the lower left corner, where a fan is narrower than its view; made when there is first something to say.
 void say(const QString& sentence, QWidget* widget)
 {
-  auto* label = widget->findChild<QLabel*>(labelName);
-  if (!label && sentence.isEmpty())
-  {
-    return;
-  }
-  if (!label)
-  {
-    label = new QLabel(widget);
-    label->setObjectName(labelName);
-    label->setAttribute(Qt::WA_TransparentForMouseEvents);
-    label->setStyleSheet("QLabel { color: #e6e6e6; background: rgba(0, 0, 0, 160); padding: 2px; }");
-  }
-  label->setText(sentence);
-  label->setVisible(!sentence.isEmpty());
-  label->adjustSize();
-  label->move(0, widget->height() - label->height());
+  sonoSayInCorner("SonoUnderPointer", Qt::BottomLeftCorner, sentence, "#e6e6e6", widget);
 }
 
 } // namespace

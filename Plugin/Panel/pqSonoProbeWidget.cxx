@@ -3,18 +3,14 @@
 #include "SonoFlatView.h"
 #include "SonoFreeze.h"
 #include "SonoMovingViews.h"
-#include "SonoProbeGroup.h"
 #include "SonoTell.h"
 #include "SonoWaiting.h"
 #include "SonoWindows.h"
-#include "pqSonoLiveSettings.h"
-#include "pqSonoWindowFinder.h"
 #include "vtkSonoProbeRepresentation.h"
 #include "vtkSonoSkin.h"
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
-#include "pqDoubleLineEdit.h"
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
@@ -22,6 +18,7 @@
 #include "pqView.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
+#include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
@@ -31,172 +28,22 @@
 #include "vtkSMUncheckedPropertyHelper.h"
 
 #include <QCheckBox>
-#include <QCoreApplication>
-#include <QDoubleSpinBox>
-#include <QGridLayout>
 #include <QGuiApplication>
 #include <QLabel>
-#include <QPushButton>
-#include <QToolButton>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
-namespace {
-
-constexpr int restMs = 150; // more than keys that are held take to repeat
-constexpr int idleMs = 500; // more than settings take to come to rest
-const char* const poseFunctions[] = { "PositionMm", "Axial", "Lateral", "DepthMm" };
+const std::array<const char*, 4> pqSonoProbeWidget::PoseFunctions{ "PositionMm", "Axial", "Lateral", "DepthMm" };
 
 /// Which has an anatomy.
-bool isUltrasound(vtkSMProxy* proxy)
+bool pqSonoProbeWidget::isUltrasound() const
 {
-  return proxy->GetXMLName() == std::string("SonoUltrasound");
-}
-} // namespace
-
-pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
-  : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, sonoLayout(smproxy, group), parentObject)
-  , Refining(smproxy)
-{
-  // Somebody may drag this probe. It is no change of an image and waits for no Apply.
-  vtkSMPropertyHelper(smproxy, "PrepareInteraction", true).Set(1);
-  auto* grid = new QGridLayout(this);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setSpacing(4);
-  for (const char* function : poseFunctions)
-  {
-    this->addRow(grid, function);
-  }
-  const int row = grid->rowCount();
-  this->Step = new QDoubleSpinBox(this);
-  this->Step->setObjectName("Step");
-  this->Step->setRange(0.1, 90.0);
-  this->Step->setDecimals(1);
-  this->Step->setValue(5.0);
-  this->Step->setSuffix(" degrees");
-  this->Step->setToolTip(tr("How far one click on a button below turns the probe, 0.1 to 90 degrees."));
-  grid->addWidget(new QLabel(tr("Turn by"), this), row, 0);
-  grid->addWidget(this->Step, row, 1, 1, 3);
-  this->addTurn(grid, row + 1, tr("Rotate"),
-                tr("About the probe's axis. In the view: drag the yellow ring, or Ctrl + left, right."),
-                &vtkSonoProbeRepresentation::Rotate);
-  this->addTurn(grid, row + 2, tr("Tilt"),
-                tr("Out of the image plane. In the view: drag the green ball, or Shift + up, down."),
-                &vtkSonoProbeRepresentation::Tilt);
-  this->addTurn(grid, row + 3, tr("Rock"),
-                tr("In the image plane. In the view: drag the blue ball, or Shift + left, right."),
-                &vtkSonoProbeRepresentation::Rock);
-
-  auto* snapButton = new QPushButton(tr("Snap to Skin"), this);
-  snapButton->setObjectName("SnapToSkin");
-  snapButton->setToolTip(tr("Puts the face on the outermost surface along the probe's axis and looks straight in."));
-  this->connect(snapButton, SIGNAL(clicked()), SLOT(snap()));
-  auto* resetButton = new QPushButton(tr("Reset"), this);
-  resetButton->setObjectName("ResetPose");
-  resetButton->setToolTip(isUltrasound(smproxy)
-                            ? tr("The pose that was found first for this body, as that of a new Simulate Ultrasound.")
-                            : tr("The default pose: the apical four-chamber view of the Thorax Phantom."));
-  this->connect(resetButton, SIGNAL(clicked()), SLOT(resetPose()));
-  grid->addWidget(snapButton, row + 4, 0, 1, 2);
-  grid->addWidget(resetButton, row + 4, 2, 1, 2);
-
-  auto* show = new QCheckBox(tr("Show Probe"), this);
-  show->setObjectName("ShowProbe");
-  show->setChecked(true);
-  show->setToolTip(tr(
-    "Shows the transducer in the view. Drag it along the skin; its balls and its ring turn it; the violet ball at the "
-    "far end of the fan sets the depth. While the pointer is over it, the arrow keys walk by 1 mm, with Shift they "
-    "rock and tilt, with Ctrl they rotate and change the depth."));
-  this->Live = new QCheckBox(tr("Live"), this);
-  this->Live->setObjectName("Live");
-  this->Live->setChecked(true);
-  this->Live->setToolTip(tr("Scans while the probe moves, in full when it rests; shows the display's settings, as the "
-                            "gain, with each step; and scans when depth, sector, frequency, focus, lines or a preset "
-                            "were changed. Off: as it stands on Apply."));
-  new pqSonoLiveSettings(
-    smproxy, [this] { return this->isLive(); }, [this] { return this->mayScan() && !this->Moving; },
-    [this] { this->Refining.begin(); }, this);
-  grid->addWidget(show, row + 5, 0, 1, 2);
-  grid->addWidget(this->Live, row + 5, 2, 1, 2);
-  if (isUltrasound(smproxy))
-  {
-    auto* finder = new pqSonoWindowFinder(smproxy, this);
-    grid->addWidget(finder, row + 6, 0, 1, 4);
-    this->connect(finder, &pqSonoWindowFinder::chosen, this, &pqSonoProbeWidget::stand);
-    this->connect(finder, &pqSonoWindowFinder::said, this, [this](const QString& said) { this->showMessage(said); });
-  }
-  this->Message = new QLabel(this);
-  this->Message->setObjectName("Message");
-  this->Message->setWordWrap(true);
-  this->Message->hide();
-  grid->addWidget(this->Message, row + 7, 0, 1, 4);
-
-  this->connect(show, SIGNAL(toggled(bool)), SLOT(setWidgetVisible(bool)));
-  show->connect(this, SIGNAL(widgetVisibilityToggled(bool)), SLOT(setChecked(bool)));
-  this->setWidgetVisible(show->isChecked());
-
-  this->Frame.setSingleShot(true);
-  this->Frame.setInterval(0);
-  this->connect(&this->Frame, SIGNAL(timeout()), SLOT(showMoving()));
-  this->Rest.setSingleShot(true);
-  this->Rest.setInterval(restMs);
-  this->connect(&this->Rest, SIGNAL(timeout()), SLOT(rest()));
-  this->Prepare.setSingleShot(true);
-  this->Prepare.setInterval(idleMs);
-  this->connect(&this->Prepare, SIGNAL(timeout()), SLOT(prepare()));
-  this->connect(this, SIGNAL(startInteraction()), SLOT(start()));
-  this->connect(this, SIGNAL(interaction()), SLOT(move()));
-  this->connect(this, &pqInteractivePropertyWidget::endInteraction, this, [this] { this->finish(); });
-  this->connect(pqApplicationCore::instance()->getServerManagerModel(), &pqServerManagerModel::preSourceRemoved, this,
-                [this](pqPipelineSource* source) { this->Surfaces.forget(source->getProxy()); });
+  return this->proxy()->GetXMLName() == std::string("SonoUltrasound");
 }
 
 pqSonoProbeWidget::~pqSonoProbeWidget() = default;
-
-void pqSonoProbeWidget::addRow(QGridLayout* grid, const char* function)
-{
-  vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function);
-  if (!smproperty)
-  {
-    return;
-  }
-  const int row = grid->rowCount();
-  auto* label = new QLabel(QCoreApplication::translate("ServerManagerXML", smproperty->GetXMLLabel()), this);
-  grid->addWidget(label, row, 0);
-  const int count = static_cast<int>(vtkSMPropertyHelper(smproperty).GetNumberOfElements());
-  for (int i = 0; i < count; ++i)
-  {
-    auto* edit = new pqDoubleLineEdit(this);
-    edit->setObjectName(count > 1 ? QString("%1_%2").arg(function).arg(i) : function);
-    edit->setToolTip(pqPropertyWidget::getTooltip(smproperty));
-    label->setToolTip(edit->toolTip());
-    this->addPropertyLink(edit, "text2", SIGNAL(textChangedAndEditingFinished()), smproperty, i);
-    this->connect(edit, &pqDoubleLineEdit::textChangedAndEditingFinished, this, [this] { this->showMessage(""); });
-    grid->addWidget(edit, row, i + 1, 1, count > 1 ? 1 : 3);
-  }
-}
-
-void pqSonoProbeWidget::addTurn(QGridLayout* grid, int row, const QString& name, const QString& toolTip,
-                                void (vtkSonoProbeRepresentation::*turn)(double))
-{
-  grid->addWidget(new QLabel(name, this), row, 0);
-  for (const int sign : { -1, 1 })
-  {
-    auto* button = new QToolButton(this);
-    button->setObjectName(name + (sign < 0 ? "Minus" : "Plus"));
-    button->setText(sign < 0 ? QString(QChar(0x2212)) : "+");
-    button->setToolTip(toolTip);
-    button->setAutoRepeat(true);
-    button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    grid->addWidget(button, row, sign < 0 ? 1 : 2);
-    this->connect(button, &QToolButton::clicked, this, [this, sign, turn] {
-      this->start();
-      (this->probe()->*turn)(sign * this->Step->value());
-      this->takePose();
-    });
-  }
-}
 
 vtkSonoProbeRepresentation* pqSonoProbeWidget::probe() const
 {
@@ -230,6 +77,35 @@ void pqSonoProbeWidget::goTo(const SonoWindow& place)
   this->stand(place);
 }
 
+void pqSonoProbeWidget::hold(bool held)
+{
+  this->Held = held;
+  if (this->Moving)
+  {
+    this->Rest.start();
+  }
+}
+
+SonoWindow pqSonoProbeWidget::place() const
+{
+  SonoWindow at;
+  auto number = at.pose.begin();
+  for (const char* function : { "PositionMm", "Axial", "Lateral" })
+  {
+    const std::vector<double> part = vtkSMPropertyHelper(this->widgetProxy(), function).GetDoubleArray();
+    number = std::copy(part.begin(), part.end(), number);
+  }
+  return at;
+}
+
+void pqSonoProbeWidget::showAgain()
+{
+  this->Asked = true;
+  this->IsOtherMoment = true;
+  this->start();
+  this->showMoving();
+}
+
 void pqSonoProbeWidget::start()
 {
   this->Refining.pause();
@@ -239,7 +115,7 @@ void pqSonoProbeWidget::start()
     auto* source = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(this->proxy());
     this->WasApplied = source && source->modifiedState() == pqProxy::UNMODIFIED;
     this->PoseBefore.clear();
-    for (const char* function : poseFunctions)
+    for (const char* function : PoseFunctions)
     {
       if (vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function))
       {
@@ -259,6 +135,7 @@ void pqSonoProbeWidget::start()
 void pqSonoProbeWidget::move()
 {
   this->showMessage();
+  Q_EMIT this->moved();
   if (this->mayScan() && !this->Frame.isActive())
   {
     this->Frame.start();
@@ -299,7 +176,7 @@ void pqSonoProbeWidget::snap()
 
 void pqSonoProbeWidget::resetPose()
 {
-  if (isUltrasound(this->proxy()))
+  if (this->isUltrasound())
   {
     const SonoWindows found = sonoFindWindows(vtkSMSourceProxy::SafeDownCast(this->proxy()), SonoWindowsOf::Input, "");
     if (!found.windows.empty())
@@ -310,7 +187,7 @@ void pqSonoProbeWidget::resetPose()
     return;
   }
   this->start();
-  for (const char* function : poseFunctions)
+  for (const char* function : PoseFunctions)
   {
     vtkSMProperty* smproperty = this->propertyGroup()->GetProperty(function);
     vtkSMProperty* ofWidget = this->widgetProxy()->GetProperty(function);
@@ -412,7 +289,7 @@ void pqSonoProbeWidget::rest()
     return;
   }
   const bool isScrubbed = this->Asked && QGuiApplication::mouseButtons() != Qt::NoButton; // a slider is held
-  if (isScrubbed || this->proxy()->GetSession()->GetPendingProgress())
+  if (isScrubbed || this->Held || this->proxy()->GetSession()->GetPendingProgress())
   {
     this->Rest.start();
     return;
@@ -429,9 +306,10 @@ void pqSonoProbeWidget::rest()
   const auto after = this->pose();
   this->Refining.begin();
   std::unique_ptr<SonoKeptAnatomy> anatomy;
-  if (sonoAnyWaits(this->proxy()))
+  const bool isOtherMoment = std::exchange(this->IsOtherMoment, false);
+  if (sonoAnyWaits(this->proxy()) || isOtherMoment)
   {
-    shown.reset(); // what is applied with the pose may change the anatomy
+    shown.reset(); // what is applied with the pose may change the anatomy, and so has time
   }
   else if (shown)
   {
@@ -459,6 +337,10 @@ void pqSonoProbeWidget::rest()
     this->widgetProxy()->UpdateVTKObjects();
     Q_EMIT this->changeAvailable();
     panel->apply();
+    if (isOtherMoment)
+    {
+      pqApplicationCore::instance()->render(); // even where nothing was left to apply
+    }
     return;
   }
   {
@@ -494,7 +376,7 @@ void pqSonoProbeWidget::prepare()
   {
     return;
   }
-  if (isUltrasound(this->proxy()))
+  if (this->isUltrasound())
   {
     sonoTell(this->proxy(), "PrepareMoving");
   }

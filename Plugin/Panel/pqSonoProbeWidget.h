@@ -3,12 +3,14 @@
 
 #include "SonoRefining.h"
 #include "SonoShownSurfaces.h"
+#include "SonoWindows.h"
 
 #include "pqInteractivePropertyWidget.h"
 
 #include <QPair>
 #include <QTimer>
 
+#include <array>
 #include <memory>
 
 class QCheckBox;
@@ -16,7 +18,6 @@ class QDoubleSpinBox;
 class QGridLayout;
 class QLabel;
 class SonoMovingViews;
-struct SonoWindow;
 class vtkSMPropertyGroup;
 class vtkSonoProbeRepresentation;
 
@@ -53,6 +54,18 @@ public:
   void goTo(const SonoWindow& place);
   ///@}
 
+  /// Where it stands by now, before anything is scanned; without its depth and what is seen.
+  SonoWindow place() const;
+  /// While something else moves it, or its anatomy, it does not rest, and its pictures stay those of a moving probe.
+  void hold(bool held);
+  /// Whether it scans without Apply.
+  bool isLive() const;
+  /// A picture on the way of where it stands, while it is held: of another moment.
+  void showAgain();
+
+Q_SIGNALS:
+  void moved();
+
 protected Q_SLOTS:
   void placeWidget() override {}
 
@@ -77,12 +90,14 @@ private:
   void takePose();
   void findSkin();
   vtkSonoProbeRepresentation* probe() const;
-  bool isLive() const;
+  bool isUltrasound() const;
   bool mayScan() const;
   QList<QPair<QString, QVector<double>>> pose() const;
   void push(const QList<QPair<QString, QVector<double>>>& pose, bool preview);
   void showMessage();
   void showMessage(const QString& message);
+
+  static const std::array<const char*, 4> PoseFunctions;
 
   QDoubleSpinBox* Step;
   QCheckBox* Live;
@@ -92,6 +107,8 @@ private:
   QTimer Prepare; // fires when the view has not been drawn for a moment
   bool Moving = false;
   bool Asked = false; // by turn or goTo, until it rests
+  bool Held = false;
+  bool IsOtherMoment = false; // than when the anatomy was drawn
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests

@@ -3,7 +3,9 @@
 #include "SonoFreeze.h"
 #include "SonoScannerSettings.h"
 #include "SonoStore.h"
+#include "pqSonoBeat.h"
 #include "pqSonoCine.h"
+#include "pqSonoPath.h"
 #include "pqSonoProbeWidget.h"
 
 #include "pqActiveObjects.h"
@@ -65,6 +67,8 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
   , controls_(new QWidget)
   , rows_(new QVBoxLayout(controls_))
   , cine_(new pqSonoCine)
+  , path_(new pqSonoPath([this] { return probeWidget(); }))
+  , beat_(new pqSonoBeat([this] { return probeWidget(); }))
 {
   freezeAct_ = this->addAct("Freeze", tr("Freeze"), Qt::Key_F6,
                             tr("The picture stays while the probe moves and scan settings change; gain and grey still "
@@ -113,6 +117,10 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
   }
   rows_->addLayout(buttons);
   rows_->addWidget(cine_);
+  rows_->addWidget(path_);
+  rows_->addWidget(beat_);
+  QObject::connect(beat_, &pqSonoBeat::said, this, [this](const QString& sentence) { say(sentence); });
+  QObject::connect(path_, &pqSonoPath::said, this, [this](const QString& sentence) { say(sentence); });
   QObject::connect(cine_, &pqSonoCine::scrubbed, this, [this](const SonoWindow& at) {
     if (pqSonoProbeWidget* widget = probeWidget())
     {
@@ -207,6 +215,8 @@ void pqSonoScannerDock::fill()
   firstAxial_.clear();
   firstLateral_.clear();
   cine_->follow(source_);
+  path_->follow(source_);
+  beat_->follow(source_);
   if (source_)
   {
     settings_ = new SonoScannerSettings(

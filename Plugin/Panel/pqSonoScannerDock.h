@@ -12,7 +12,9 @@ class QLabel;
 class QScrollArea;
 class QVBoxLayout;
 class pqPipelineSource;
+class pqSonoBeat;
 class pqSonoCine;
+class pqSonoPath;
 class pqSonoProbeWidget;
 
 /// The scanner's panel: the properties of the Simulate Ultrasound that was selected last that a sonographer knows, in
@@ -55,6 +57,8 @@ private:
   QVBoxLayout* rows_;
   QPointer<QWidget> settings_; // of the source
   pqSonoCine* cine_;
+  pqSonoPath* path_;
+  pqSonoBeat* beat_;
   QString folder_;                 // where pictures are stored
   std::vector<double> firstAxial_; // before the other plane was asked for
   std::vector<double> firstLateral_;

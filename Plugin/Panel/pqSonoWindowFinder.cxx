@@ -1,19 +1,25 @@
 #include "pqSonoWindowFinder.h"
 
 #include "SonoComboBox.h"
+#include "pqSonoGuide.h"
+#include "pqSonoThumbnails.h"
 
 #include "vtkSMSourceProxy.h"
 
+#include <QCheckBox>
 #include <QGridLayout>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QStandardItemModel>
 
-pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, QWidget* parentObject)
+pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widget, QWidget* parentObject)
   : QWidget(parentObject)
   , Ultrasound(ultrasound)
   , Target(new SonoComboBox(this))
   , Candidate(new SonoComboBox(this))
+  , IsGuided(new QCheckBox(tr("Guide Me There"), this))
+  , Guide(new pqSonoGuide(ultrasound, widget, this))
+  , Pictures(new pqSonoThumbnails(ultrasound, this))
 {
   this->setObjectName("SonoWindow");
   auto* grid = new QGridLayout(this);
@@ -36,10 +42,18 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, QWidget* parentOb
                         "and takes the probe and the depth for it. Where the label map is cut is no skin."));
   this->Candidate->setObjectName("WindowCandidate");
   this->Candidate->setToolTip(
-    tr("The best places, at most five, or the standard views, and what the probe sees from each."));
+    tr("The best places, at most five, or the standard views, and what the probe sees from each. Small pictures, of "
+       "few lines and paths, come one by one while nothing else is done."));
   this->Candidate->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  this->Candidate->setMinimumContentsLength(20);
+  this->Candidate->setMinimumContentsLength(12);
+  this->Candidate->setIconSize(pqSonoThumbnails::size);
   this->Candidate->hide();
+  QObject::connect(this->Pictures, &pqSonoThumbnails::made, this, [this](int place, const QPixmap& picture) {
+    if (place < int(this->Windows.size()))
+    {
+      this->Candidate->setItemIcon(place, QIcon(picture));
+    }
+  });
   grid->addWidget(this->Target, 0, 0);
   auto* views = new QPushButton(tr("Standard Views"), this);
   views->setObjectName("StandardViews");
@@ -50,6 +64,15 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, QWidget* parentOb
   grid->addWidget(button, 0, 1);
   grid->addWidget(views, 1, 0, 1, 2);
   grid->addWidget(this->Candidate, 2, 0, 1, 2);
+  this->IsGuided->setObjectName("Guide");
+  this->IsGuided->setToolTip(
+    tr("The probe stays where it is; the views say how far the chosen place is and which way to slide (mm), rotate, "
+       "tilt and rock it (degrees), seen from its cable, until it is reached within 5 mm and 5 degrees. Arrows: "
+       "left and right in the picture; up and down together, across it. Off: a choice puts the probe there."));
+  this->IsGuided->hide();
+  grid->addWidget(this->IsGuided, 3, 0, 1, 2);
+  QObject::connect(this->IsGuided, &QCheckBox::toggled, this,
+                   [this](bool wanted) { wanted ? choose(this->Candidate->currentIndex()) : this->Guide->stop(); });
   QObject::connect(button, &QPushButton::clicked, this, [this] { find(); });
   QObject::connect(views, &QPushButton::clicked, this, [this] { findViews(); });
   QObject::connect(this->Candidate, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
@@ -100,6 +123,9 @@ void pqSonoWindowFinder::offer(SonoWindows found, bool areRanked)
   }
   this->Candidate->setCurrentIndex(areRanked ? 0 : -1); // the first is the best; of views a person chooses
   this->Candidate->setVisible(this->Candidate->count() > 0);
+  this->IsGuided->setVisible(!this->Windows.empty());
+  this->Pictures->begin(this->Windows);
+  this->Guide->stop(); // until a place of these is chosen
   if (this->Windows.empty())
   {
     Q_EMIT said(QString::fromStdString(found.refusal));
@@ -111,7 +137,7 @@ void pqSonoWindowFinder::choose(int candidate)
   if (candidate >= 0 && candidate < int(this->Windows.size()))
   {
     const SonoWindow& window = this->Windows[std::size_t(candidate)];
-    Q_EMIT chosen(window);
+    this->IsGuided->isChecked() ? this->Guide->guideTo(window) : Q_EMIT chosen(window);
     Q_EMIT said(QString::fromStdString(window.sentence));
   }
 }

@@ -7,7 +7,10 @@
 
 #include <vector>
 
+class QCheckBox;
 class QComboBox;
+class pqSonoGuide;
+class pqSonoThumbnails;
 class vtkSMProxy;
 
 /// The part of a probe's panel that looks for places on the skin: from which an organ is seen (a name, a button), or of
@@ -17,10 +20,11 @@ class pqSonoWindowFinder : public QWidget
   Q_OBJECT
 
 public:
-  /// Of a Simulate Ultrasound.
-  pqSonoWindowFinder(vtkSMProxy* ultrasound, QWidget* parent = nullptr);
+  /// Of a Simulate Ultrasound, whose probe the widget's proxy moves.
+  pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widget, QWidget* parent = nullptr);
 
 Q_SIGNALS:
+  /// To go there.
   void chosen(const SonoWindow& window);
   /// What a person should know, one sentence.
   void said(const QString& sentence);
@@ -36,6 +40,9 @@ private:
   vtkSMProxy* Ultrasound;
   QComboBox* Target;
   QComboBox* Candidate;
+  QCheckBox* IsGuided; // instead of going there
+  pqSonoGuide* Guide;
+  pqSonoThumbnails* Pictures;
   std::vector<SonoWindow> Windows;
 };
 

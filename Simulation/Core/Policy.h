@@ -77,4 +77,8 @@ constexpr double groupShareOfDeviceMemory = 0.25;
 constexpr std::size_t keptDeviceBytes = std::size_t(1) << 30;
 constexpr std::size_t keptPinnedBytes = std::size_t(256) << 20;
 
+/// Scatterers of moving tissue that a simulator keeps of the phases that were shown last: of a heart those of 30 phases
+/// of a moving probe's pictures, or of 6 of full ones.
+constexpr std::size_t keptMovingBytes = std::size_t(256) << 20;
+
 } // namespace sono

@@ -1,6 +1,7 @@
 #include "Echo/MovingScatterers.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Policy.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/BeamModel.h"
 #include "Echo/EchoSetup.h"
@@ -154,6 +155,10 @@ MovingStatistics movingStatistics(const Scene& scene, const EchoSettings& settin
   const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
   const NestedScatterers still(scene, settings.centreFrequencyMHz, wavelengthMm / beams.focusAreaMm2(), settings.seed);
   statistics.cellMm = std::clamp(0.65 * wavelengthMm, 0.15, 0.5);
+  if (settings.interactive) // as many fewer as of standing tissue; each is stronger
+  {
+    statistics.cellMm *= std::cbrt(1.0 / interactiveCandidates(1.0));
+  }
   statistics.signs = true;
   const double perCell = std::sqrt(statistics.cellMm * statistics.cellMm * statistics.cellMm);
   for (std::size_t t = 0; t < still.media().size(); ++t)

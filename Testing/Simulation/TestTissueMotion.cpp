@@ -205,6 +205,49 @@ TEST(TissueMotion, EchoesAsStrongAsTissueThatStandsStill)
   }
 }
 
+TEST(TissueMotion, AMovingProbesScatterersAreFewerAndAsStrongTogether)
+{
+  const std::function<Vec3d(const Vec3d&)> none = [](const Vec3d&) { return Vec3d(0.0); };
+  const auto scene = block(everywhere, &none);
+  const auto countAndPower = [&](bool interactive) {
+    EchoSettings s = settings();
+    s.interactive = interactive;
+    double power = 0.0;
+    const std::vector<PointScatterer> points =
+      movingScatterers(*scene, movingStatistics(*scene, s, InterfaceModel::Acoustic));
+    for (const PointScatterer& p : points)
+    {
+      power += double(p.amplitude) * double(p.amplitude);
+    }
+    return std::pair(double(points.size()), power);
+  };
+  const auto [all, power] = countAndPower(false);
+  const auto [few, powerOfFew] = countAndPower(true);
+  EXPECT_NEAR(all / few, 5.0, 0.1);
+  EXPECT_NEAR(10.0 * std::log10(powerOfFew / power), 0.0, 0.1);
+}
+
+TEST(TissueMotion, APhaseThatComesBackHasItsScatterersAsBefore)
+{
+  const std::function<Vec3d(const Vec3d&)> none = [](const Vec3d&) { return Vec3d(0.0); };
+  const std::function<Vec3d(const Vec3d&)> shift = [](const Vec3d&) { return Vec3d(1.3, 0.0, 0.4); };
+  const auto rest = block(everywhere, &none);
+  const auto moved = block(everywhere, &shift);
+  const auto samplesOf = [](Simulator& simulator) {
+    return RfLines(simulator.formRf(fan(), {}, settings()).host()).rf();
+  };
+  Simulator simulator(rest);
+  const std::vector<float> first = samplesOf(simulator);
+  simulator.setScene(moved);
+  const std::vector<float> second = samplesOf(simulator);
+  simulator.setScene(rest);
+  EXPECT_EQ(samplesOf(simulator), first);
+  EXPECT_NE(second, first);
+  Simulator fresh(moved);
+  simulator.setScene(moved);
+  EXPECT_EQ(samplesOf(simulator), samplesOf(fresh));
+}
+
 TEST(TissueMotion, OnlyMovingLabelsRide)
 {
   const std::function<Vec3d(const Vec3d&)> none = [](const Vec3d&) { return Vec3d(0.0); };

@@ -2,6 +2,7 @@
 drawn, a line of scanner.jsonl says what the filter's properties were and what the picture is."""
 import hashlib
 import json
+import time
 
 import numpy
 from paraview.simple import *
@@ -46,12 +47,12 @@ def note(*_):
     picture = vtk_to_numpy(grey).reshape(slices, rows, columns)
     mask = vtk_to_numpy(image.GetPointData().GetArray("Mask")).reshape(slices, rows, columns) > 0
     line = {name: value(name) for name in NUMBERS}
-    line.update({"mean": mean_of(picture, mask), "bounds": list(image.GetBounds()),
+    line.update({"ViewTime": view.ViewTime, "mean": mean_of(picture, mask), "bounds": list(image.GetBounds()),
                  "blocks": [[mean_of(cell, inside) for cell, inside in zip(*cut(picture, mask, 2))]
                             for picture, mask in zip(*cut(picture, mask, 1))],
                  "picture": hashlib.md5(picture.tobytes()).hexdigest()})
     if line not in last:
-        log.write(json.dumps(line) + "\n")
+        log.write(json.dumps({**line, "clock": time.monotonic()}) + "\n")
         last[:] = [line]
 
 

@@ -1,0 +1,160 @@
+#include "pqSonoBeat.h"
+
+#include "pqSonoProbeWidget.h"
+
+#include "pqPipelineSource.h"
+#include "pqServer.h"
+#include "pqTimeKeeper.h"
+#include "pqUndoStack.h"
+#include "vtkNew.h"
+#include "vtkSMParaViewPipelineController.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSession.h"
+
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+
+#include <cmath>
+#include <utility>
+
+namespace {
+
+constexpr int lookForPhaseMs = 15;
+constexpr double usualPerMin = 60.0;
+// Times of a heart that are in seconds; those of files are mere numbers.
+constexpr double shortestCycleS = 0.3;
+constexpr double longestCycleS = 2.0;
+
+/// None while its server is being left.
+pqTimeKeeper* timeKeeperOf(const pqPipelineSource* source)
+{
+  return source && source->getServer() ? source->getServer()->getTimeKeeper() : nullptr;
+}
+
+/// How many beats a minute equidistant phases of one cycle make.
+double rateOf(const QList<double>& times)
+{
+  const double cycleS = (times.last() - times.first()) * times.size() / (times.size() - 1);
+  return cycleS >= shortestCycleS && cycleS <= longestCycleS ? 60.0 / cycleS : usualPerMin;
+}
+
+} // namespace
+
+pqSonoBeat::pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent)
+  : QWidget(parent)
+  , find_(std::move(find))
+  , play_(new QPushButton(tr("Beat")))
+  , rate_(new QDoubleSpinBox)
+{
+  this->setObjectName("SonoBeat");
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(0, 0, 0, 0);
+  play_->setObjectName("Beat");
+  play_->setCheckable(true);
+  play_->setToolTip(
+    tr("Plays the phases of the label map at the heart's rate, again and again, in pictures as of a moving "
+       "probe; it may be dragged meanwhile. The first beat makes the anatomy of each phase, which "
+       "takes a while. Again: stops at the phase that is shown, in full."));
+  rate_->setObjectName("HeartRate");
+  rate_->setRange(20.0, 300.0);
+  rate_->setDecimals(0);
+  rate_->setValue(usualPerMin);
+  rate_->setSuffix(tr(" / min"));
+  rate_->setToolTip(
+    tr("Heart rate in beats a minute, 20 to 300: all phases together are one beat. At first what the times "
+       "of the phases say, or 60 where they are no seconds, as those of files."));
+  row->addWidget(play_);
+  row->addWidget(new QLabel(tr("Rate")));
+  row->addWidget(rate_);
+  QObject::connect(play_, &QPushButton::toggled, this, [this](bool wanted) { play(wanted); });
+  steps_.setInterval(lookForPhaseMs);
+  this->connect(&steps_, SIGNAL(timeout()), SLOT(step()));
+}
+
+void pqSonoBeat::follow(pqPipelineSource* source)
+{
+  play_->setChecked(false);
+  if (pqTimeKeeper* before = timeKeeperOf(source_))
+  {
+    before->disconnect(this);
+  }
+  source_ = source;
+  if (pqTimeKeeper* now = timeKeeperOf(source_))
+  {
+    this->connect(now, SIGNAL(timeStepsChanged()), SLOT(showState()));
+  }
+  this->showState();
+}
+
+QList<double> pqSonoBeat::times() const
+{
+  const pqTimeKeeper* keeper = timeKeeperOf(source_);
+  return keeper ? keeper->getTimeSteps() : QList<double>();
+}
+
+void pqSonoBeat::showState()
+{
+  const QList<double> times = this->times();
+  const bool isMoving = times.size() > 1;
+  this->setEnabled(isMoving);
+  if (isMoving)
+  {
+    rate_->setValue(rateOf(times));
+  }
+}
+
+void pqSonoBeat::play(bool wanted)
+{
+  if (wanted && (widget_ = find_()) && widget_->isLive())
+  {
+    phase_ = -1;
+    clock_.start();
+    widget_->hold(true);
+    steps_.start();
+    return;
+  }
+  const bool wasPlaying = steps_.isActive();
+  steps_.stop();
+  if (wasPlaying && widget_)
+  {
+    SCOPED_UNDO_EXCLUDE();
+    // What ParaView shows as its time.
+    vtkNew<vtkSMParaViewPipelineController> controller;
+    vtkSMProxy* scene = controller->FindAnimationScene(widget_->proxy()->GetSession());
+    vtkSMPropertyHelper(scene, "AnimationTime").Set(this->times().value(phase_));
+    scene->UpdateVTKObjects();
+  }
+  if (widget_)
+  {
+    widget_->hold(false);
+  }
+  if (wanted && !wasPlaying)
+  {
+    Q_EMIT this->said(tr("Tick Live in the properties of Simulate Ultrasound, so that it scans without Apply."));
+    play_->setChecked(false);
+  }
+}
+
+void pqSonoBeat::step()
+{
+  const QList<double> times = this->times();
+  if (!widget_ || !source_ || times.size() < 2)
+  {
+    play_->setChecked(false);
+    return;
+  }
+  const double beats = 1e-3 * static_cast<double>(clock_.elapsed()) * rate_->value() / 60.0;
+  const int phase = static_cast<int>((beats - std::floor(beats)) * times.size());
+  if (phase == phase_ || widget_->proxy()->GetSession()->GetPendingProgress())
+  {
+    return;
+  }
+  phase_ = phase;
+  {
+    SCOPED_UNDO_EXCLUDE();
+    timeKeeperOf(source_)->setTime(times[phase]);
+  }
+  widget_->showAgain();
+}

@@ -1,0 +1,165 @@
+#include "SonoProbePaths.h"
+
+#include "pqApplicationCore.h"
+#include "pqObjectBuilder.h"
+#include "pqPipelineSource.h"
+#include "pqRenderView.h"
+#include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
+#include "vtkNew.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMPropertyIterator.h"
+#include "vtkSMRepresentationProxy.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMViewProxy.h"
+#include "vtkSmartPointer.h"
+#include "vtkSonoUltrasound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+namespace {
+
+constexpr std::size_t numbersPerPose = 10;
+
+vtkSmartPointer<vtkSMSourceProxy> makeSource(vtkSMProxy* beside, const char* group, const char* name)
+{
+  return vtkSmartPointer<vtkSMSourceProxy>::Take(
+    vtkSMSourceProxy::SafeDownCast(beside->GetSessionProxyManager()->NewProxy(group, name)));
+}
+
+pqPipelineSource* itemOf(vtkSMProxy* proxy)
+{
+  return pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(proxy);
+}
+
+/// What both have by the same name, but for what they are connected to.
+void copySettings(vtkSMProxy* from, vtkSMProxy* to, const std::set<std::string>& butNot)
+{
+  const auto each = vtkSmartPointer<vtkSMPropertyIterator>::Take(to->NewPropertyIterator());
+  for (each->Begin(); !each->IsAtEnd(); each->Next())
+  {
+    vtkSMProperty* found = from->GetProperty(each->GetKey());
+    if (found && !found->GetInformationOnly() && butNot.count(each->GetKey()) == 0)
+    {
+      each->GetProperty()->Copy(found);
+    }
+  }
+  to->UpdateVTKObjects();
+}
+
+/// The same direction as a mixture of two, of any length.
+void mix(const double* a, const double* b, double share, double* mixed)
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    mixed[i] = (1.0 - share) * a[i] + share * b[i];
+  }
+}
+
+/// Of the views that show a filter's anatomy or image in space.
+std::vector<pqRenderView*> viewsInSpace(vtkSMSourceProxy* ultrasound)
+{
+  std::vector<pqRenderView*> views;
+  for (auto* view : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>())
+  {
+    for (const unsigned int port : { vtkSonoUltrasound::IMAGE, vtkSonoUltrasound::ANATOMY })
+    {
+      vtkSMProxy* shown = view->getViewProxy()->FindRepresentation(ultrasound, int(port));
+      if (shown && vtkSMPropertyHelper(shown, "Visibility").GetAsInt() == 1)
+      {
+        views.push_back(view);
+        break;
+      }
+    }
+  }
+  return views;
+}
+
+} // namespace
+
+pqPipelineSource* sonoMakePath(const std::vector<SonoTimedPose>& poses, pqPipelineSource* ultrasound)
+{
+  SCOPED_UNDO_SET(QObject::tr("Record Probe Path"));
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  const auto path = makeSource(ultrasound->getProxy(), "sources", "SonoProbePath");
+  controller->PreInitializeProxy(path);
+  std::vector<double> numbers;
+  for (const SonoTimedPose& pose : poses)
+  {
+    numbers.push_back(pose.timeS);
+    numbers.insert(numbers.end(), pose.pose.begin(), pose.pose.end());
+  }
+  vtkSMPropertyHelper(path, "Poses").Set(numbers.data(), static_cast<unsigned int>(numbers.size()));
+  controller->PostInitializeProxy(path);
+  path->UpdateVTKObjects();
+  controller->RegisterPipelineProxy(path);
+  path->UpdatePipeline();
+  for (pqRenderView* view : viewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy())))
+  {
+    controller->Show(path, 0, view->getViewProxy());
+    view->render();
+  }
+  pqPipelineSource* made = itemOf(path);
+  made->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  return made;
+}
+
+std::vector<SonoTimedPose> sonoPathOf(pqPipelineSource* path)
+{
+  const std::vector<double> numbers = vtkSMPropertyHelper(path->getProxy(), "Poses").GetDoubleArray();
+  std::vector<SonoTimedPose> poses(numbers.size() / numbersPerPose);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+  {
+    const double* first = numbers.data() + i * numbersPerPose;
+    poses[i].timeS = first[0];
+    std::copy(first + 1, first + numbersPerPose, poses[i].pose.begin());
+  }
+  return poses;
+}
+
+std::array<double, 9> sonoPoseAt(const std::vector<SonoTimedPose>& poses, double timeS)
+{
+  const auto after = std::upper_bound(poses.begin(), poses.end(), timeS,
+                                      [](double at, const SonoTimedPose& pose) { return at < pose.timeS; });
+  if (after == poses.begin() || after == poses.end())
+  {
+    return after == poses.begin() ? poses.front().pose : poses.back().pose;
+  }
+  const SonoTimedPose& one = *(after - 1);
+  const double share = (timeS - one.timeS) / (after->timeS - one.timeS);
+  std::array<double, 9> between{};
+  for (std::size_t part = 0; part < between.size(); part += 3)
+  {
+    mix(&one.pose[part], &after->pose[part], share, &between[part]);
+  }
+  return between;
+}
+
+pqPipelineSource* sonoMakeSweep(pqPipelineSource* path, pqPipelineSource* ultrasound)
+{
+  SCOPED_UNDO_SET(QObject::tr("Sweep along Probe Path"));
+  vtkSMProxy* from = ultrasound->getProxy();
+  vtkNew<vtkSMParaViewPipelineController> controller;
+  const auto probe = makeSource(from, "sources", "SonoProbeSource");
+  controller->PreInitializeProxy(probe);
+  copySettings(from, probe, { "Preview", "PrepareInteraction" });
+  controller->PostInitializeProxy(probe);
+  controller->RegisterPipelineProxy(probe);
+  itemOf(probe)->setModifiedState(pqProxy::UNMODIFIED);
+
+  const auto sweep = makeSource(from, "filters", "SonoSweep");
+  controller->PreInitializeProxy(sweep);
+  sweep->GetProperty("Input")->Copy(from->GetProperty("Input"));
+  vtkSMPropertyHelper(sweep, "Probe").Set(probe);
+  vtkSMPropertyHelper(sweep, "Poses").Set(path->getProxy());
+  controller->PostInitializeProxy(sweep);
+  copySettings(from, sweep, { "Input", "Probe", "Poses" });
+  controller->RegisterPipelineProxy(sweep);
+  return itemOf(sweep);
+}

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "Core/Policy.h"
+#include "LastResults.h"
+
+#include <list>
+#include <memory>
+#include <utility>
+
+namespace sono {
+
+/// Scatterers of the moving tissue of the scenes that were simulated last, while these live: a heart that beats comes
+/// back to each of its phases. What was not used for longest goes when they are too many (keptMovingBytes).
+class KeptMoving
+{
+public:
+  /// Those of a scene, which `make` makes where they are not kept.
+  template<class Make>
+  std::shared_ptr<const PointScatterers> get(const std::shared_ptr<const Scene>& scene, const MovingFrom& from,
+                                             Make&& make)
+  {
+    entries_.remove_if([](const Entry& entry) { return entry.scene.expired(); });
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
+    {
+      if (entry->scene.lock() == scene && entry->from.same(from))
+      {
+        entries_.splice(entries_.begin(), entries_, entry);
+        return entry->made;
+      }
+    }
+    std::shared_ptr<const PointScatterers> made = make();
+    entries_.push_front({ scene, from, made });
+    std::size_t bytes = 0;
+    for (auto entry = entries_.begin(); entry != entries_.end();)
+    {
+      bytes += std::size_t(entry->made->count()) * bytesEach;
+      const bool isTooMuch = entry != entries_.begin() && bytes > keptMovingBytes;
+      entry = isTooMuch ? entries_.erase(entry) : std::next(entry);
+    }
+    return made;
+  }
+
+private:
+  struct Entry
+  {
+    std::weak_ptr<const Scene> scene;
+    MovingFrom from;
+    std::shared_ptr<const PointScatterers> made;
+  };
+  static constexpr std::size_t bytesEach = 4 * sizeof(float); // PointTable
+
+  std::list<Entry> entries_; // the last used first
+};
+
+} // namespace sono
