@@ -69,7 +69,7 @@ class TestProxies(unittest.TestCase):
                 yield kind, *described(name)
 
     def test_there_is_a_class_to_test(self):
-        self.assertEqual(len(CLASSES), 40)
+        self.assertEqual(len(CLASSES), 41)
 
     def test_every_proxy_can_be_created(self):
         manager = servermanager.ProxyManager()

@@ -36,7 +36,7 @@ kernel::TraceView makeView(const DoubleInput& input, const std::vector<kernel::T
   view.waveNumberAtOne = 2000.0 * M_PI * input.frequencyMHz;
   view.lowDiscrepancy = input.lowDiscrepancy;
   view.deterministic = deterministic;
-  view.reverberates = false; // the study's settings have none
+  view.reverberates = view.favoursReflections = false; // the study's settings have none
   view.maxCollisions = int(setting("maxCollisions"));
   view.coherenceMm = setting("coherenceMm");
   view.depthMm = input.depthMm;
