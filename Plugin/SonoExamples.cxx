@@ -12,6 +12,8 @@
 namespace {
 
 constexpr double neck = 5.0; // of the phantoms
+// A finer thorax has so many triangles that drawing it in software keeps the window busy for more than five seconds.
+constexpr double thoraxMm = 1.5;
 
 /// Makes a source or filter and hands it to `fill`; it is registered, so that it appears in the pipeline, once that is
 /// done.
@@ -46,14 +48,14 @@ const std::vector<SonoExample>& sonoExamples()
     { "Heart",
       "The bundled thorax in its apical four-chamber view",
       "SonoThoraxSource",
-      { { "SpacingMm", 1.0 } },
+      { { "SpacingMm", thoraxMm } },
       "phased_p4-2",
       { { "DepthMm", 160.0 }, { "AddHaze", 1.0 } },
       { 87.8, -86.5, -44.9, -0.53, 0.65, 0.545, 0.843, 0.333, 0.423 } },
     { "Liver",
       "The bundled thorax's liver from the front and the right, below the ribs",
       "SonoThoraxSource",
-      { { "SpacingMm", 1.0 } },
+      { { "SpacingMm", thoraxMm } },
       "curvilinear_c5-2",
       { { "DepthMm", 170.0 } },
       { -87.5, -86.5, -67.5, 0.5011, 0.8577, -0.1149, 0.8359, -0.5141, -0.1923 } },
@@ -70,7 +72,7 @@ const std::vector<SonoExample>& sonoExamples()
     { "Lung",
       "Along the bundled thorax's right chest: the pleura between two ribs and their shadows",
       "SonoThoraxSource",
-      { { "SpacingMm", 1.0 } },
+      { { "SpacingMm", thoraxMm } },
       "linear_l14",
       { { "DepthMm", 60.0 } },
       { -76.2, -90.8, 15.0, 0.6428, 0.766, 0.0, 0.0, 0.0, 1.0 } },
@@ -87,7 +89,7 @@ const std::vector<SonoExample>& sonoExamples()
     { "Needle",
       "A needle in the plane of a picture of the bundled thorax's liver; drag its ends",
       "SonoThoraxSource",
-      { { "SpacingMm", 1.0 } },
+      { { "SpacingMm", thoraxMm } },
       "curvilinear_c5-2",
       { { "DepthMm", 120.0 } },
       { -87.5, -86.5, -67.5, 0.5011, 0.8577, -0.1149, 0.8359, -0.5141, -0.1923 },
