@@ -13,16 +13,6 @@ namespace {
 
 const char* const parts[] = { "PositionMm", "Axial", "Lateral" };
 
-std::array<double, 9> poseOf(vtkSMSourceProxy* ultrasound)
-{
-  std::array<double, 9> pose{};
-  for (std::size_t part = 0; part < 3; ++part)
-  {
-    vtkSMPropertyHelper(ultrasound, parts[part]).Get(&pose[3 * part], 3);
-  }
-  return pose;
-}
-
 /// Where the best window is; nothing where there is none, of which the search has said why.
 void place(vtkSMSourceProxy* ultrasound)
 {
@@ -57,10 +47,10 @@ public:
   static PlaceAgain* New() { return new PlaceAgain; }
   void Execute(vtkObject*, unsigned long, void*) override
   {
-    if (!this->Ultrasound->GetSessionProxyManager()->GetInLoadXMLState() && poseOf(this->Ultrasound) == this->Found)
+    if (!this->Ultrasound->GetSessionProxyManager()->GetInLoadXMLState() && sonoPoseOf(this->Ultrasound) == this->Found)
     {
       place(this->Ultrasound);
-      this->Found = poseOf(this->Ultrasound);
+      this->Found = sonoPoseOf(this->Ultrasound);
     }
   }
 
@@ -86,6 +76,6 @@ void sonoSetFirstPose(vtkSMSourceProxy* ultrasound)
   place(ultrasound);
   vtkNew<PlaceAgain> again;
   again->Ultrasound = ultrasound;
-  again->Found = poseOf(ultrasound);
+  again->Found = sonoPoseOf(ultrasound);
   ultrasound->GetProperty("FillBody")->AddObserver(vtkCommand::ModifiedEvent, again);
 }

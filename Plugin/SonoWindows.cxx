@@ -84,6 +84,18 @@ SonoWindows findBy(vtkSMSourceProxy* search)
 
 } // namespace
 
+std::array<double, 9> sonoPoseOf(vtkSMProxy* proxy)
+{
+  std::array<double, 9> pose{};
+  double* part = pose.data();
+  for (const char* name : { "PositionMm", "Axial", "Lateral" })
+  {
+    vtkSMPropertyHelper(proxy, name).Get(part, 3);
+    part += 3;
+  }
+  return pose;
+}
+
 SonoWindows sonoFindWindows(vtkSMSourceProxy* ultrasound, SonoWindowsOf what, const std::string& target)
 {
   const auto search = makeSearch(ultrasound, what, "SonoAcousticWindow");

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+class vtkSMProxy;
 class vtkSMSessionProxyManager;
 class vtkSMSourceProxy;
 
@@ -16,6 +17,9 @@ struct SonoWindow
   double depthMm = 0.0;         ///< 0: not known
   std::array<double, 9> pose{}; ///< position, axial, lateral
 };
+
+/// The pose that the properties of a source with a probe, or of a probe's widget, say: position, axial, lateral.
+std::array<double, 9> sonoPoseOf(vtkSMProxy* proxy);
 
 struct SonoWindows
 {

@@ -23,12 +23,7 @@ constexpr qint64 pauseMs = 500; // so long without a picture: another drag
 SonoWindow poseOf(vtkSMProxy* ultrasound)
 {
   SonoWindow at;
-  auto number = at.pose.begin();
-  for (const char* name : { "PositionMm", "Axial", "Lateral" })
-  {
-    const std::vector<double> part = vtkSMPropertyHelper(ultrasound, name).GetDoubleArray();
-    number = std::copy(part.begin(), part.end(), number);
-  }
+  at.pose = sonoPoseOf(ultrasound);
   at.depthMm = vtkSMPropertyHelper(ultrasound, "DepthMm").GetAsDouble();
   return at;
 }

@@ -22,18 +22,6 @@ constexpr double withinDeg = 5.0;
 constexpr double leastMm = 2.0; // of a slide that is worth a line
 const QChar across(0x21c5);     // to or from who looks at the picture
 
-sono::PoseNumbers poseNow(vtkSMProxy* proxy)
-{
-  sono::PoseNumbers pose{};
-  auto number = pose.begin();
-  for (const char* name : { "PositionMm", "Axial", "Lateral" })
-  {
-    const std::vector<double> part = vtkSMPropertyHelper(proxy, name).GetDoubleArray();
-    number = std::copy_n(part.begin(), 3, number);
-  }
-  return pose;
-}
-
 /// The side of the patient to which a direction, LPS, points most; `sign` below 0: the opposite direction.
 QString sideOf(const double* direction, double sign)
 {
@@ -147,7 +135,7 @@ void pqSonoGuide::look()
 /// One line a movement that is still to be made, short enough for the corner that a fan leaves free.
 QString pqSonoGuide::words() const
 {
-  const sono::PoseNumbers at = poseNow(this->Widget);
+  const sono::PoseNumbers at = sonoPoseOf(this->Widget);
   const sono::Guidance way = sono::guidance(at, this->Goal->pose);
   const QString name = QString::fromStdString(this->Goal->sentence).section(QRegExp("[,:]"), 0, 0).toHtmlEscaped();
   if (way.isReached(withinMm, withinDeg))

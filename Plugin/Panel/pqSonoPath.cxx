@@ -106,7 +106,7 @@ void pqSonoPath::record(bool wanted)
 {
   if (wanted && (widget_ = find_()))
   {
-    poses_ = { { 0.0, widget_->place().pose } };
+    poses_ = { { 0.0, widget_->place() } };
     clock_.start();
     QObject::connect(widget_, &pqSonoProbeWidget::moved, this, &pqSonoPath::take);
     Q_EMIT this->said(tr("Recording: move the probe, then click Record Path again."));
@@ -130,7 +130,7 @@ void pqSonoPath::record(bool wanted)
 
 void pqSonoPath::take()
 {
-  const SonoTimedPose now{ 1e-3 * static_cast<double>(clock_.elapsed()), widget_->place().pose };
+  const SonoTimedPose now{ 1e-3 * static_cast<double>(clock_.elapsed()), widget_->place() };
   const SonoTimedPose last = poses_.back();
   if (now.pose == last.pose)
   {

@@ -86,16 +86,9 @@ void pqSonoProbeWidget::hold(bool held)
   }
 }
 
-SonoWindow pqSonoProbeWidget::place() const
+std::array<double, 9> pqSonoProbeWidget::place() const
 {
-  SonoWindow at;
-  auto number = at.pose.begin();
-  for (const char* function : { "PositionMm", "Axial", "Lateral" })
-  {
-    const std::vector<double> part = vtkSMPropertyHelper(this->widgetProxy(), function).GetDoubleArray();
-    number = std::copy(part.begin(), part.end(), number);
-  }
-  return at;
+  return sonoPoseOf(this->widgetProxy());
 }
 
 void pqSonoProbeWidget::showAgain()

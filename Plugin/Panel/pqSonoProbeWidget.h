@@ -54,8 +54,8 @@ public:
   void goTo(const SonoWindow& place);
   ///@}
 
-  /// Where it stands by now, before anything is scanned; without its depth and what is seen.
-  SonoWindow place() const;
+  /// Where it stands by now, before anything is scanned: position, axial, lateral.
+  std::array<double, 9> place() const;
   /// While something else moves it, or its anatomy, it does not rest, and its pictures stay those of a moving probe.
   void hold(bool held);
   /// Whether it scans without Apply.
