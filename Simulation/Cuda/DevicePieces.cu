@@ -1,5 +1,6 @@
 #include "Cuda/DevicePieces.cuh"
 
+#include "Cuda/IdleByDevice.h"
 #include "Cuda/WithKind.cuh"
 #include "Scene/FindFace.h"
 #include "Scene/FitPiece.h"
@@ -261,40 +262,12 @@ private:
   bool isThere_ = false;
 };
 
-/// Lanes that nobody works in, by device: lanes stay.
-class IdleLanes
+/// Lanes that nobody works in.
+IdleByDevice<DeviceLane>& idleLanes()
 {
-public:
-  static DeviceLane* take(int device)
-  {
-    {
-      const std::lock_guard<std::mutex> lock(all().mutex_);
-      const auto found = all().lanes_.find(device);
-      if (found != all().lanes_.end())
-      {
-        DeviceLane* const lane = found->second;
-        all().lanes_.erase(found);
-        return lane;
-      }
-    }
-    return openLane(device, Waiting::Asleep);
-  }
-  static void give(int device, DeviceLane* lane)
-  {
-    const std::lock_guard<std::mutex> lock(all().mutex_);
-    all().lanes_.emplace(device, lane);
-  }
-
-private:
-  static IdleLanes& all()
-  {
-    static auto* const lanes = new IdleLanes;
-    return *lanes;
-  }
-
-  std::mutex mutex_;
-  std::multimap<int, DeviceLane*> lanes_;
-};
+  static auto* const lanes = new IdleByDevice<DeviceLane>;
+  return *lanes;
+}
 
 } // namespace
 
@@ -321,13 +294,14 @@ std::shared_ptr<DevicePieces> DevicePieces::of(const SurfacePieces& pieces)
 
 DevicePieces::DevicePieces(int device)
   : device_(device)
-  , lane_(IdleLanes::take(device))
+  , lane_(idleLanes().take(device))
 {
+  lane_ = lane_ ? lane_ : openLane(device, Waiting::Asleep);
 }
 
 DevicePieces::~DevicePieces()
 {
-  IdleLanes::give(device_, lane_);
+  idleLanes().give(device_, lane_);
 }
 
 std::shared_ptr<const PieceList> DevicePieces::heardBy(const SurfaceJob& job, const std::uint8_t* voxels,
