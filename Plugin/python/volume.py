@@ -1,7 +1,7 @@
 """Muscle keeps its volume: what a registration of labels leaves open, how far a wall slides along itself, is chosen so that it does."""
 import numpy as np
 
-SMOOTH = 0.05  # weight of the change's slopes against the wall's change of volume
+SMOOTH = 0.1  # weight of the change's slopes against the wall's change of volume
 STAY = 1.0  # 1/mm^2, of how far a surface is moved off
 ROUNDS = 2  # of Gauss and Newton
 STEPS = 40  # of conjugate gradients in each, at most; four times as many of half as fine ones

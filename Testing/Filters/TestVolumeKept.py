@@ -44,7 +44,6 @@ class TestVolumeKept(unittest.TestCase):
             return np.abs(np.linalg.det(np.eye(3) + volume._slopes(field, SPACING))[wall] - 1.0).mean()
 
         self.assertAlmostEqual(grown(way), 1.0 - (1.0 - narrowed) ** 2, 6)
-        self.assertLess(grown(volume.kept(way, muscle, surfaces, SPACING)), 0.25 * grown(way))  # the rest is what smoothness costs
         with mock.patch.object(volume, "SMOOTH", 0.005):  # which costs little
             found = volume.kept(way, muscle, surfaces, SPACING, steps=200)
         self.assertLess(grown(found), 0.005)
