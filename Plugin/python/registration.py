@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkImagingGeneral import vtkImageEuclideanDistance
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
-from . import elastix
+from . import elastix, volume
 from .vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoLabelTable, vtkSonoSceneBuilder
 
 CHANGED_SHARE = 0.12  # of a label's voxels, by which a phase differs from the reference, so that the label counts as moving
@@ -58,19 +58,20 @@ def register_phases(files, folder, reference=0, moving=None, say=print):
         raise ValueError("only blood moves: name the labels that the speckle is to ride on")
     # Leaflets swing: where they are says nothing of where the tissue around went, but for the blood that they part.
     swinging = _of_tissue(images[reference], "valve")
+    muscles = _of_tissue(images[reference], "myocardium")
     followed = sorted((changed | set(moving)) - swinging)
     if not followed:
         raise ValueError("only valves move: name labels whose way their surfaces tell")
     box = _box(labels, followed, images[0].GetSpacing())
     os.makedirs(folder, exist_ok=True)
-    rest = _Edges(labels[reference][box], followed, swinging, images[0].GetSpacing())
+    rest = _Edges(labels[reference][box], followed, swinging, muscles, images[0].GetSpacing())
     paths, digits = [], max(2, len(str(len(images) - 1)))
     for phase, image in enumerate(images):
         field = np.zeros(labels[0].shape + (3,), np.float32)
         if phase != reference:
             now = labels[phase][box]
             near = _distance(~np.isin(now, list(moving)), image.GetSpacing()) <= NEAR_VOXELS * max(image.GetSpacing())
-            field[box] = _register(_Edges(now, followed, swinging, image.GetSpacing()), rest, image, box) * near[..., None]
+            field[box] = _register(_Edges(now, followed, swinging, muscles, image.GetSpacing()), rest, image, box) * near[..., None]
             say(f"Phase {phase}: " + _judge(field[box], now, labels[reference][box], moving, image))
         paths.append(os.path.join(folder, f"phase_{phase:0{digits}d}.vti"))
         _write(image, field, moving, paths[-1])
@@ -180,13 +181,17 @@ def _distance(inside, spacing):
 
 
 class _Edges:
-    """Of each label that is there: reach * tanh(signed distance / reach), every so many voxels; and where nothing swings."""
+    """Of each label that is there: reach * tanh(signed distance / reach), every so many voxels; where nothing swings; and how much
+    a place is one of muscle: so deep in a wall that differences over two working voxels are of the wall alone. Thin walls have none."""
 
-    def __init__(self, labels, followed, swinging, spacing):
+    def __init__(self, labels, followed, swinging, muscles, spacing):
         self.spacing = spacing
         self.steps = tuple(max(1, round(WORKING_MM / mm)) for mm in spacing)
         self.label = {label: self._edge(labels == label) for label in followed if (labels == label).any()}
         leaflets = np.isin(labels, list(swinging))
+        muscle = np.isin(labels, list(muscles))
+        deep = np.arctanh(np.clip(-self._edge(muscle) / REACH_MM, 0.0, 0.99)) if muscle.any() else np.zeros(1)
+        self.muscle = np.clip(deep * REACH_MM / WORKING_MM - 1.0, 0.0, 0.5) / 0.5
         self.is_calm = self._thinned(_distance(~leaflets, spacing) > BAND_MM if leaflets.any() else ~leaflets)
 
     def _thinned(self, values):
@@ -220,9 +225,18 @@ def _register(now, rest, image, box):
     direction = _direction(image)
     origin = np.array(image.GetOrigin()) + direction @ (spacing * [part.start for part in box[::-1]])
     way = elastix.displacement(pairs, smooth, (origin, spacing * now.steps, direction), GRID_MM, SMOOTHED_MM, BENDING, SAMPLES)
+    if now.muscle.any():
+        way = _with_muscle_kept(way, now, spacing * now.steps, direction)
     for axis, step in zip(range(3), now.steps[::-1]):
         way = _refined(way, axis, step, box[axis].stop - box[axis].start)
     return -way
+
+
+def _with_muscle_kept(way, now, spacing, direction):
+    """Labels say where a surface went, not how far a wall slid along itself: muscle keeps its volume, which says the rest."""
+    band = REACH_MM * np.tanh(WORKING_MM / REACH_MM)
+    surfaces = sum(volume.normals(edge, band, spacing) for edge in now.label.values())
+    return volume.kept(way @ direction, now.muscle, surfaces, spacing) @ direction.T
 
 
 def _refined(field, axis, step, count):

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <future>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -21,7 +22,8 @@ public:
   Shared get(const Key& key, const Make& make)
   {
     std::unique_lock<std::mutex> lock(mutex_);
-    if (Shared there = held_[key].lock())
+    const auto known = held_.find(key);
+    if (Shared there = known == held_.end() ? nullptr : known->second.lock())
     {
       return there;
     }
@@ -47,7 +49,11 @@ public:
     lock.lock();
     making_.erase(key);
     const Shared value = made.get();
-    held_[key] = value; // before anybody else looks
+    held_[key] = value;                                     // before anybody else looks
+    for (auto other = held_.begin(); other != held_.end();) // of thousands, few are held
+    {
+      other = other->second.expired() ? held_.erase(other) : std::next(other);
+    }
     return value;
   }
 

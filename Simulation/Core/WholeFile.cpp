@@ -15,8 +15,11 @@ WholeFile::WholeFile(const std::string& path)
 WholeFile::~WholeFile()
 {
   stream_.close();
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored); // none after `finish`
+  if (!isWhole_)
+  {
+    std::error_code ignored;
+    std::filesystem::remove(part_, ignored);
+  }
 }
 
 bool WholeFile::finish()
@@ -27,7 +30,8 @@ bool WholeFile::finish()
   {
     std::filesystem::rename(part_, path_, error);
   }
-  return stream_ && !error;
+  isWhole_ = stream_ && !error;
+  return isWhole_;
 }
 
 bool writeWholeFile(const std::string& path, const std::function<void(std::ostream&)>& write)

@@ -29,6 +29,7 @@ private:
   std::string path_;
   std::string part_;
   std::ofstream stream_;
+  bool isWhole_ = false; ///< and has its name
 };
 
 /// The same where all bytes are at hand.

@@ -1,7 +1,9 @@
 #include "DataSets/DataSetImager.h"
 
+#include "Core/Entrance.h"
 #include "Core/MadeOnce.h"
 #include "Cuda/RunOnDevice.h"
+#include "DataSets/BodyRegion.h"
 #include "DataSets/DataSetInfo.h"
 #include "DataSets/HoldProbe.h"
 #include "DataSets/ImageChannels.h"
@@ -14,13 +16,13 @@
 #include "Probe/StandardViews.h"
 #include "Simulator.h"
 #include "Trace/ProbeContact.h"
-#include "Trace/TraceSetup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 
 namespace sono {
@@ -113,26 +115,11 @@ FoundLandmarks findLandmarks(const LabelVolume& volume)
   }
 }
 
-/// Images of a body share what is prepared of what its views, held and set otherwise, may reach. Whoever reaches
-/// further prepares it anew, so that no image depends on others.
-void shareRegion(Scene& scene, const DataSetPlan& plan, const std::vector<BodyView>& views)
+/// Bodies that are prepared at a time: a few by all cores, so that a device soon has the first ones, and has some while
+/// others are prepared.
+int preparedTogether()
 {
-  constexpr double marginMm = 15.0; // for a probe that is held elsewhere on the skin
-  const ImageSettings deepest = plan.deepest().image(plan.set().pixelMm, Device::Cpu);
-  const Vec3i margin(glm::ceil(marginMm / scene.placement().spacingMm));
-  std::optional<VoxelBox> all;
-  for (const BodyView& view : views)
-  {
-    if (view.pose)
-    {
-      const VoxelBox box = fanBox(scene, makeScanLines(deepest.geometry, *view.pose), deepest.tracing);
-      all = all ? VoxelBox{ glm::min(all->first, box.first), glm::max(all->last, box.last) } : box;
-    }
-  }
-  if (all)
-  {
-    scene.shareRegion({ all->first - margin, all->last + margin });
-  }
+  return std::max(1, int(std::thread::hardware_concurrency()) / 3);
 }
 
 } // namespace
@@ -150,9 +137,20 @@ struct DataSetImager::Patient
   std::vector<bool> groupIsThere;
 };
 
-/// Imagers of several threads share the patients that they hold.
-struct DataSetImager::Patients : MadeOnce<Patient::Key, Patient>
+/// What of a body is the same for all who make images of it.
+struct DataSetImager::Found
 {
+  std::vector<BodyView> views; ///< of the patient's
+  FoundLandmarks landmarks;
+  std::weak_ptr<const RegionOnDemand> region; ///< of the one who found them
+};
+
+/// Imagers of several threads share the patients that they hold, and what was found of bodies.
+struct DataSetImager::Shared
+{
+  MadeOnce<Patient::Key, Patient> patients;
+  MadeOnce<int, Found> found;
+  Entrance preparing{ preparedTogether() };
 };
 
 /// One of the patient's bodies, in the last exam.
@@ -162,8 +160,7 @@ struct DataSetImager::Body
   std::int64_t exam = -1;
   std::shared_ptr<Scene> scene;
   Simulator simulator;
-  std::vector<BodyView> views; ///< of the patient's
-  FoundLandmarks landmarks;
+  std::shared_ptr<const Found> found;
   std::vector<std::uint8_t> groups; ///< the mask's value of each label id
   std::vector<bool> isMitralValve;  ///< by label id; empty where no line divides the masks
 };
@@ -178,14 +175,14 @@ struct DataSetImager::PlacedImage
 DataSetImager::DataSetImager(std::shared_ptr<const DataSetPlan> plan, Device device)
   : plan_(std::move(plan))
   , device_(device)
-  , patients_(std::make_shared<Patients>())
+  , shared_(std::make_shared<Shared>())
 {
 }
 
 DataSetImager DataSetImager::another() const
 {
   DataSetImager imager(plan_, device_);
-  imager.patients_ = patients_;
+  imager.shared_ = shared_;
   return imager;
 }
 
@@ -239,10 +236,12 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   const PlannedBody& planned = plan_->bodies()[std::size_t(number)];
   const Patient::Key key = Patient::keyOf(planned);
   body_ = nullptr; // before the next one takes as much memory
+  const Entrance::Stay stay(shared_->preparing);
+  report(progress, 0.0);
   if (!patient_ || patient_->key != key)
   {
     patient_ = nullptr;
-    patient_ = patients_->get(key, [&] { return makePatient(planned, progress); });
+    patient_ = shared_->patients.get(key, [&] { return makePatient(planned, progress); });
   }
   const BodyAugmentation& augmentation = planned.augmentation;
   LabelVolume volume = augmented(patient_->volume, augmentation);
@@ -254,10 +253,37 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   }
   body->number = number;
   body->scene = std::make_shared<Scene>(std::move(volume), set.tissues, couplingTissue);
-  body->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
-                          patient_->volume.placement, augmentation, progress);
-  body->landmarks = findLandmarks(body->scene->volume());
-  shareRegion(*body->scene, *plan_, body->views);
+  const auto prepareRegion = [&](const std::vector<BodyView>& views, const std::weak_ptr<const RegionOnDemand>& known) {
+    std::vector<ProbePose> poses;
+    for (const BodyView& view : views)
+    {
+      if (view.pose)
+      {
+        poses.push_back(*view.pose);
+      }
+    }
+    shareBodyRegion(*body->scene, *plan_, poses, known);
+    if (!runsOnGpu())
+    {
+      return std::shared_ptr<const RegionOnDemand>();
+    }
+    body->scene->fibres();
+    return bakeBodyRecords(*body->scene, *plan_, poses, progress);
+  };
+  bool isFirst = false;
+  body->found = shared_->found.get(number, [&] {
+    auto found = std::make_shared<Found>();
+    found->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
+                             patient_->volume.placement, augmentation, progress);
+    found->landmarks = findLandmarks(body->scene->volume());
+    found->region = prepareRegion(found->views, {});
+    isFirst = true;
+    return std::shared_ptr<const Found>(found);
+  });
+  if (!isFirst)
+  {
+    prepareRegion(body->found->views, body->found->region);
+  }
   body_ = std::move(body);
 }
 
@@ -286,12 +312,12 @@ DataSetImager::PlacedImage DataSetImager::place(const PlannedImage& image)
     throw Error("a matrix makes volumes; choose a probe with lines in a plane.");
   }
   // Views of the body follow, where this one is not obtainable or shows too little.
-  const int count = int(body_->views.size());
+  const int count = int(body_->found->views.size());
   double best = -1.0;
   for (int i = 0; i < count && best < 1.0; ++i)
   {
     const int view = (image.view + i) % count;
-    if (body_->views[std::size_t(view)].pose)
+    if (body_->found->views[std::size_t(view)].pose)
     {
       hold(placed, view, best);
     }
@@ -310,7 +336,7 @@ void DataSetImager::hold(PlacedImage& placed, int view, double& best)
   for (int attempt = 0; attempt < mostAttempts && best < 1.0; ++attempt)
   {
     PoseJitter jitter = plan_->jitter(placed.facts.image.index, attempt);
-    ProbePose pose = jittered(*body_->views[std::size_t(view)].pose, jitter);
+    ProbePose pose = jittered(*body_->found->views[std::size_t(view)].pose, jitter);
     if (!isCatheter)
     {
       const std::optional<ProbePose> onSkin = poseOnSkin(scene, pose);
@@ -420,9 +446,9 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
   std::transform(seen.picture.labels.begin(), seen.picture.labels.end(), made.mask.begin(),
                  [&](std::uint16_t label) { return body_->groups[label]; });
   const ImageSight sight(input.settings, input.pose, layout, *seen.arrivals);
-  if (body_->landmarks.heart)
+  if (body_->found->landmarks.heart)
   {
-    facts.landmarks = landmarksInImage(*body_->landmarks.heart, input.pose, sight);
+    facts.landmarks = landmarksInImage(*body_->found->landmarks.heart, input.pose, sight);
   }
   if (plan_->set().mitralLine)
   {
@@ -443,9 +469,9 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
     facts.groups.push_back({ std::size_t(std::count(made.mask.begin(), made.mask.end(), std::uint8_t(group + 1))),
                              patient_->groupIsThere[group], visible[group] });
   }
-  const BodyView& view = body_->views[std::size_t(facts.image.view)];
+  const BodyView& view = body_->found->views[std::size_t(facts.image.view)];
   facts.found = view.found ? &*view.found : nullptr;
-  facts.noLandmarks = body_->landmarks.refusal;
+  facts.noLandmarks = body_->found->landmarks.refusal;
   facts.width = layout.width;
   facts.height = layout.height;
   facts.lateralMinMm = layout.lateralMinMm;

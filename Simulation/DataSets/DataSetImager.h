@@ -52,7 +52,8 @@ public:
   DataSetImager(const DataSetImager&) = delete;
   DataSetImager& operator=(const DataSetImager&) = delete;
   DataSetImager(DataSetImager&&) noexcept;
-  /// Of the same plan, for another thread: they share the patients.
+  /// Of the same plan, for another thread: they share the patients and what was found of bodies, and prepare a few
+  /// bodies at a time.
   DataSetImager another() const;
 
   const DataSetPlan& plan() const { return *plan_; }
@@ -66,7 +67,8 @@ public:
 
 private:
   struct Patient;
-  struct Patients;
+  struct Found;
+  struct Shared;
   struct Body;
   struct PlacedImage;
 
@@ -81,7 +83,7 @@ private:
 
   std::shared_ptr<const DataSetPlan> plan_;
   Device device_;
-  std::shared_ptr<Patients> patients_;
+  std::shared_ptr<Shared> shared_;
   std::shared_ptr<const Patient> patient_;
   std::unique_ptr<Body> body_;
 };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sono {
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr int lineCount = 24;
 constexpr int pathsPerLine = 8;
+constexpr std::size_t linesTogether = 4;
 constexpr double leastBinMm = 1.0;
 
 /// Rodrigues' formula; `axis` has length 1.
@@ -21,6 +23,54 @@ Vec3d rotated(const Vec3d& v, const Vec3d& axis, double deg)
   const double angle = deg * M_PI / 180.0;
   return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
          axis * (glm::dot(axis, v) * (1.0 - std::cos(angle)));
+}
+
+/// Where a line meets a group that is asked for.
+struct LookPlace
+{
+  int bin;
+  std::size_t group;
+  double areaMm2;
+};
+
+struct LookLine
+{
+  int line;
+  double areaMm2 = 0.0; ///< of all its places
+  std::vector<LookPlace> places;
+};
+
+/// The lines that meet some, those first that have most of it.
+std::vector<LookLine> looksAt(const LabelVolume& volume, const std::vector<std::uint8_t>& groups,
+                              const std::vector<double>& asked, const std::vector<ScanLine>& lines,
+                              const TraceSettings& tracing)
+{
+  std::vector<LookLine> looks;
+  for (std::size_t line = 0; line + 1 < lines.size(); ++line)
+  {
+    LookLine look{ int(line), 0.0, {} };
+    const Vec3d first = volume.placement.indexFromWorld(lines[line].originMm);
+    const Vec3d step = volume.placement.indexFromWorld(lines[line].originMm + lines[line].axis) - first;
+    for (int bin = 0; bin < tracing.binCount(); ++bin)
+    {
+      const double r = (bin + 0.5) * tracing.radialBinMm;
+      const std::size_t group = groups[labelAtIndex(first + r * step, volume.voxels.data(), volume.placement.size)];
+      if (asked[group] > 0.0)
+      {
+        const double areaMm2 = glm::distance(lines[line].originMm + r * lines[line].axis,
+                                             lines[line + 1].originMm + r * lines[line + 1].axis);
+        look.places.push_back({ bin, group, areaMm2 });
+        look.areaMm2 += areaMm2;
+      }
+    }
+    if (!look.places.empty())
+    {
+      looks.push_back(std::move(look));
+    }
+  }
+  std::stable_sort(looks.begin(), looks.end(),
+                   [](const LookLine& a, const LookLine& b) { return a.areaMm2 > b.areaMm2; });
+  return looks;
 }
 
 } // namespace
@@ -62,34 +112,58 @@ double maskSufficiency(const Scene& scene, const std::vector<std::uint8_t>& grou
   tracing.pathsPerLine = pathsPerLine;
   tracing.radialBinMm = std::max(tracing.radialBinMm, leastBinMm);
   tracing.reverberation = false; // which adds nothing to what arrives straight
+  tracing.intensityAlone = true;
   const std::vector<ScanLine> lines = makeScanLines(geometry, pose);
-  const TracedLines traced = trace(scene, lines, tracing);
+  const std::vector<LookLine> looks = looksAt(volume, groups, asked, lines, tracing);
   std::vector<double> all(asked.size(), 0.0);
+  for (const LookLine& look : looks)
+  {
+    for (const LookPlace& place : look.places)
+    {
+      all[place.group] += place.areaMm2;
+    }
+  }
+  std::vector<double> leastIntensity;
+  for (int bin = 0; bin < tracing.binCount(); ++bin)
+  {
+    leastIntensity.push_back(ImageSight::leastIntensity(tracing.frequencyMHz, (bin + 0.5) * tracing.radialBinMm));
+  }
+  TraceRounds rounds(scene, lines, tracing, {}, {});
   std::vector<double> shown(asked.size(), 0.0);
-  for (std::size_t line = 0; line + 1 < lines.size(); ++line)
-  {
-    for (int bin = 0; bin < traced.binCount; ++bin)
+  const auto sufficiency = [&] {
+    double least = 1.0;
+    for (std::size_t group = 1; group < asked.size(); ++group)
     {
-      const double r = (bin + 0.5) * traced.binMm;
-      const Vec3d place = lines[line].originMm + r * lines[line].axis;
-      const double area = glm::distance(place, lines[line + 1].originMm + r * lines[line + 1].axis);
-      const std::size_t group =
-        groups[labelAtIndex(volume.placement.indexFromWorld(place), volume.voxels.data(), volume.placement.size)];
-      const float intensity = traced.intensity[line * std::size_t(traced.binCount) + std::size_t(bin)];
-      all[group] += area;
-      shown[group] += intensity < ImageSight::leastIntensity(tracing.frequencyMHz, r) ? 0.0 : area;
+      if (asked[group] > 0.0)
+      {
+        const double share = all[group] > 0.0 ? shown[group] / all[group] : 0.0;
+        least = std::min(least, share / asked[group]);
+      }
+    }
+    return least;
+  };
+  // The lines that have most of it first: often a part of them shows enough.
+  for (std::size_t first = 0; first < looks.size() && sufficiency() < 1.0; first += linesTogether)
+  {
+    const std::size_t end = std::min(first + linesTogether, looks.size());
+    std::vector<int> together;
+    for (std::size_t n = first; n < end; ++n)
+    {
+      together.push_back(looks[n].line);
+    }
+    rounds.traceLines(together, pathsPerLine);
+    const TracedLines& traced = rounds.traced();
+    for (std::size_t n = first; n < end; ++n)
+    {
+      const float* intensity = traced.intensity.data() + std::size_t(looks[n].line) * std::size_t(traced.binCount);
+      for (const LookPlace& place : looks[n].places)
+      {
+        const bool isShadow = intensity[place.bin] < leastIntensity[std::size_t(place.bin)];
+        shown[place.group] += isShadow ? 0.0 : place.areaMm2;
+      }
     }
   }
-  double least = 1.0;
-  for (std::size_t group = 1; group < asked.size(); ++group)
-  {
-    if (asked[group] > 0.0)
-    {
-      const double share = all[group] > 0.0 ? shown[group] / all[group] : 0.0;
-      least = std::min(least, share / asked[group]);
-    }
-  }
-  return least;
+  return sufficiency();
 }
 
 } // namespace sono

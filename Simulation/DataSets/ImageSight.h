@@ -41,12 +41,17 @@ public:
   ImagePoint pointAt(const Vec3d& worldMm) const;
 
 private:
+  void findWholeCells();
+
   const TracedLines& traced_;
   ProbePose pose_;
   PlaneScan scan_; ///< of bins of range
   double rangeMm_;
   std::vector<double> leastIntensity_; ///< of each bin of depth, that is no shadow
   std::vector<float> clearByRange_;    ///< lines x bins: 1, in a shadow 0
+  /// Lines x bins: whether this and the next bin, of this and the next line, all are 1 or all are 0; else, or where it
+  /// is not known, any other value.
+  std::vector<std::uint8_t> wholeCells_;
 };
 
 } // namespace sono

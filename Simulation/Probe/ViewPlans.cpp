@@ -66,8 +66,8 @@ public:
     view.title = title;
     view.preset = phased;
     view.markMm = marks_.apexMm;
-    view.mostOffDeg = 8.0;
-    view.mostOffMm = 8.0;
+    view.mostOffDeg = 6.0;
+    view.mostOffMm = 6.0;
     view.rightward = -septal_;
     const bool isShortAxis = name.compare(0, 4, "PSAX") == 0;
     if (isShortAxis)
@@ -118,7 +118,8 @@ private:
     {
       view.points.push_back(view.markMm + besideMm * direction);
     }
-    view.mostOffDeg = 12.0;
+    view.mostOffDeg = 5.0; // of a slice across, what lies beside it looks much the same: nothing else would tell
+    view.mostOffMm = 5.0;
     demand(view, HeartPart::LeftVentricle, 50.0);
     demand(view, HeartPart::LeftWall, 40.0);
   }
@@ -173,7 +174,6 @@ private:
     if (isParasternal)
     {
       view.rightward = axis_; // the aorta at the right, the apex at the left
-      view.mostOffDeg = 10.0;
     }
   }
 

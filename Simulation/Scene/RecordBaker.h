@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace sono {
@@ -52,14 +53,22 @@ public:
     count_ = high - low_;
     smoother_.smooth(tissue, first_ + low_, count_, position_, fine_.data());
     smoother_.smooth(tissue, first_ + low_ - 1, count_ + 2, normal_, coarse_.data());
-    for (const Vec3i& v : inBlock)
+    for (std::size_t n = 0; n < inBlock.size(); ++n)
     {
+      const Vec3i& v = inBlock[n];
+      if (n == 0 || v.y != inBlock[n - 1].y || v.z != inBlock[n - 1].z)
+      {
+        row_ = inBlock.data() + n;
+        rowEnd_ = std::find_if(row_, inBlock.data() + inBlock.size(),
+                               [&](const Vec3i& other) { return other.y != v.y || other.z != v.z; });
+        rowColumns_.clear();
+      }
       store(v, encodeRecord(recordAt(v)));
     }
   }
 
 private:
-  BoundaryRecord recordAt(const Vec3i& v) const
+  BoundaryRecord recordAt(const Vec3i& v)
   {
     const Vec3i at = v - low_;
     const auto coarse = [&](int x, int y, int z) {
@@ -73,8 +82,26 @@ private:
     const double perPlane = normalSigma_ * 2.5066282746;
     BoundaryRecord record;
     record.confidence = float(slope * perPlane);
-    const bool isFitted = fits_.normalAt(first_ + v, record.normal);
-    if (!isFitted)
+    bool isKnown = fits_.normalAt(first_ + v, record.normal);
+    // Both sides of a thin wall are in that slope: the less there is of it, the less its direction says, and a wedge
+    // beside the wall would lead. Long voxels leave no room to tell sides apart.
+    const bool isThick = normalSigma_ > 2.0 * sigma_;
+    if (isKnown && !isThick)
+    {
+      record.confidence = 1.0f;
+    }
+    else if (!isThick && record.confidence < thinnestWhole)
+    {
+      const Vec3d side = sideGradient(first_ + v);
+      const double sideSlope = glm::length(side);
+      if (sideSlope * perPlane > flattest)
+      {
+        record.normal = Vec3f(side / sideSlope);
+        record.confidence = float(sideSlope * perPlane);
+        isKnown = true;
+      }
+    }
+    if (!isKnown)
     {
       // Of the occupancy for the confidence; of its probit for the direction, since that is linear across a plane and
       // a difference over a thick voxel therefore exact.
@@ -87,23 +114,6 @@ private:
       const double steepness = glm::length(outward);
       record.normal = steepness > 1e-9 ? Vec3f(outward / steepness) : Vec3f(0.0f, 0.0f, 1.0f);
     }
-    // Both sides of a thin wall are in that slope: the less there is of it, the less its direction says, and a wedge
-    // beside the wall would lead. Long voxels leave no room to tell sides apart.
-    const bool isThick = normalSigma_ > 2.0 * sigma_;
-    if (isFitted && !isThick)
-    {
-      record.confidence = 1.0f;
-    }
-    else if (!isThick && record.confidence < thinnestWhole)
-    {
-      const Vec3d side = sideGradient(first_ + v);
-      const double sideSlope = glm::length(side);
-      if (sideSlope * perPlane > flattest)
-      {
-        record.normal = Vec3f(side / sideSlope);
-        record.confidence = float(sideSlope * perPlane);
-      }
-    }
     const float share = fine_[std::size_t(at.x + count_.x * (at.y + count_.y * at.z))];
     // For a plane at distance d inside, occupancy = Phi(d / sigma).
     record.offset = -normalFromUpperTail(std::clamp(share, 1e-4f, 1.0f - 1e-4f));
@@ -114,7 +124,7 @@ private:
   /// that the two sides of a thin wall cancel. This is that of the one side that a voxel is on, outward: of the faces
   /// that look the way of the voxel's own. 0 where these look to opposite sides, and where the other side is not a
   /// wall's.
-  Vec3d sideGradient(const Vec3i& voxel) const
+  Vec3d sideGradient(const Vec3i& voxel)
   {
     const std::ptrdiff_t pitch[3] = { 1, size_.x, std::ptrdiff_t(size_.x) * size_.y };
     const std::uint8_t* middle = tissues_ + voxel.x + pitch[1] * voxel.y + pitch[2] * voxel.z;
@@ -136,24 +146,23 @@ private:
     }
     const Vec3i low = glm::max(voxel - normal_.radius, Vec3i(1));
     const Vec3i high = glm::min(voxel + normal_.radius, size_ - 2);
+    if (rowColumns_.empty())
+    {
+      sumRowColumns(tissue, low, high);
+    }
     // Sums of faces by axis and way.
     double toward[3] = { 0.0, 0.0, 0.0 };
     double away[3] = { 0.0, 0.0, 0.0 };
-    FaceColumns columns;
-    const Vec3i corner = low - voxel + normal_.radius; // of the weights
-    for (int first = low.x; first <= high.x; first += FaceColumns::most)
+    for (int x = low.x; x <= high.x; ++x)
     {
-      const Vec3i count(std::min(FaceColumns::most, high.x - first + 1), high.y - low.y + 1, high.z - low.z + 1);
-      sumFaces(tissues_ + first + pitch[1] * low.y + pitch[2] * low.z, size_, tissue, count,
-               &normal_.weight[1][std::size_t(corner.y)], &normal_.weight[2][std::size_t(corner.z)], columns);
-      for (int n = 0; n < count.x; ++n)
+      const auto column = std::size_t(x - rowFirst_);
+      const FaceColumns& columns = rowColumns_[column / FaceColumns::most];
+      const std::size_t n = column % FaceColumns::most;
+      const double w = normal_.weight[0][std::size_t(x - voxel.x + normal_.radius.x)];
+      for (int a = 0; a < 3; ++a)
       {
-        const double w = normal_.weight[0][std::size_t(first + n - voxel.x + normal_.radius.x)];
-        for (int a = 0; a < 3; ++a)
-        {
-          toward[a] += w * columns.toward[a][n];
-          away[a] += w * columns.away[a][n];
-        }
+        toward[a] += w * columns.toward[a][n];
+        away[a] += w * columns.away[a][n];
       }
     }
     Vec3d sum(0.0);
@@ -172,6 +181,23 @@ private:
     return isWall ? sum : Vec3d(0.0);
   }
 
+  /// The columns around the row's voxels, which they share: of a thin wall several in a row ask for them. `low` and
+  /// `high` say how far those of one of them go along the other axes.
+  void sumRowColumns(std::uint8_t tissue, const Vec3i& low, const Vec3i& high)
+  {
+    const std::ptrdiff_t pitch[3] = { 1, size_.x, std::ptrdiff_t(size_.x) * size_.y };
+    const Vec3i corner = low - (first_ + *row_) + normal_.radius; // of the weights
+    rowFirst_ = std::max(first_.x + row_->x - normal_.radius.x, 1);
+    const int last = std::min(first_.x + (rowEnd_ - 1)->x + normal_.radius.x, size_.x - 2);
+    for (int x = rowFirst_; x <= last; x += FaceColumns::most)
+    {
+      const Vec3i count(std::min(FaceColumns::most, last - x + 1), high.y - low.y + 1, high.z - low.z + 1);
+      sumFaces(tissues_ + x + pitch[1] * low.y + pitch[2] * low.z, size_, tissue, count,
+               &normal_.weight[1][std::size_t(corner.y)], &normal_.weight[2][std::size_t(corner.z)],
+               rowColumns_.emplace_back());
+    }
+  }
+
   static constexpr float thinnestWhole = 0.4f; ///< confidence of a wall too thin for smoothing, two to three voxels
   static constexpr double flattest = 0.85;     ///< of one side's slope against a plane's: not of a wire, nor at a rim
   static constexpr double parallel = 0.9;      ///< cosine between the sides of a wall; those of a wire are round
@@ -185,6 +211,10 @@ private:
   double normalSigma_;
   GaussianAxes normal_;
   BoundaryFits fits_;
+  const Vec3i* row_ = nullptr; ///< the block's voxels of a row, as they are listed
+  const Vec3i* rowEnd_ = nullptr;
+  std::vector<FaceColumns> rowColumns_; ///< empty: not made for this row
+  int rowFirst_ = 0;                    ///< x of the first of them
   Vec3i first_{ 0, 0, 0 };
   Vec3i low_{ 0, 0, 0 }; ///< what is smoothed of the block
   Vec3i count_{ 0, 0, 0 };

@@ -172,7 +172,7 @@ void RegionOnDemand::bakeAll(const Progress& progress) const
   baking_->all.store(true, std::memory_order_release);
 }
 
-void RegionOnDemand::bakeAround(const Vec3d& middleMm, double reachMm, const Progress& progress) const
+void RegionOnDemand::bakeIn(const std::vector<LocalBall>& balls, const Progress& progress) const
 {
   if (baking_->all.load(std::memory_order_acquire))
   {
@@ -181,8 +181,10 @@ void RegionOnDemand::bakeAround(const Vec3d& middleMm, double reachMm, const Pro
   const Vec3d blockMm = double(recordBlock) * Vec3d(region_.spacing);
   const auto isNear = [&](const Vec3i& block) {
     const Vec3d lowMm = Vec3d(baking_->first + block) * blockMm;
-    const Vec3d away = middleMm - glm::clamp(middleMm, lowMm, lowMm + blockMm);
-    return glm::dot(away, away) <= reachMm * reachMm;
+    return std::any_of(balls.begin(), balls.end(), [&](const LocalBall& ball) {
+      const Vec3d away = ball.middleMm - glm::clamp(ball.middleMm, lowMm, lowMm + blockMm);
+      return glm::dot(away, away) <= ball.mm * ball.mm;
+    });
   };
   bakeBlocks(isNear, progress);
 }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace sono {
 
@@ -20,6 +21,13 @@ struct CellsOnDemand : TissueCells
   const RegionOnDemand* region = nullptr;
 
   std::uint32_t recordOf(int x, int y, int z, std::uint32_t word) const;
+};
+
+/// In a volume's local mm.
+struct LocalBall
+{
+  Vec3d middleMm;
+  double mm; ///< radius
 };
 
 /// A region with lazy evaluation: a record is baked, with its block, when it is first read. Laying out the words takes
@@ -41,8 +49,8 @@ public:
   CellsOnDemand view() const { return { region_.view(), this }; }
 
   void bakeAll(const Progress& progress = {}) const;
-  /// Those that lie within so many mm of a place, in the volume's local mm, and some around them.
-  void bakeAround(const Vec3d& middleMm, double reachMm, const Progress& progress = {}) const;
+  /// Those that lie in a ball, and some around them.
+  void bakeIn(const std::vector<LocalBall>& balls, const Progress& progress = {}) const;
   /// The blocks that `other`, a region of the same voxels, has baked by now, and those that touch them, one after the
   /// other on this thread, until `goesOn` says no.
   void bakeBeside(const RegionOnDemand& other, const std::function<bool()>& goesOn) const;

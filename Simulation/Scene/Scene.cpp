@@ -382,9 +382,10 @@ VoxelBox Scene::clipped(const VoxelBox& box) const
   return inside;
 }
 
-void Scene::shareRegion(const VoxelBox& box)
+void Scene::shareRegion(const VoxelBox& box, std::weak_ptr<const RegionOnDemand> known)
 {
   sharedBox_ = clipped(box);
+  known_ = std::move(known);
 }
 
 bool Scene::sharesRegion(const VoxelBox& box) const
@@ -401,7 +402,7 @@ std::shared_ptr<const RegionOnDemand> Scene::regionOnDemand(const VoxelBox& box,
     &region_, [&] { return region_ && region_->region().box == wanted ? region_ : nullptr; },
     [&]() -> SharedRegion {
       return std::make_shared<RegionOnDemand>(tissueVoxels_.data(), placement().size, placement().spacingMm, wanted,
-                                              observed(progress), finishedInteractive());
+                                              observed(progress), known_.expired() ? finishedInteractive() : known_);
     },
     [&](SharedRegion made) { region_ = std::move(made); });
 }

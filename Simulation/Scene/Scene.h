@@ -88,9 +88,10 @@ public:
   /// The boundaries as smooth pieces, made where they are asked for and kept.
   const SurfacePieces& surfacePieces() const;
 
-  /// From now on whoever wants a box within this one gets the tracer's cache of this one, so that poses share it.
-  /// Nobody else may use the scene meanwhile. Throws Error where the box is beside the volume.
-  void shareRegion(const VoxelBox& box);
+  /// From now on whoever wants a box within this one gets the tracer's cache of this one, so that poses share it. What
+  /// `known`, a region of another scene with the same voxels, has baked by then is copied while that exists. Nobody
+  /// else may use the scene meanwhile. Throws Error where the box is beside the volume.
+  void shareRegion(const VoxelBox& box, std::weak_ptr<const RegionOnDemand> known = {});
   /// Whether a box lies within that one.
   bool sharesRegion(const VoxelBox& box) const;
 
@@ -135,6 +136,7 @@ private:
   const std::uint8_t* stillCodes_ = nullptr;
   int outsideIndex_ = -1;
   VoxelBox sharedBox_{}; // empty: none
+  std::weak_ptr<const RegionOnDemand> known_;
 
   mutable std::mutex mutex_; // for what follows; not held while any of it is made
   mutable std::condition_variable made_;

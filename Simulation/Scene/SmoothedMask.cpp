@@ -169,10 +169,18 @@ void MaskSmoother<Voxel>::smooth(Voxel value, const Vec3i& first, const Vec3i& c
   const Vec3i r = gaussian.radius;
   const Vec3i wide = count + r + r;
   const std::ptrdiff_t plane = std::ptrdiff_t(wide.x) * wide.y;
-  indicator_.resize(std::size_t(plane) * wide.z);
-  alongZ_.resize(std::size_t(plane) * count.z);
-  alongY_.resize(std::size_t(wide.x) * count.y * count.z);
-  alongX_.resize(alongY_.size());
+  const std::size_t rows = std::size_t(wide.x) * count.y * count.z;
+  // Room that is there stays: all that is read is written before.
+  const auto makeRoom = [](std::vector<float>& room, std::size_t size) {
+    if (room.size() < size)
+    {
+      room.resize(size);
+    }
+  };
+  makeRoom(indicator_, std::size_t(plane) * wide.z);
+  makeRoom(alongZ_, std::size_t(plane) * count.z);
+  makeRoom(alongY_, rows);
+  makeRoom(alongX_, rows);
 
   for (int k = 0; k < wide.z; ++k)
   {
@@ -190,7 +198,7 @@ void MaskSmoother<Voxel>::smooth(Voxel value, const Vec3i& first, const Vec3i& c
                 alongY_.data() + std::ptrdiff_t(k) * wide.x * count.y);
   }
   // All rows in one run; what mixes two of them is not taken over.
-  weightedSum(alongY_.data(), 1, gaussian.weight[0].data(), 2 * r.x + 1, int(alongY_.size()) - 2 * r.x, alongX_.data());
+  weightedSum(alongY_.data(), 1, gaussian.weight[0].data(), 2 * r.x + 1, int(rows) - 2 * r.x, alongX_.data());
   for (int row = 0; row < count.y * count.z; ++row)
   {
     std::copy_n(alongX_.data() + std::ptrdiff_t(row) * wide.x, count.x, out + std::ptrdiff_t(row) * count.x);

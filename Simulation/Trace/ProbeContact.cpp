@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 
 namespace sono {
@@ -16,22 +17,21 @@ constexpr double mostInsideMm = 15.0;
 constexpr double leastImage = 0.5;
 constexpr double farthestSkinMm = 60.0;
 
-/// Label of the voxel at a place in the world; nothing beyond the volume.
-const LabelInfo* labelAt(const Scene& scene, const Vec3d& world)
+/// Number of the voxel at a place in the world; -1 beyond the volume.
+std::ptrdiff_t voxelAt(const Scene& scene, const Vec3d& world)
 {
   const Vec3i size = scene.placement().size;
-  const Vec3i v(glm::floor(scene.placement().indexFromWorld(world) + 0.5));
-  if (glm::any(glm::lessThan(v, Vec3i(0))) || glm::any(glm::greaterThanEqual(v, size)))
-  {
-    return nullptr;
-  }
-  return scene.volume().find(scene.volume().voxels[v.x + std::size_t(size.x) * (v.y + std::size_t(size.y) * v.z)]);
+  const Vec3d v = glm::floor(scene.placement().indexFromWorld(world) + 0.5);
+  const bool isThere = glm::all(glm::greaterThanEqual(v, Vec3d(0.0))) && glm::all(glm::lessThan(v, Vec3d(size)));
+  return isThere ? std::ptrdiff_t(v.x) + size.x * (std::ptrdiff_t(v.y) + size.y * std::ptrdiff_t(v.z)) : -1;
 }
 
-/// Whether the label is what surrounds the body.
-bool isOutside(const Scene& scene, const LabelInfo* label)
+/// The tissue there; null where what surrounds the body is.
+const Tissue* bodyAt(const Scene& scene, const Vec3d& world)
 {
-  return !label || scene.tissueOfLabel()[std::size_t(label->id)] == scene.outsideIndex();
+  const std::ptrdiff_t voxel = voxelAt(scene, world);
+  const int tissue = voxel < 0 ? scene.outsideIndex() : int(scene.tissueVoxels()[std::size_t(voxel)]);
+  return voxel < 0 || tissue == scene.outsideIndex() ? nullptr : &scene.tissues()[std::size_t(tissue)];
 }
 
 bool keepsSoundOut(const Tissue& tissue)
@@ -46,13 +46,13 @@ double halfVoxelMm(const Scene& scene)
   return 0.5 * std::min({ spacing.x, spacing.y, spacing.z });
 }
 
-/// Way along a line to the first voxel of the body; infinite where there is none.
-double gapMm(const Scene& scene, const ScanLine& line)
+/// Way along a line to the first voxel of the body; infinite where there is none as near as `mostMm`.
+double gapMm(const Scene& scene, const ScanLine& line, double mostMm)
 {
   const double step = halfVoxelMm(scene);
-  for (double t = 0.0; t < farMm; t += step)
+  for (double t = 0.0; t < std::min(farMm, mostMm); t += step)
   {
-    if (!isOutside(scene, labelAt(scene, line.originMm + t * line.axis)))
+    if (bodyAt(scene, line.originMm + t * line.axis))
     {
       return t;
     }
@@ -65,7 +65,9 @@ double gapMm(const Scene& scene, const ScanLine& line)
 std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>& lines)
 {
   const std::vector<LabelInfo>& labels = scene.volume().labels;
-  if (std::all_of(labels.begin(), labels.end(), [&](const LabelInfo& label) { return isOutside(scene, &label); }))
+  if (std::all_of(labels.begin(), labels.end(), [&](const LabelInfo& label) {
+        return scene.tissueOfLabel()[std::size_t(label.id)] == scene.outsideIndex();
+      }))
   {
     return "The label map holds nothing but what lies outside of a body" +
            (labels.empty() ? std::string() : " (" + labels.front().tissue + ")") +
@@ -75,16 +77,16 @@ std::string probeContactWarning(const Scene& scene, const std::vector<ScanLine>&
   double gap = INFINITY;
   for (const ScanLine& line : lines)
   {
-    const LabelInfo* label = labelAt(scene, line.originMm);
-    if (isOutside(scene, label))
+    const Tissue* tissue = bodyAt(scene, line.originMm);
+    if (!tissue)
     {
-      gap = std::min(gap, gapMm(scene, line));
+      gap = std::min(gap, gapMm(scene, line, gap));
       continue;
     }
     gap = 0.0;
-    if (keepsSoundOut(scene.tissues()[scene.tissueOfLabel()[std::size_t(label->id)]]))
+    if (keepsSoundOut(*tissue))
     {
-      ++blocking[label];
+      ++blocking[scene.volume().find(scene.volume().voxels[std::size_t(voxelAt(scene, line.originMm))])];
     }
   }
   for (const auto& [label, count] : blocking)
@@ -111,7 +113,7 @@ std::string probePlaceWarning(const Scene& scene, const ScanGeometry& geometry, 
   }
   const ProbePose probe = pose.orthonormalized();
   const auto isBody = [&](double behindMm) {
-    return !isOutside(scene, labelAt(scene, probe.positionMm - behindMm * probe.axial));
+    return bodyAt(scene, probe.positionMm - behindMm * probe.axial) != nullptr;
   };
   double insideMm = 0.0;
   while (insideMm < farMm && isBody(insideMm))
@@ -151,7 +153,7 @@ double shareInsideVolume(const Scene& scene, const ScanGeometry& geometry, const
     for (const ScanLine& line : lines)
     {
       all += areaMm2;
-      within += labelAt(scene, line.originMm + r * line.axis) ? areaMm2 : 0.0;
+      within += voxelAt(scene, line.originMm + r * line.axis) >= 0 ? areaMm2 : 0.0;
     }
   }
   return within / all;
@@ -161,12 +163,12 @@ std::optional<ProbePose> poseOnSkin(const Scene& scene, const ProbePose& pose)
 {
   ProbePose probe = pose.orthonormalized();
   const Vec3d start = probe.positionMm;
-  const bool startsInside = !isOutside(scene, labelAt(scene, start));
+  const bool startsInside = bodyAt(scene, start) != nullptr;
   const double step = halfVoxelMm(scene);
   for (double t = 0.0; t <= farthestSkinMm; t += step)
   {
     probe.positionMm = start + (startsInside ? -t : t) * probe.axial;
-    if (isOutside(scene, labelAt(scene, probe.positionMm)) == startsInside)
+    if ((bodyAt(scene, probe.positionMm) == nullptr) == startsInside)
     {
       return probe;
     }
@@ -183,9 +185,9 @@ ProbePose pressedIn(const Scene& scene, const ProbePose& pose, const BeamApertur
   const auto meetsBone = [&](const Vec3d& middle) {
     for (int place = 0; place < 9; ++place)
     {
-      const LabelInfo* label =
-        labelAt(scene, middle + double(place % 3 - 1) * lateral + double(place / 3 - 1) * elevation);
-      if (!isOutside(scene, label) && keepsSoundOut(scene.tissues()[scene.tissueOfLabel()[std::size_t(label->id)]]))
+      const Tissue* tissue =
+        bodyAt(scene, middle + double(place % 3 - 1) * lateral + double(place / 3 - 1) * elevation);
+      if (tissue && keepsSoundOut(*tissue))
       {
         return true;
       }

@@ -34,6 +34,23 @@ SONO_SIMD_CLONES void findGrowth(const float* __restrict sent, const float* __re
   }
 }
 
+/// The voxel's number in the middle of each bin of a line, by its place in the volume, from the corner, and its way for
+/// a millimetre, in voxels; -1 beyond the volume.
+SONO_SIMD_CLONES void findVoxels(const Vec3d& first, const Vec3d& step, const Vec3d& size, double binMm, int bins,
+                                 double* __restrict voxels)
+{
+  for (int bin = 0; bin < bins; ++bin)
+  {
+    const double mm = (bin + 0.5) * binMm;
+    const double x = first.x + mm * step.x;
+    const double y = first.y + mm * step.y;
+    const double z = first.z + mm * step.z;
+    const bool isThere = (x >= 0.0) & (y >= 0.0) & (z >= 0.0) & (x < size.x) & (y < size.y) & (z < size.z);
+    const double voxel = std::floor(x) + size.x * (std::floor(y) + size.y * std::floor(z));
+    voxels[bin] = isThere ? voxel : -1.0;
+  }
+}
+
 std::vector<int> binsOfEchoes(const TracedLines& lines)
 {
   std::vector<int> bins;
@@ -87,7 +104,6 @@ std::vector<float> harmonicSources(const Scene& scene, const std::vector<ScanLin
 {
   const auto bins = std::size_t(settings.binCount());
   const SentSound sent{ settings.frequencyMHz, settings.facePressureKPa };
-  const Vec3i size = scene.placement().size;
   const std::vector<Tissue>& tissues = scene.tissues();
   std::vector<float> perMm; // by the tissue at the face and the one there
   for (const Tissue& face : tissues)
@@ -104,16 +120,12 @@ std::vector<float> harmonicSources(const Scene& scene, const std::vector<ScanLin
     // From corners, where places in the volume are not negative.
     const Vec3d first = scene.placement().indexFromWorld(line.originMm) + 0.5;
     const Vec3d step = scene.placement().indexFromWorld(line.originMm + line.axis) + 0.5 - first;
+    std::vector<double> voxels(bins);
+    findVoxels(first, step, Vec3d(scene.placement().size), settings.radialBinMm, int(bins), voxels.data());
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
-      const Vec3d place = first + (double(bin) + 0.5) * settings.radialBinMm * step;
-      if (!glm::all(glm::greaterThanEqual(place, Vec3d(0.0))) || !glm::all(glm::lessThan(place, Vec3d(size))))
-      {
-        continue;
-      }
-      const Vec3i v(place);
-      const int index = scene.tissueVoxels()[v.x + std::size_t(size.x) * (v.y + std::size_t(size.y) * v.z)];
-      if (index == scene.outsideIndex())
+      const int index = voxels[bin] < 0.0 ? scene.outsideIndex() : int(scene.tissueVoxels()[std::size_t(voxels[bin])]);
+      if (voxels[bin] < 0.0 || index == scene.outsideIndex())
       {
         continue;
       }

@@ -361,7 +361,7 @@ TraceRounds::TraceRounds(const Scene& scene, const std::vector<ScanLine>& lines,
   TracedLines::visitArrays(out_, [this](auto& values, const char*, TracedAxis axis) {
     values.assign(std::size_t(out_.lineCount) * (axis == TracedAxis::EchoSamples ? out_.echoCount : out_.binCount), {});
   });
-  if (!settings.rangeIsTime())
+  if (!settings.rangeIsTime() || settings.intensityAlone)
   {
     out_.depthOffsetMm.clear();
   }
@@ -375,13 +375,16 @@ TraceRounds::TraceRounds(const Scene& scene, const std::vector<ScanLine>& lines,
 
 TraceRounds::~TraceRounds() = default;
 
+LineTally TraceRounds::makeTally() const
+{
+  return LineTally(out_.binCount, out_.binMm, binSumsOf(out_.model), out_.echoCount, out_.echoSampleMm,
+                   setup_->frequencyMHz / assumedSoundSpeedMmPerUs);
+}
+
 void TraceRounds::traceTo(int paths, bool more, const Progress& progress)
 {
   TracedReverberation kept(out_);
-  tbb::enumerable_thread_specific<LineTally> tallies([&] {
-    return LineTally(out_.binCount, out_.binMm, binSumsOf(out_.model), out_.echoCount, out_.echoSampleMm,
-                     setup_->frequencyMHz / assumedSoundSpeedMmPerUs);
-  });
+  tbb::enumerable_thread_specific<LineTally> tallies([&] { return makeTally(); });
   const Round round{ out_.paths, paths };
   if (more)
   {
@@ -417,6 +420,17 @@ void TraceRounds::traceTo(int paths, bool more, const Progress& progress)
   {
     out_.segments += tally.segments();
   }
+}
+
+void TraceRounds::traceLines(const std::vector<int>& lines, int paths, const Progress& progress)
+{
+  TracedReverberation kept(out_);
+  tbb::enumerable_thread_specific<LineTally> tallies([&] { return makeTally(); });
+  parallelFor(int(lines.size()), progress, [&](int n, const YieldPoint& yieldPoint) {
+    const auto traceOne = march_ == March::NanoVDB ? traceLineByNanoVDB : traceLine;
+    traceOne(*setup_, lines[std::size_t(n)], { 0, paths }, yieldPoint, tallies.local(), nullptr, kept, out_);
+  });
+  out_.paths = paths;
 }
 
 TracedLines trace(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,

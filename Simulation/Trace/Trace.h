@@ -39,7 +39,8 @@ struct TracedLines
   /// known.
   std::vector<float> attenuationNpPerMHz;
   /// lineCount x binCount: depth less range in mm, of what lies on the line's axis and is shown at the range b binMm,
-  /// in between as RangeMap has it (Data/docs/physics.md 13.1). Empty: range is depth, as in Amadou2024.
+  /// in between as RangeMap has it (Data/docs/physics.md 13.1). Empty: range is depth, as in Amadou2024, or of no
+  /// interest, as where the intensity alone is asked for.
   std::vector<float> depthOffsetMm;
   /// lineCount x binCount, by range, in the middles of bins: level of the speckle that reverberates, amplitude against
   /// soft tissue's of 5e-4 /(cm sr) at intensity 1, and its Monte-Carlo standard error (13.2). Empty: nothing does.
@@ -81,6 +82,7 @@ struct TracedLines
 TracedLines tracedLayout(int lineCount, const TraceSettings& settings, const std::vector<TargetSurface>& targets = {});
 
 struct LineMeans;
+class LineTally;
 struct TraceSetup;
 
 /// Traces every line on the CPU in rounds, whatever device the settings name. So many paths in rounds leave what as
@@ -100,10 +102,15 @@ public:
   /// batchCount, and what a line has left is kept, 100 to 200 KB each. Throws Aborted when asked to stop; then nothing
   /// but the destructor may be called.
   void traceTo(int paths, bool more, const Progress& progress);
+  /// Of these lines alone, by their numbers, all the paths at once, once a line: what traceTo() gives of them, where
+  /// nothing reverberates. What others would leave is 0.
+  void traceLines(const std::vector<int>& lines, int paths, const Progress& progress = {});
   const TracedLines& traced() const { return out_; }
   TracedLines take() { return std::move(out_); }
 
 private:
+  LineTally makeTally() const;
+
   std::unique_ptr<const TraceSetup> setup_;
   March march_;
   TracedLines out_;

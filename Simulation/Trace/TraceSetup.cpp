@@ -166,21 +166,41 @@ VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const Tr
            Vec3i(glm::clamp(glm::ceil(high / spacing) + 1.0, Vec3d(0.0), size)) };
 }
 
-FanReach fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings)
+std::vector<LocalBall> fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                                double besideMm)
 {
+  constexpr double togetherMm = 15.0; // small against what a path goes
+  struct Group
+  {
+    std::vector<Vec3d> originsMm;
+  };
+  std::vector<Group> groups;
+  for (const ScanLine& line : lines)
+  {
+    const Vec3d originMm = scene.localFromWorld(line.originMm);
+    const auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+      return glm::distance(group.originsMm.front(), originMm) <= togetherMm;
+    });
+    (near == groups.end() ? groups.emplace_back() : *near).originsMm.push_back(originMm);
+  }
   const StartSpread spread = startSpread(settings);
   const double asideMm = std::hypot(spread.lateralMm, spread.elevationalMm); // from where a path starts to its line
-  FanReach reach{ Vec3d(0.0), 0.0 };
-  for (const ScanLine& line : lines)
+  std::vector<LocalBall> balls;
+  for (const Group& group : groups)
   {
-    reach.middleMm += scene.localFromWorld(line.originMm) / double(lines.size());
+    LocalBall ball{ Vec3d(0.0), 0.0 };
+    for (const Vec3d& originMm : group.originsMm)
+    {
+      ball.middleMm += originMm / double(group.originsMm.size());
+    }
+    for (const Vec3d& originMm : group.originsMm)
+    {
+      const double fromMiddleMm = glm::distance(originMm, ball.middleMm);
+      ball.mm = std::max(ball.mm, fromMiddleMm + asideMm + settings.pathDepthMm() + besideMm);
+    }
+    balls.push_back(ball);
   }
-  for (const ScanLine& line : lines)
-  {
-    const double fromMiddleMm = glm::distance(scene.localFromWorld(line.originMm), reach.middleMm);
-    reach.mm = std::max(reach.mm, fromMiddleMm + asideMm + settings.pathDepthMm());
-  }
-  return reach;
+  return balls;
 }
 
 TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLines, const TraceSettings& settings,
@@ -203,10 +223,9 @@ TraceSetup::TraceSetup(const Scene& scene, const std::vector<ScanLine>& worldLin
   }
   else if (bakes)
   {
-    // Poses nearby find theirs: what is baked anew goes up to the device again.
-    constexpr double besideMm = 15.0;
-    const FanReach reach = fanReach(scene, worldLines, settings);
-    cells->bakeAround(reach.middleMm, reach.mm + besideMm, partOf(progress, 0.25, 1.0));
+    // Poses nearby find theirs: what is baked anew goes up to the device again. Who shares a region has baked them.
+    const double besideMm = scene.sharesRegion(box) ? 2.0 : 15.0;
+    cells->bakeIn(fanReach(scene, worldLines, settings, besideMm), partOf(progress, 0.25, 1.0));
   }
   const Vec3d corner = Vec3d(region->box.first) * scene.placement().spacingMm;
   cornerWorldMm = scene.worldFromLocal(corner);

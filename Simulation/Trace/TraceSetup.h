@@ -23,14 +23,10 @@ enum class Records
 /// What the lines' fan, from wherever its paths start, can reach of the scene, in voxels.
 VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
 
-/// A ball that holds all that its paths can reach: local mm.
-struct FanReach
-{
-  Vec3d middleMm;
-  double mm;
-};
-
-FanReach fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings);
+/// Balls that together hold all that its paths can reach, one for the lines that start near to one another, so much
+/// larger than need be.
+std::vector<LocalBall> fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
+                                double besideMm = 0.0);
 
 /// Everything that tracing needs, made once from the scene and the settings and held while paths run.
 struct TraceSetup

@@ -102,7 +102,7 @@ TEST(RegionOnDemand, WhatLiesBesideAnothersBlocksIsBakedAndTheSame)
   const VoxelBox box{ Vec3i(8, 0, 0), scene->placement().size };
   const TraceRegion whole = wholeRegion(*scene, box);
   const RegionOnDemand other = regionOnDemand(*scene, { Vec3i(0), scene->placement().size });
-  other.bakeAround(Vec3d(other.region().box.last) * scene->placement().spacingMm / 2.0, 1.0);
+  other.bakeIn({ { Vec3d(other.region().box.last) * scene->placement().spacingMm / 2.0, 1.0 } });
   const int met = other.bakedBlocks();
   ASSERT_GT(met, 0);
   const RegionOnDemand region = regionOnDemand(*scene, box);
@@ -140,14 +140,35 @@ TEST(RegionOnDemand, PathsMeetNoRecordBeyondTheReachOfTheirFan)
     settings.aperture.apertureMm = 10.0; // paths start beside the lines
     const auto lines = fan(9);
     const TraceSetup setup(*scene, lines, settings, {}, {}, Records::OnDemand);
-    const FanReach reach = fanReach(*scene, lines, settings);
-    setup.cells->bakeAround(reach.middleMm, reach.mm);
+    setup.cells->bakeIn(fanReach(*scene, lines, settings));
     const int baked = setup.cells->bakedBlocks();
     EXPECT_GT(baked, 0);
     trace(*scene, lines, settings);
     EXPECT_EQ(setup.cells->bakedBlocks(), baked) << depthMm << " mm deep";
     setup.cells->bakeAll();
     EXPECT_LT(baked, setup.cells->bakedBlocks());
+  }
+}
+
+/// Views that stand far apart have balls each; lines of one face share one.
+TEST(RegionOnDemand, FansThatAreApartHaveBallsOfTheirOwn)
+{
+  const auto scene = makeBusyScene();
+  const TraceSettings settings = busySettings();
+  std::vector<ScanLine> lines = fan(9);
+  EXPECT_EQ(fanReach(*scene, lines, settings).size(), 1u);
+  for (ScanLine line : fan(9))
+  {
+    line.originMm += Vec3d(100.0, 0.0, 0.0);
+    lines.push_back(line);
+  }
+  const std::vector<LocalBall> balls = fanReach(*scene, lines, settings, 3.0);
+  ASSERT_EQ(balls.size(), 2u);
+  EXPECT_NEAR(glm::distance(balls[0].middleMm, balls[1].middleMm), 100.0, 1e-9);
+  for (const LocalBall& ball : balls)
+  {
+    EXPECT_GE(ball.mm, settings.pathDepthMm() + 3.0);
+    EXPECT_LT(ball.mm, settings.pathDepthMm() + 3.0 + 15.0);
   }
 }
 

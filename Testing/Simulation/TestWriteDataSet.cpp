@@ -17,6 +17,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <set>
 
 using namespace sono;
@@ -265,6 +266,19 @@ TEST_F(DataSetFolder, IsTheSameByManyWorkers)
   };
   EXPECT_EQ(byThree("three", {}).made, 12);
   EXPECT_EQ(content("three"), content("one"));
+  for (const int workers : { 2, 5, 12 }) // as many as bodies, and more, which share them
+  {
+    DataSetImager imager(plan(), Device::Cpu);
+    const std::string folder = "by" + std::to_string(workers);
+    std::vector<std::int64_t> heard;
+    writeDataSet(
+      imager, (root_ / folder).string(), {}, {}, [&](const DataSetTally& tally) { heard.push_back(tally.done); },
+      workers);
+    std::vector<std::int64_t> inOrder(12);
+    std::iota(inOrder.begin(), inOrder.end(), 1);
+    EXPECT_EQ(heard, inOrder);
+    EXPECT_EQ(content(folder), content("one"));
+  }
   EXPECT_THROW(byThree("stopped", [](double done) { return done < 0.2; }), Aborted);
   EXPECT_LT(content("stopped").size(), content("one").size());
   EXPECT_EQ(byThree("stopped", {}).total, 12);

@@ -1,5 +1,6 @@
 // What a body and an image of the data set `apical_views` cost the processor where a GPU traces: user time by stage.
 #include "Cuda/MakeImageJob.h"
+#include "DataSets/BodyRegion.h"
 #include "DataSets/DataSetImager.h"
 #include "DataSets/DataSetInfo.h"
 #include "DataSets/HoldProbe.h"
@@ -114,27 +115,19 @@ MadeBody makeBody(const DataSetPlan& plan, int number, Costs& costs)
   });
   costs.of("fibres", [&] { return body.scene->fibres() != nullptr; });
   body.landmarks = costs.of("landmarks", [&] { return findHeartLandmarks(body.scene->volume()); });
-  const ImageSettings deepest = plan.deepest().image(set.pixelMm, Device::Cpu);
-  std::vector<ScanLine> deepestLines;
-  VoxelBox all{ body.scene->placement().size, Vec3i(0) };
+  std::vector<ProbePose> poses;
   for (const StandardView& view : body.views)
   {
     if (view.refusal.empty())
     {
-      const std::vector<ScanLine> lines = makeScanLines(deepest.geometry, view.pose);
-      const VoxelBox box = fanBox(*body.scene, lines, deepest.tracing);
-      deepestLines.insert(deepestLines.end(), lines.begin(), lines.end());
-      all = { glm::min(all.first, box.first), glm::max(all.last, box.last) };
+      poses.push_back(view.pose);
     }
   }
-  const Vec3i margin(glm::ceil(15.0 / body.scene->placement().spacingMm));
-  body.scene->shareRegion({ all.first - margin, all.last + margin });
-  const auto region = costs.of("words", [&] { return body.scene->regionOnDemand({ all.first, all.last }); });
-  costs.of("records", [&] {
-    const FanReach reach = fanReach(*body.scene, deepestLines, deepest.tracing);
-    region->bakeAround(reach.middleMm, reach.mm + 15.0);
-    return 0;
-  });
+  shareBodyRegion(*body.scene, plan, poses);
+  const ImageSettings deepest = plan.deepest().image(set.pixelMm, Device::Cpu);
+  const VoxelBox box = fanBox(*body.scene, makeScanLines(deepest.geometry, poses.front()), deepest.tracing);
+  costs.of("words", [&] { return body.scene->regionOnDemand(box); });
+  costs.of("records", [&] { return bakeBodyRecords(*body.scene, plan, poses); });
   return body;
 }
 
