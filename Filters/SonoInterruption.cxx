@@ -17,11 +17,19 @@
 
 #include <algorithm>
 #include <atomic>
+#include <thread>
 
 namespace sono {
 namespace {
 
 std::atomic<Interrupter*> current{ nullptr };
+std::atomic<std::thread::id> thread{};
+
+/// Null on another thread than its own.
+Interrupter* interrupterHere()
+{
+  return thread.load() == std::this_thread::get_id() ? current.load() : nullptr;
+}
 
 /// The outputs of the filter's last complete run, one data object a port.
 vtkInformationObjectBaseKey* keptKey()
@@ -99,18 +107,19 @@ Interrupter::~Interrupter() = default;
 
 void setInterrupter(Interrupter* interrupter)
 {
+  thread = std::this_thread::get_id();
   current = interrupter;
 }
 
 bool stopIsWanted()
 {
-  Interrupter* const interrupter = current;
+  Interrupter* const interrupter = interrupterHere();
   return interrupter && interrupter->wantsStop();
 }
 
 void keepOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
-  Interrupter* const interrupter = current;
+  Interrupter* const interrupter = interrupterHere();
   if (!interrupter)
   {
     return;
@@ -131,7 +140,7 @@ void restoreOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   copyKept(filter, outputs);
   rememberState(filter);
-  if (Interrupter* const interrupter = current)
+  if (Interrupter* const interrupter = interrupterHere())
   {
     interrupter->hasStopped(filter);
   }

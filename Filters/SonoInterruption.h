@@ -23,7 +23,8 @@ public:
   virtual void hasFinished(vtkAlgorithm* filter) = 0;
 };
 
-/// The interrupter of this process, or none (nullptr); not owned.
+/// The interrupter of this process, or none (nullptr); not owned. It is asked and told by filters of this thread alone:
+/// what others make in the background is no work that anybody waits for.
 VTKSONOFILTERS_EXPORT void setInterrupter(Interrupter* interrupter);
 
 /// Whether the interrupter, if there is one, wants work to stop.

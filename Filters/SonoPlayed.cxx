@@ -6,10 +6,10 @@
 #include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 #include <list>
 #include <malloc.h>
+#include <mutex>
 #include <utility>
 
 namespace sono {
@@ -74,9 +74,32 @@ struct Store
     }
 #endif
   }
-  std::list<Played>::iterator find(const std::string& key)
+  template<class Is>
+  std::list<Played>::iterator find(const Is& is)
   {
-    return std::find_if(things.begin(), things.end(), [&](const Played& played) { return played.key == key; });
+    return std::find_if(things.begin(), things.end(), is);
+  }
+  std::list<Played>::iterator findKey(const std::string& key)
+  {
+    return find([&](const Played& played) { return played.key == key; });
+  }
+  std::shared_ptr<const void> use(std::list<Played>::iterator found)
+  {
+    if (found == things.end())
+    {
+      return nullptr;
+    }
+    things.splice(things.begin(), things, found);
+    return found->thing;
+  }
+  void keep(Played played)
+  {
+    if (played.bytes <= limit)
+    {
+      bytes += played.bytes;
+      things.push_front(std::move(played));
+      trim();
+    }
   }
 };
 
@@ -87,58 +110,64 @@ Store& store()
   return all;
 }
 
-std::string phaseKey(const void* source, int phase)
+/// Of several threads.
+std::unique_lock<std::mutex> lockStore()
 {
-  return "phase " + std::to_string(reinterpret_cast<std::uintptr_t>(source)) + " " + std::to_string(phase);
+  static std::mutex& mutex = *new std::mutex;
+  return std::unique_lock<std::mutex>(mutex);
+}
+
+std::string phaseKey(int phase)
+{
+  return "phase " + std::to_string(phase);
+}
+
+std::list<Played>::iterator findPhase(const void* source, int phase)
+{
+  return store().find([&](const Played& played) { return played.owner == source && played.key == phaseKey(phase); });
 }
 
 } // namespace
 
 std::size_t playedLimitBytes()
 {
+  const auto lock = lockStore();
   return store().limit;
 }
 
 void setPlayedLimitBytes(std::size_t bytes)
 {
+  const auto lock = lockStore();
   store().limit = bytes;
   store().trim();
 }
 
 std::size_t playedBytes()
 {
+  const auto lock = lockStore();
   return store().bytes;
 }
 
 std::shared_ptr<const void> findPlayed(const std::string& key)
 {
-  std::list<Played>& things = store().things;
-  const auto found = store().find(key);
-  if (found == things.end())
-  {
-    return nullptr;
-  }
-  things.splice(things.begin(), things, found);
-  return found->thing;
+  const auto lock = lockStore();
+  return store().use(store().findKey(key));
 }
 
 void keepPlayed(const void* owner, const std::string& key, std::shared_ptr<const void> thing, std::size_t bytes)
 {
-  const auto before = store().find(key);
+  const auto lock = lockStore();
+  const auto before = store().findKey(key);
   if (before != store().things.end())
   {
     store().remove(before);
   }
-  if (bytes <= store().limit)
-  {
-    store().things.push_front({ owner, key, std::move(thing), bytes });
-    store().bytes += bytes;
-    store().trim();
-  }
+  store().keep({ owner, key, std::move(thing), bytes });
 }
 
 void dropPlayed(const void* owner)
 {
+  const auto lock = lockStore();
   std::list<Played>& things = store().things;
   const std::size_t before = store().bytes;
   for (auto thing = things.begin(); thing != things.end();)
@@ -153,9 +182,31 @@ void dropPlayed(const void* owner)
   store().giveBack(before);
 }
 
+void givePlayed(const void* owner, const void* next)
+{
+  const auto lock = lockStore();
+  std::list<Played>& things = store().things;
+  for (auto thing = things.begin(); thing != things.end();)
+  {
+    const auto given = thing++;
+    if (given->owner == owner)
+    {
+      const auto isSame = [&](const Played& played) { return played.owner == next && played.key == given->key; };
+      const bool isThere = store().find(isSame) != things.end();
+      given->owner = next;
+      if (isThere)
+      {
+        store().remove(given);
+      }
+    }
+  }
+}
+
 bool takePlayedPhase(const void* source, int phase, vtkImageData* image)
 {
-  const auto kept = std::static_pointer_cast<const vtkSmartPointer<vtkImageData>>(findPlayed(phaseKey(source, phase)));
+  const auto lock = lockStore();
+  const auto kept =
+    std::static_pointer_cast<const vtkSmartPointer<vtkImageData>>(store().use(findPhase(source, phase)));
   if (kept)
   {
     image->ShallowCopy(*kept);
@@ -165,10 +216,15 @@ bool takePlayedPhase(const void* source, int phase, vtkImageData* image)
 
 void keepPlayedPhase(const void* source, int phase, vtkImageData* image)
 {
+  const auto lock = lockStore();
+  if (findPhase(source, phase) != store().things.end())
+  {
+    return; // given by another
+  }
   // A copy: the pipeline empties its own.
   const auto copy = std::make_shared<vtkSmartPointer<vtkImageData>>(vtkSmartPointer<vtkImageData>::New());
   (*copy)->ShallowCopy(image);
-  keepPlayed(source, phaseKey(source, phase), copy, 1024 * std::size_t((*copy)->GetActualMemorySize()));
+  store().keep({ source, phaseKey(phase), copy, 1024 * std::size_t((*copy)->GetActualMemorySize()) });
 }
 
 } // namespace sono

@@ -26,6 +26,13 @@ namespace {
 constexpr double bouncesBegun = 2e7;
 constexpr std::chrono::milliseconds longestBegun(20);
 
+/// Never destroyed: simulators that outlive the program's globals still ask it.
+KeptMoving& keptMoving()
+{
+  static KeptMoving& kept = *new KeptMoving;
+  return kept;
+}
+
 DepthOffsets offsetsOf(const TracedLines& traced)
 {
   return { &traced.depthOffsetMm, traced.binCount, traced.binMm };
@@ -121,11 +128,14 @@ struct Simulator::Last
 Simulator::Simulator(std::shared_ptr<const Scene> scene)
   : scene_(std::move(scene))
   , last_(std::make_unique<Last>())
-  , moving_(std::make_unique<KeptMoving>())
 {
 }
 
-Simulator::~Simulator() = default;
+Simulator::~Simulator()
+{
+  scene_.reset();
+  keptMoving().dropDead();
+}
 
 void Simulator::setScene(std::shared_ptr<const Scene> scene)
 {
@@ -240,7 +250,7 @@ std::shared_ptr<const PointScatterers> Simulator::withMoving(const std::shared_p
     return points;
   }
   const MovingStatistics statistics = movingStatistics(*scene_, settings, model);
-  return moving_->get(scene_, { statistics, points }, [&] {
+  return keptMoving().get(scene_, { statistics, points }, [&] {
     std::vector<PointScatterer> all = movingScatterers(*scene_, statistics, progress);
     if (points)
     {

@@ -41,8 +41,6 @@ struct SeenPicture
   std::shared_ptr<const TracedLines> arrivals;
 };
 
-class KeptMoving;
-
 /// Composes the stages, each on the CPU or the GPU as its settings want, and keeps the last result of each. Asked again
 /// with the same arguments, a stage gives the same result and does nothing; so only those run again whose arguments
 /// changed. A stage that follows another takes its result where it lies. Not for several threads at a time.
@@ -149,7 +147,6 @@ private:
 
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Last> last_;
-  std::unique_ptr<KeptMoving> moving_; ///< outlives the scene
   bool progressive_ = false;
 };
 

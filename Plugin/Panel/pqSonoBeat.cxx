@@ -1,5 +1,6 @@
 #include "pqSonoBeat.h"
 
+#include "SonoPhases.h"
 #include "pqSonoProbeWidget.h"
 
 #include "pqPipelineSource.h"
@@ -10,6 +11,7 @@
 #include "vtkSMParaViewPipelineController.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
+#include "vtkSonoPhasesAhead.h"
 
 #include <QDoubleSpinBox>
 #include <QHBoxLayout>
@@ -22,6 +24,7 @@
 namespace {
 
 constexpr int lookForPhaseMs = 15;
+constexpr int fewPhases = 2; // that a beat can be seen in
 constexpr double usualPerMin = 60.0;
 // Times of a heart that are in seconds; those of files are mere numbers.
 constexpr double shortestCycleS = 0.3;
@@ -55,8 +58,8 @@ pqSonoBeat::pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent
   play_->setCheckable(true);
   play_->setToolTip(
     tr("Plays the phases of the label map at the heart's rate, again and again, in pictures as of a moving "
-       "probe; it may be dragged meanwhile. The first beat makes the anatomy of each phase, which "
-       "takes a while. Again: stops at the phase that is shown, in full."));
+       "probe; it may be dragged meanwhile. At first the anatomy of each phase is made in the background, and "
+       "those that are ready are played. Again: stops at the phase that is shown, in full."));
   rate_->setObjectName("HeartRate");
   rate_->setRange(20.0, 300.0);
   rate_->setDecimals(0);
@@ -73,9 +76,12 @@ pqSonoBeat::pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent
   this->connect(&steps_, SIGNAL(timeout()), SLOT(step()));
 }
 
+pqSonoBeat::~pqSonoBeat() = default;
+
 void pqSonoBeat::follow(pqPipelineSource* source)
 {
   play_->setChecked(false);
+  ahead_.reset();
   if (pqTimeKeeper* before = timeKeeperOf(source_))
   {
     before->disconnect(this);
@@ -110,14 +116,39 @@ void pqSonoBeat::play(bool wanted)
   if (wanted && (widget_ = find_()) && widget_->isLive())
   {
     phase_ = -1;
+    isPlaying_ = true;
     clock_.start();
     widget_->hold(true);
+    ahead_.reset();
+    ahead_ = SonoPhases::begin(widget_->proxy());
     steps_.start();
     return;
   }
-  const bool wasPlaying = steps_.isActive();
-  steps_.stop();
-  if (wasPlaying && widget_)
+  if (isPlaying_)
+  {
+    this->stop();
+  }
+  else if (wanted)
+  {
+    Q_EMIT this->said(tr("Tick Live in the properties of Simulate Ultrasound, so that it scans without Apply."));
+    play_->setChecked(false);
+  }
+}
+
+void pqSonoBeat::stop()
+{
+  isPlaying_ = false;
+  if (ahead_)
+  {
+    ahead_->work()->TakeReady();
+    ahead_->work()->Stop(); // step() goes on until it has ended
+    Q_EMIT this->said(QString());
+  }
+  if (!widget_)
+  {
+    return;
+  }
+  if (phase_ >= 0)
   {
     SCOPED_UNDO_EXCLUDE();
     // What ParaView shows as its time.
@@ -126,19 +157,44 @@ void pqSonoBeat::play(bool wanted)
     vtkSMPropertyHelper(scene, "AnimationTime").Set(this->times().value(phase_));
     scene->UpdateVTKObjects();
   }
-  if (widget_)
+  widget_->hold(false);
+}
+
+/// Whether the phase of a time is still to be made.
+bool pqSonoBeat::waitsFor(double time)
+{
+  if (!ahead_)
   {
-    widget_->hold(false);
+    return false;
   }
-  if (wanted && !wasPlaying)
+  const int all = ahead_->work()->GetNumberOfPhases();
+  const int ready = ahead_->work()->TakeReady();
+  if (ready == all)
   {
-    Q_EMIT this->said(tr("Tick Live in the properties of Simulate Ultrasound, so that it scans without Apply."));
-    play_->setChecked(false);
+    ahead_.reset();
+    Q_EMIT this->said(QString());
+    return false;
   }
+  Q_EMIT this->said(tr("%1 of %2 phases are ready.").arg(ready).arg(all));
+  if (ready < fewPhases)
+  {
+    clock_.start(); // the first beat begins with them
+    return true;
+  }
+  return !ahead_->work()->IsReady(time);
 }
 
 void pqSonoBeat::step()
 {
+  if (!isPlaying_)
+  {
+    if (!ahead_ || ahead_->work()->HasEnded())
+    {
+      ahead_.reset();
+      steps_.stop();
+    }
+    return;
+  }
   const QList<double> times = this->times();
   if (!widget_ || !source_ || times.size() < 2)
   {
@@ -147,7 +203,7 @@ void pqSonoBeat::step()
   }
   const double beats = 1e-3 * static_cast<double>(clock_.elapsed()) * rate_->value() / 60.0;
   const int phase = static_cast<int>((beats - std::floor(beats)) * times.size());
-  if (phase == phase_ || widget_->proxy()->GetSession()->GetPendingProgress())
+  if (phase == phase_ || widget_->proxy()->GetSession()->GetPendingProgress() || this->waitsFor(times[phase]))
   {
     return;
   }

@@ -7,14 +7,17 @@
 #include <QWidget>
 
 #include <functional>
+#include <memory>
 
 class QDoubleSpinBox;
 class QPushButton;
 class pqPipelineSource;
 class pqSonoProbeWidget;
+class SonoPhases;
 
 /// Of the scanner's panel: plays the phases of a label map that moves at the heart's rate, again and again, as pictures
-/// of a moving probe, which may be moved meanwhile. Where a picture takes longer than a phase, phases are left out.
+/// of a moving probe, which may be moved meanwhile. Where a picture takes longer than a phase, phases are left out, and
+/// so they are until they have been made ready in the background.
 class pqSonoBeat : public QWidget
 {
   Q_OBJECT
@@ -22,6 +25,7 @@ class pqSonoBeat : public QWidget
 public:
   /// `find` is asked for the widget that moves the probe of the source, when it is needed.
   explicit pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent = nullptr);
+  ~pqSonoBeat() override;
 
   /// Whose phases are played; none: nobody's.
   void follow(pqPipelineSource* source);
@@ -36,6 +40,8 @@ private Q_SLOTS:
 
 private:
   void play(bool wanted);
+  void stop();
+  bool waitsFor(double time);
   QList<double> times() const;
 
   std::function<pqSonoProbeWidget*()> find_;
@@ -43,6 +49,8 @@ private:
   QPointer<pqSonoProbeWidget> widget_; // while it plays
   QPushButton* play_;
   QDoubleSpinBox* rate_;
+  std::unique_ptr<SonoPhases> ahead_; // until all are ready
+  bool isPlaying_ = false;
   int phase_ = -1; // that is shown
   QElapsedTimer clock_;
   QTimer steps_;

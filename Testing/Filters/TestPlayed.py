@@ -1,11 +1,13 @@
 """Phases that were played are kept for the next play, within a bound, and go when they are dropped."""
 import pathlib
 import tempfile
+import time
 import unittest
 
 import numpy as np
 from chain import listen, make, write_labels
-from sonovdb.vtkSonoFilters import vtkSonoLabelMapReader, vtkSonoSceneBuilder, vtkSonoThoraxSource, vtkSonoUltrasound
+from sonovdb.vtkSonoFilters import (vtkSonoLabelMapReader, vtkSonoPhasesAhead, vtkSonoSceneBuilder, vtkSonoThoraxSource,
+                                    vtkSonoUltrasound)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIntArray, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -190,6 +192,49 @@ class TestPlayed(unittest.TestCase):
         first = heart.play((0.0, 0.5))
         self.assert_same(heart.play((0.0, 0.5)), first)
         self.assertEqual(heart.built(), 2)
+
+    def ahead(self, shown):
+        """Has its phases made by another one like it."""
+        second = self.heart()
+        made = vtkSonoPhasesAhead()
+        made.Begin(shown.source, shown.ultrasound, second.source, second.ultrasound)
+        self.assertEqual(made.GetNumberOfPhases(), len(TIMES))
+        return made
+
+    def wait(self, is_there):
+        end = time.monotonic() + 60
+        while not is_there():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+
+    def test_what_was_made_ahead_is_what_would_be_made(self):
+        shown = self.heart()
+        shown.at(TIMES[0])
+        made = self.ahead(shown)
+        self.wait(lambda: made.TakeReady() == len(TIMES))
+        self.assertTrue(all(made.IsReady(time) for time in TIMES))
+        del made  # the second filters go, and what they made stays
+        seen = shown.play()
+        self.assertEqual(shown.built(), 1)
+        self.assertEqual(shown.errors, [])
+        self.assert_same(seen, self.heart().play())
+
+    def test_a_source_that_was_changed_is_not_given_what_another_made(self):
+        shown = self.heart()
+        made = self.ahead(shown)
+        shown.source.Modified()
+        self.assertEqual(made.TakeReady(), len(TIMES))  # nobody waits any more
+        self.wait(made.HasEnded)
+        shown.play()
+        self.assertEqual(shown.built(), len(TIMES))
+
+    def test_phases_that_cannot_be_made_ahead_are_waited_for_by_nobody(self):
+        shown = self.heart()
+        shown.at(TIMES[0])
+        pathlib.Path(self.folder, "phase1.vti").unlink()
+        made = self.ahead(shown)
+        self.wait(lambda: made.TakeReady() == len(TIMES))
+        self.assertEqual(shown.errors, [])  # those that see it say so
 
     def test_files_that_changed_are_read_again(self):
         with tempfile.TemporaryDirectory() as folder:

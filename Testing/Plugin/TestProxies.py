@@ -12,9 +12,9 @@ from vtkmodules.vtkCommonCore import reference
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
 XML_FOLDER = pathlib.Path(os.environ["SONOVDB_DESCRIPTIONS"])
-ABSTRACT = {"vtkSonoFrameWriter"}  # what others derive from has no proxy
+NO_PROXIES = {"vtkSonoFrameWriter", "vtkSonoPhasesAhead"}  # what others derive from, and what works for a panel
 CLASSES = {name: kind for name, kind in vars(vtkSonoFilters).items() if name.startswith("vtkSono")}
-for name in ABSTRACT:
+for name in NO_PROXIES:
     del CLASSES[name]
 VECTOR_PROPERTIES = ("IntVectorProperty", "DoubleVectorProperty", "StringVectorProperty")
 

@@ -339,11 +339,6 @@ def undo(hands, _):
         yield
 
 
-def is_example(action):
-    """Its body is as fine as a user's; that takes software longer to draw than a window may be silent (TestGuiExamples)."""
-    return action.objectName().startswith("actionSonoExample")
-
-
 @act(4)
 def tool_bar(hands, _):
     bar = hands.main.findChild(QtWidgets.QToolBar, "SonoToolBar")
@@ -351,7 +346,7 @@ def tool_bar(hands, _):
     menu = button.menu()
     if menu:
         menu.aboutToShow.emit()
-        chosen = hands.any_of(each for each in menu.actions() if is_harmless(each) and not is_example(each))
+        chosen = hands.any_of(each for each in menu.actions() if is_harmless(each))
         hands.note(f"the tool bar's menu: {chosen.objectName()} '{chosen.text()}'")
         chosen.trigger()
     else:
