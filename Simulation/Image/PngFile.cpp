@@ -1,10 +1,10 @@
 #include "Image/PngFile.h"
 
-#include "Image/DeflateRuns.h"
-
 #include <libdeflate.h>
 
 #include <cmath>
+#include <memory>
+#include <new>
 #include <vector>
 
 namespace sono {
@@ -41,6 +41,30 @@ void subtractNeighbours(const std::uint8_t* __restrict grey, int width, std::uin
   }
 }
 
+struct FreeCompressor
+{
+  void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+};
+
+/// The thread's own, since its tables take longer to get than to use; nothing of one stream stays for the next.
+libdeflate_compressor* compressor()
+{
+  constexpr int level = 1;
+  thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> own(libdeflate_alloc_compressor(level));
+  if (!own)
+  {
+    throw std::bad_alloc();
+  }
+  return own.get();
+}
+
+std::string deflated(const std::vector<std::uint8_t>& raw)
+{
+  std::string out(libdeflate_zlib_compress_bound(compressor(), raw.size()), '\0');
+  out.resize(libdeflate_zlib_compress(compressor(), raw.data(), raw.size(), out.data(), out.size()));
+  return out;
+}
+
 } // namespace
 
 std::string pngBytes(const std::uint8_t* grey, int width, int height, double pixelMm)
@@ -64,7 +88,7 @@ std::string pngBytes(const std::uint8_t* grey, int width, int height, double pix
   std::string bytes("\x89PNG\r\n\x1a\n", 8);
   appendChunk("IHDR", header, bytes);
   appendChunk("pHYs", size, bytes);
-  appendChunk("IDAT", deflateRuns(rows.data(), rows.size()), bytes);
+  appendChunk("IDAT", deflated(rows), bytes);
   appendChunk("IEND", {}, bytes);
   return bytes;
 }
