@@ -106,7 +106,7 @@ class TestRemote(unittest.TestCase):
         anatomy.UpdatePipeline()
         few = triangles(coarse)
         self.assertGreater(few, 1000)
-        self.assertLess(few, anatomy.GetDataInformation().GetNumberOfCells() / 5)
+        self.assertLess(few, anatomy.GetDataInformation().GetNumberOfCells() / 2)  # which is coarse itself
         self.ultrasound.DepthMm = 120
         self.assertEqual(triangles(coarse), few)
         self.assertEqual(version(), 1)
