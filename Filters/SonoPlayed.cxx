@@ -74,14 +74,14 @@ struct Store
     }
 #endif
   }
-  template<class Is>
-  std::list<Played>::iterator find(const Is& is)
+  std::list<Played>::iterator find(const std::string& key)
   {
-    return std::find_if(things.begin(), things.end(), is);
+    return std::find_if(things.begin(), things.end(), [&](const Played& played) { return played.key == key; });
   }
-  std::list<Played>::iterator findKey(const std::string& key)
+  std::list<Played>::iterator find(const void* owner, const std::string& key)
   {
-    return find([&](const Played& played) { return played.key == key; });
+    return std::find_if(things.begin(), things.end(),
+                        [&](const Played& played) { return played.owner == owner && played.key == key; });
   }
   std::shared_ptr<const void> use(std::list<Played>::iterator found)
   {
@@ -122,11 +122,6 @@ std::string phaseKey(int phase)
   return "phase " + std::to_string(phase);
 }
 
-std::list<Played>::iterator findPhase(const void* source, int phase)
-{
-  return store().find([&](const Played& played) { return played.owner == source && played.key == phaseKey(phase); });
-}
-
 } // namespace
 
 std::size_t playedLimitBytes()
@@ -151,13 +146,13 @@ std::size_t playedBytes()
 std::shared_ptr<const void> findPlayed(const std::string& key)
 {
   const auto lock = lockStore();
-  return store().use(store().findKey(key));
+  return store().use(store().find(key));
 }
 
 void keepPlayed(const void* owner, const std::string& key, std::shared_ptr<const void> thing, std::size_t bytes)
 {
   const auto lock = lockStore();
-  const auto before = store().findKey(key);
+  const auto before = store().find(key);
   if (before != store().things.end())
   {
     store().remove(before);
@@ -191,8 +186,7 @@ void givePlayed(const void* owner, const void* next)
     const auto given = thing++;
     if (given->owner == owner)
     {
-      const auto isSame = [&](const Played& played) { return played.owner == next && played.key == given->key; };
-      const bool isThere = store().find(isSame) != things.end();
+      const bool isThere = store().find(next, given->key) != things.end();
       given->owner = next;
       if (isThere)
       {
@@ -206,7 +200,7 @@ bool takePlayedPhase(const void* source, int phase, vtkImageData* image)
 {
   const auto lock = lockStore();
   const auto kept =
-    std::static_pointer_cast<const vtkSmartPointer<vtkImageData>>(store().use(findPhase(source, phase)));
+    std::static_pointer_cast<const vtkSmartPointer<vtkImageData>>(store().use(store().find(source, phaseKey(phase))));
   if (kept)
   {
     image->ShallowCopy(*kept);
@@ -217,7 +211,7 @@ bool takePlayedPhase(const void* source, int phase, vtkImageData* image)
 void keepPlayedPhase(const void* source, int phase, vtkImageData* image)
 {
   const auto lock = lockStore();
-  if (findPhase(source, phase) != store().things.end())
+  if (store().find(source, phaseKey(phase)) != store().things.end())
   {
     return; // given by another
   }

@@ -169,31 +169,27 @@ VoxelBox fanBox(const Scene& scene, const std::vector<ScanLine>& lines, const Tr
 std::vector<LocalBall> fanReach(const Scene& scene, const std::vector<ScanLine>& lines, const TraceSettings& settings,
                                 double besideMm)
 {
-  constexpr double togetherMm = 15.0; // small against what a path goes
-  struct Group
-  {
-    std::vector<Vec3d> originsMm;
-  };
-  std::vector<Group> groups;
+  constexpr double togetherMm = 15.0;     // small against what a path goes
+  std::vector<std::vector<Vec3d>> groups; // of lines' origins, mm
   for (const ScanLine& line : lines)
   {
     const Vec3d originMm = scene.localFromWorld(line.originMm);
-    const auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
-      return glm::distance(group.originsMm.front(), originMm) <= togetherMm;
+    const auto near = std::find_if(groups.begin(), groups.end(), [&](const std::vector<Vec3d>& group) {
+      return glm::distance(group.front(), originMm) <= togetherMm;
     });
-    (near == groups.end() ? groups.emplace_back() : *near).originsMm.push_back(originMm);
+    (near == groups.end() ? groups.emplace_back() : *near).push_back(originMm);
   }
   const StartSpread spread = startSpread(settings);
   const double asideMm = std::hypot(spread.lateralMm, spread.elevationalMm); // from where a path starts to its line
   std::vector<LocalBall> balls;
-  for (const Group& group : groups)
+  for (const std::vector<Vec3d>& group : groups)
   {
     LocalBall ball{ Vec3d(0.0), 0.0 };
-    for (const Vec3d& originMm : group.originsMm)
+    for (const Vec3d& originMm : group)
     {
-      ball.middleMm += originMm / double(group.originsMm.size());
+      ball.middleMm += originMm / double(group.size());
     }
-    for (const Vec3d& originMm : group.originsMm)
+    for (const Vec3d& originMm : group)
     {
       const double fromMiddleMm = glm::distance(originMm, ball.middleMm);
       ball.mm = std::max(ball.mm, fromMiddleMm + asideMm + settings.pathDepthMm() + besideMm);
