@@ -22,8 +22,8 @@ def resident_mb():
     return pages * 4096 / 1e6
 
 
-def phases(folder, edge):
-    """A ball of blood in muscle, of another size in each phase: a reader of a file a phase."""
+def phases(folder, edge, share=0.2):
+    """A ball of blood in muscle, of another size in each phase, from a share of the edge on: a reader of a file a phase."""
     grid = np.indices((edge, edge, edge)) - (edge - 1) / 2
     radius = np.sqrt((grid ** 2).sum(axis=0))
     names = vtkStringArray()
@@ -37,7 +37,7 @@ def phases(folder, edge):
     for phase in range(len(TIMES)):
         labels = np.where(radius < 0.45 * edge, 1, 0)
         labels[(radius >= 0.43 * edge) & (labels == 1)] = 3
-        labels[radius < (0.2 + 0.04 * phase) * edge] = 2
+        labels[radius < (share + 0.04 * phase) * edge] = 2
         image = vtkImageData()
         image.SetDimensions(edge, edge, edge)
         image.SetSpacing(*(3 * [80.0 / edge]))
@@ -222,11 +222,13 @@ class TestPlayed(unittest.TestCase):
     def test_a_source_that_was_changed_is_not_given_what_another_made(self):
         shown = self.heart()
         made = self.ahead(shown)
+        self.wait(made.HasEnded)
+        phases(self.folder, 40, share=0.18)
         shown.source.Modified()
         self.assertEqual(made.TakeReady(), len(TIMES))  # nobody waits any more
-        self.wait(made.HasEnded)
-        shown.play()
+        seen = shown.play()
         self.assertEqual(shown.built(), len(TIMES))
+        self.assert_same(seen, Heart(phases(self.folder, 40, share=0.18)).play())
 
     def test_phases_that_cannot_be_made_ahead_are_waited_for_by_nobody(self):
         shown = self.heart()
