@@ -262,7 +262,7 @@ __device__ bool beginPath(const Launch& launch, int line, const PathKey& key, Tr
   }
   const LineStart& start = launch.starts[line];
   path = start.path;
-  return passBoundary(launch.view, launch.space, start.boundary, key, path, sink);
+  return passBoundary(launch.view, start.boundary, key, path, sink);
 }
 
 template<class Real>
@@ -381,8 +381,8 @@ __global__ void __launch_bounds__((FewWarps ? shapeOfFew : shapeOfMany).warps* w
     __syncthreads();
     if (steps && pieceEnd == PieceEnd::Boundary)
     {
-      walks = arriveAtBoundary(launch.view, path, boundary, sink) &&
-              passBoundary(launch.view, launch.space, boundary, key, path, sink);
+      walks =
+        arriveAtBoundary(launch.view, path, boundary, sink) && passBoundary(launch.view, boundary, key, path, sink);
     }
     __syncthreads();
     unsigned waiting = __ballot_sync(allLanes, sink.holdsSegment());

@@ -69,13 +69,19 @@ struct AxisMarch
 /// Cubes of a smaller half-width are walked through.
 constexpr int worthJumping = 5;
 
-/// Marches to the first cell whose tissue is not `current`. Cells of tissue `ignored` count as `current` while
-/// t < ignoreUntil (hysteresis after a boundary; -1: none), and are passed one by one: what is left of them then is met
-/// at the next face. Walks cell by cell, so that the next address does not wait
-/// for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for the wait.
-template<class Cells>
-SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, int ignored,
-                                       float ignoreUntil, float tMax)
+/// No cells of another tissue are passed.
+struct NoStairs
+{
+  SONO_HD bool passes(int, float, const Vec3f&) const { return false; }
+};
+
+/// Marches to the first cell behind the ray's own whose tissue is not `current`. Cells that `stairs` passes
+/// (StairsLeft) count as `current`, and are walked through one by one. Walks cell by cell, so that the next address
+/// does not wait for the last word (a processor runs ahead), and jumps where a uniform cube is large enough to pay for
+/// the wait.
+template<class Cells, class Stairs>
+SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, int current, const Stairs& stairs,
+                                       float tMax)
 {
   const AxisMarch ax(ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x);
   const AxisMarch ay(ray.position.y * cells.perMm.y, ray.direction.y * cells.perMm.y);
@@ -108,7 +114,9 @@ SONO_HD inline CellHit marchToBoundary(const Cells& cells, const CellRay& ray, i
     cursor.move(alongX, alongY, alongZ);
     const std::uint32_t word = cursor.word();
     const int tissue = int(word & 255u);
-    if (tissue != current && (tissue != ignored || t >= ignoreUntil))
+    // Once a march or a stair: said, or what the loop needs goes to the stack for what happens here.
+    if (__builtin_expect(tissue != current, 0) &&
+        !stairs.passes(tissue, t, Vec3f(faceX - ax.step, faceY - ay.step, faceZ - az.step)))
     {
       const Vec3i after(ax.cellOf(faceX), ay.cellOf(faceY), az.cellOf(faceZ));
       const Vec3i before(after.x - (alongX ? ax.sign() : 0), after.y - (alongY ? ay.sign() : 0),

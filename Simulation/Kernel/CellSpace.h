@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/SurfaceHit.h"
+#include "Kernel/StairsLeft.h"
 
 namespace sono {
 
@@ -35,11 +35,11 @@ struct CellSpace
   SONO_HD Vec3i cellAt(const Vec3f& position) const { return cells.cellAt(position); }
   SONO_HD bool contains(const Vec3i& cell) const { return cells.contains(cell); }
   SONO_HD int tissueAt(const Vec3i& cell) const { return cells.tissueAt(cell); }
-  SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
+  template<class Stairs>
+  SONO_HD CellHit march(const CellRay& ray, int current, const Stairs& stairs, float tMax) const
   {
-    return marchToBoundary(cells, ray, current, ignored, ignoreUntil, tMax);
+    return marchToBoundary(cells, ray, current, stairs, tMax);
   }
-  SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit) const { return refineBoundary(cells, ray, hit); }
 };
 
 } // namespace sono

@@ -28,29 +28,10 @@ SONO_HD inline Scattered mirroredByFace(const TraceView& view, const PathBoundar
            view.faceReflection * view.faceReflection, view.faceReflection };
 }
 
-/// How far a path that restarts on a voxel face must go before it counts as clear of the boundary it leaves. The cells
-/// of a smooth surface are a staircase that reaches half a voxel's extent along the normal to either side of it; the
-/// face itself may lie on the far side. The rest is for curvature and, where the normal is but the face's, for its
-/// error.
-template<class Space>
-SONO_HD inline float clearance(const Space& space, const PathBoundary& boundary, const Vec3f& incident,
-                               const Scattered& out)
-{
-  const Vec3f& n = boundary.surface.normal;
-  const Vec3f h = space.spacing();
-  const float stair = 0.5f * (fabsf(n.x) * h.x + fabsf(n.y) * h.y + fabsf(n.z) * h.z);
-  const float beyond = (boundary.restart - boundary.surface.t) * glm::dot(incident, n);
-  const float slack = (boundary.surface.smooth ? 0.3f : 0.8f) * space.meanSpacing();
-  const float across = stair + slack + (out.reflected ? beyond : -beyond);
-  const float leaving = larger(fabsf(glm::dot(out.direction, n)), 0.1f);
-  return larger(0.0f, smaller(8.0f * space.meanSpacing(), across / leaving));
-}
-
-/// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and does not see
-/// the tissue on the other side again until it is clear of the boundary.
-template<class Space>
-SONO_HD inline void takeBranch(const TraceView& view, const Space& space, const PathBoundary& boundary,
-                               const Scattered& out, PathState& path)
+/// Leaves the boundary along a branch. The path restarts on the voxel face, in the cell it stays in, and passes the
+/// boundary's stairs.
+SONO_HD inline void takeBranch(const TraceView& view, const PathBoundary& boundary, const Scattered& out,
+                               PathState& path)
 {
   const Vec3f incident = path.ray.direction;
   const BoundarySide& side = out.reflected ? boundary.before : boundary.after;
@@ -66,12 +47,13 @@ SONO_HD inline void takeBranch(const TraceView& view, const Space& space, const 
     const float before = view.media[boundary.before.medium].rangePerMm;
     const float behind = view.media[boundary.after.medium].rangePerMm;
     path.rangeMm += beyond * (out.reflected ? -2.0f * before : behind - before);
-    path.ignored = out.reflected ? boundary.after.medium : boundary.before.medium;
-    path.ignoreUntil = clearance(space, boundary, incident, out);
+    const int left = out.reflected ? boundary.after.medium : boundary.before.medium;
+    const Vec3f into = boundary.surface.normal * (out.reflected ? -1.0f : 1.0f);
+    path.left = leftSurface(left, into, beyond * glm::dot(incident, into));
   }
   else
   {
-    path.ignoreUntil -= boundary.restart;
+    path.left = LeftSurface();
   }
   path.intensity *= out.throughput;
   path.amplitude *= out.amplitude;
@@ -81,9 +63,8 @@ SONO_HD inline void takeBranch(const TraceView& view, const Space& space, const 
 }
 
 /// Leaves the boundary along the branch drawn by `u`.
-template<class Space>
-SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
-                                  const BounceSample& u, PathState& path)
+SONO_HD inline void leaveBoundary(const TraceView& view, const PathBoundary& boundary, const BounceSample& u,
+                                  PathState& path)
 {
   const Vec3f& d = path.ray.direction;
   const Vec3f& n = boundary.surface.normal;
@@ -111,7 +92,7 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const Space& space, con
   {
     out.throughput = 0.0f;
   }
-  takeBranch(view, space, boundary, out, path);
+  takeBranch(view, boundary, out, path);
 }
 
 } // namespace sono

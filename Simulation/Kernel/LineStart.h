@@ -82,7 +82,7 @@ SONO_HD inline bool enterBody(const TraceView& view, const Space& space, const T
   path.tissue = space.tissueAt(path.ray.cell);
   if (path.tissue == view.outsideTissue)
   {
-    const CellHit hit = space.toBoundary(path.ray, path.tissue, -1, 0.0f, remainingLength(view, line, path));
+    const CellHit hit = space.march(path.ray, path.tissue, NoStairs(), remainingLength(view, line, path));
     sink.segment(PathSegment{ path.ray.position, line.axis, hit.t, 1.0f, 0.0f, 0.0f });
     if (hit.tissue < 0)
     {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Kernel/SurfaceHit.h"
+#include "Kernel/StairsLeft.h"
 
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/Ray.h>
@@ -27,7 +27,6 @@ struct NanoSpace
   SONO_HD float meanSpacing() const { return cells.meanSpacing; }
   SONO_HD Vec3i cellAt(const Vec3f& position) const { return cells.cellAt(position); }
   SONO_HD bool contains(const Vec3i& cell) const { return cells.contains(cell); }
-  SONO_HD RefinedHit refine(const CellRay& ray, const CellHit& hit) const { return refineBoundary(cells, ray, hit); }
   SONO_HD int tissueAt(const Vec3i& cell) const { return tissueAt(labels->getAccessor(), cell); }
   SONO_HD int tissueAt(const Accessor& accessor, const Vec3i& cell) const
   {
@@ -42,7 +41,8 @@ struct NanoSpace
   }
 
   /// As marchToBoundary.
-  SONO_HD CellHit toBoundary(const CellRay& ray, int current, int ignored, float ignoreUntil, float tMax) const
+  template<class Stairs>
+  SONO_HD CellHit march(const CellRay& ray, int current, const Stairs& stairs, float tMax) const
   {
     const Accessor accessor = labels->getAccessor();
     const AxisMarch axes[3] = { { ray.position.x * cells.perMm.x, ray.direction.x * cells.perMm.x },
@@ -86,7 +86,7 @@ struct NanoSpace
         return { t, before, before, -1, axis };
       }
       const int tissue = tissueAt(accessor, c);
-      if (tissue != current && (tissue != ignored || t >= ignoreUntil))
+      if (tissue != current && !stairs.passes(tissue, t, Vec3f(c)))
       {
         return { t, before, c, tissue, axis };
       }

@@ -94,7 +94,7 @@ SONO_HD inline bool findBoundary(const Space& space, int firstTargetMedium, cons
     if (hit.tissue >= 0)
     {
       boundary.restart = hit.t;
-      boundary.surface = space.refine(ray, hit);
+      boundary.surface = refineBoundary(space.cells, ray, hit);
       boundary.before.cell = hit.before;
       boundary.after = { hit.after, hit.tissue, -1 };
       boundary.voxelFace = true;
@@ -162,7 +162,7 @@ SONO_HD inline PieceEnd endPiece(const TraceView& view, const Space& space, cons
   }
   path.ray.position += path.ray.direction * boundary.restart;
   path.ray.cell = boundary.after.cell;
-  path.ignoreUntil -= boundary.restart;
+  path.left.move(path.ray.direction * boundary.restart);
   path.tissue = boundary.after.medium;
   path.target = boundary.after.target;
   return ++path.pieces < mostPieces(space) ? PieceEnd::Medium : PieceEnd::Path;
@@ -219,7 +219,7 @@ SONO_HD inline PieceEnd walkPiece(const TraceView& view, const Space& space, con
   CellHit hit{};
   if (path.target < 0)
   {
-    hit = space.toBoundary(path.ray, path.tissue, path.ignored, path.ignoreUntil, limit.t);
+    hit = marchPastStairs(space, path.ray, path.tissue, path.left, limit.t);
   }
   PathSegment piece;
   boundary.isFace = false;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Kernel/Interface.h"
+#include "Kernel/LeftSurface.h"
 #include "Kernel/SurfaceHit.h"
 
 // What a path is, what it meets and what it tells on its way. See TracePath.h.
@@ -19,10 +20,9 @@ struct PathState
   /// chance with which the path was drawn.
   float amplitude = 1.0f;
   int reflections = 0;
-  int tissue = 0;   ///< medium that the path is in
-  int target = -1;  ///< target that the path is in; the cells do not count there
-  int ignored = -1; ///< see marchToBoundary
-  float ignoreUntil = 0.0f;
+  int tissue = 0;  ///< medium that the path is in
+  int target = -1; ///< target that the path is in; the cells do not count there
+  LeftSurface left;
   int collisions = 0;
   int pieces = 0; ///< since the last boundary
 };

@@ -71,18 +71,29 @@ SONO_HD inline std::uint32_t recordAt(const Cells& cells, const Vec3i& c)
   return cells.recordOf(c.x, c.y, c.z, cells.wordAt(c.x, c.y, c.z));
 }
 
+/// The step from one voxel of a hit to the other: a unit vector along an axis.
+SONO_HD inline Vec3f stepOf(const CellRay& ray, const CellHit& hit)
+{
+  return { hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f, hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
+           hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f };
+}
+
 /// THE rule for the surface between two labels. Each side's record describes its own smoothed surface; they disagree
 /// slightly. The side with the larger gradient leads; the other is dropped when its gradient is below 0.59 of it (a
 /// thin wall has lost its own surface, its thick neighbour has not; gradients come in sevenths, and at 0.6 rounding
 /// would decide on 3/7 beside 5/7); else the normals are averaged. The point moves along the ray to the plane of the
-/// records, by one voxel at most; there the normal is interpolated. Where no record is trustworthy, or the smooth
-/// normal says that the ray leaves rather than enters, the voxel face stands.
+/// records, by one voxel at most; there the normal is interpolated. Where the smooth normal says that the ray leaves
+/// rather than enters, the voxel face stands.
+/// A voxel of a thin layer has two surfaces and one record. Where that looks against the step it is of the other
+/// surface, and does not count. The two run side by side: where no record is to be trusted, one with a slight gradient
+/// gives the normal, in the sense in which the ray enters, and the voxel's face the place.
 template<class Cells>
 SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray, const CellHit& hit)
 {
-  const Vec3f face(hit.axis == 0 ? signNotZero(ray.direction.x) : 0.0f,
-                   hit.axis == 1 ? signNotZero(ray.direction.y) : 0.0f,
-                   hit.axis == 2 ? signNotZero(ray.direction.z) : 0.0f);
+  constexpr float against = -0.2f; // steps along a surface are 0, and normals err
+  constexpr float least = 0.15f;
+  constexpr float slightest = 0.1f;
+  const Vec3f face = stepOf(ray, hit);
   const std::uint32_t bitsA = recordAt(cells, hit.before);
   const std::uint32_t bitsB = recordAt(cells, hit.after);
   if ((bitsA | bitsB) == 0u)
@@ -91,16 +102,23 @@ SONO_HD inline RefinedHit refineBoundary(const Cells& cells, const CellRay& ray,
   }
   const BoundaryRecord a = decodeRecord(bitsA);
   const BoundaryRecord b = decodeRecord(bitsB);
-  const float confA = bitsA ? a.confidence : 0.0f;
-  const float confB = bitsB ? b.confidence : 0.0f;
+  const float toldA = bitsA ? a.confidence : 0.0f;
+  const float toldB = bitsB ? b.confidence : 0.0f;
+  const float confA = glm::dot(a.normal, face) > against ? toldA : 0.0f;
+  const float confB = glm::dot(b.normal, face) < -against ? toldB : 0.0f;
   const float best = larger(confA, confB);
   const float weightA = confA >= 0.59f * best ? 1.0f : 0.0f;
   const float weightB = confB >= 0.59f * best ? 1.0f : 0.0f;
   const Vec3f sum = a.normal * weightA - b.normal * weightB;
   const float length = glm::length(sum);
-  if (best < 0.15f || length < 0.5f)
+  if (best < least || length < 0.5f)
   {
-    return { face, hit.t };
+    const Vec3f told = toldA > toldB ? a.normal : b.normal;
+    const Vec3f across = told * signNotZero(glm::dot(told, ray.direction));
+    // A ray must not be turned back through the face by which it came.
+    const bool isTold = best < least && larger(toldA, toldB) > slightest && glm::dot(across, face) > 0.0f &&
+                        glm::dot(across, ray.direction) > 0.01f;
+    return { isTold ? across : face, hit.t };
   }
   const Vec3f n = sum / length;
   const float cosine = glm::dot(ray.direction, n);

@@ -27,7 +27,7 @@
 //   stepPath                           done by                 tells the sink
 //     walkPiece                        (PathPiece.h)
 //       how far may the piece go?      limitPiece              -
-//       march to where it ends         Space::toBoundary       -
+//       march to where it ends         marchPastStairs         -
 //       lose intensity on the way,     endPiece                segment: the piece
 //         reflection at its end
 //     arriveAtBoundary                                         meets: the path in front of it
@@ -100,11 +100,11 @@ SONO_HD inline bool arriveAtBoundary(const TraceView& view, const PathState& pat
 }
 
 /// Leaves a boundary as the path's random numbers have it. Returns whether the path lives on.
-template<class Space, class Sink>
-SONO_HD inline bool passBoundary(const TraceView& view, const Space& space, const PathBoundary& boundary,
-                                 const PathKey& key, PathState& path, Sink& sink)
+template<class Sink>
+SONO_HD inline bool passBoundary(const TraceView& view, const PathBoundary& boundary, const PathKey& key,
+                                 PathState& path, Sink& sink)
 {
-  leaveBoundary(view, space, boundary, drawBounce(view, key, path.collisions), path);
+  leaveBoundary(view, boundary, drawBounce(view, key, path.collisions), path);
   sink.left(path, boundary);
   return path.intensity > 0.0f && survivesRoulette(view, key, path);
 }
@@ -120,7 +120,7 @@ SONO_HD inline bool stepPath(const TraceView& view, const Space& space, const Be
   {
     return end == PieceEnd::Medium;
   }
-  return arriveAtBoundary(view, path, boundary, sink) && passBoundary(view, space, boundary, key, path, sink);
+  return arriveAtBoundary(view, path, boundary, sink) && passBoundary(view, boundary, key, path, sink);
 }
 
 /// One path, from the first boundary to its end: its steps, cut where it leaves a boundary, which the first one is as
@@ -131,8 +131,8 @@ SONO_HD inline void tracePath(const TraceView& view, const Space& space, const B
 {
   PathState path = start.path;
   PathBoundary boundary = start.boundary;
-  while (passBoundary(view, space, boundary, key, path, sink) &&
-         advanceToBoundary(view, space, beam, path, boundary, sink) && arriveAtBoundary(view, path, boundary, sink))
+  while (passBoundary(view, boundary, key, path, sink) && advanceToBoundary(view, space, beam, path, boundary, sink) &&
+         arriveAtBoundary(view, path, boundary, sink))
   {
   }
 }

@@ -38,7 +38,7 @@ struct Hits
 void meetOnce(const TissueCells& cells, const Ellipsoid& truth, const CellRay& ray, Hits& hits)
 {
   const int from = cells.tissueAt(ray.cell);
-  const CellHit hit = marchToBoundary(cells, ray, from, -1, 0.0f, 1e6f);
+  const CellHit hit = marchToBoundary(cells, ray, from, NoStairs(), 1e6f);
   if (hit.tissue < 0)
   {
     return;
@@ -89,7 +89,7 @@ SurfaceAccuracy measureEllipsoid(const EllipsoidCase& shape)
     CellRay ray{ Vec3f(inside), Vec3f(d), cells.cellAt(Vec3f(inside)) };
     if (n % 2 == 1)
     {
-      const CellHit exit = marchToBoundary(cells, ray, 1, -1, 0.0f, 1e6f);
+      const CellHit exit = marchToBoundary(cells, ray, 1, NoStairs(), 1e6f);
       ray.position = Vec3f(inside + d * (double(exit.t) + 3.0 * voxelMm));
       ray.direction = -ray.direction;
       ray.cell = cells.cellAt(ray.position);

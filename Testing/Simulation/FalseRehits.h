@@ -46,7 +46,7 @@ inline double falseRehitShare(double radiusVoxel, int reflections)
     {
       continue;
     }
-    leaveBoundary(scene.view, scene.space(), boundary, BounceSample{ 0.5f, 0.5f, 0.5f }, path);
+    leaveBoundary(scene.view, boundary, BounceSample{ 0.5f, 0.5f, 0.5f }, path);
     ++done;
     // The way on is judged by the sphere alone, not by the line's slab.
     path.length = 0.0f;

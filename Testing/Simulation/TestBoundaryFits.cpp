@@ -69,12 +69,12 @@ Hit firstHit(const Block& block, const Vec3d& from, const Vec3d& direction)
     return hit;
   }
   hit.from = space.tissueAt(ray.cell);
-  const CellHit cell = space.toBoundary(ray, hit.from, -1, 0.0f, 1e4f);
+  const CellHit cell = space.march(ray, hit.from, NoStairs(), 1e4f);
   if (cell.tissue < 0)
   {
     return hit;
   }
-  const RefinedHit refined = space.refine(ray, cell);
+  const RefinedHit refined = refineBoundary(space.cells, ray, cell);
   return { true, from + direction * double(refined.t) / block.meanVoxel, Vec3d(refined.normal), hit.from, cell.tissue };
 }
 

@@ -1,4 +1,5 @@
 #include "FalseRehits.h"
+#include "HollowHits.h"
 #include "KernelScene.h"
 #include "TestScenes.h"
 
@@ -87,12 +88,12 @@ SurfaceError measure(const Ellipsoid& shape, int rays)
     {
       continue;
     }
-    const CellHit hit = space.toBoundary(ray, 0, -1, 0.0f, 1e4f);
+    const CellHit hit = space.march(ray, 0, NoStairs(), 1e4f);
     if (hit.tissue != 1)
     {
       continue;
     }
-    const RefinedHit surface = space.refine(ray, hit);
+    const RefinedHit surface = refineBoundary(space.cells, ray, hit);
     const Vec3d point(ray.position + ray.direction * surface.t);
     error.meanOffset += std::abs(shape.distance(point)) / shape.meanVoxel / rays;
     // The hit's normal points from the outside into the ellipsoid.
@@ -143,8 +144,8 @@ TEST(SurfaceRefinement, AFlatWallIsExactAtAnySpacing)
       Vec3d direction(0.3, 0.2, 0.25);
       direction[axis] = 1.0;
       CellRay ray{ Vec3f(Vec3d(8.3) * spacing), Vec3f(glm::normalize(direction)), Vec3i(8) };
-      const CellHit hit = scene.space().toBoundary(ray, 0, -1, 0.0f, 1e4f);
-      const RefinedHit surface = scene.space().refine(ray, hit);
+      const CellHit hit = scene.space().march(ray, 0, NoStairs(), 1e4f);
+      const RefinedHit surface = refineBoundary(scene.space().cells, ray, hit);
       EXPECT_NEAR((ray.position + ray.direction * surface.t)[axis], wall, 0.01 * scene.region.view().meanSpacing);
       EXPECT_NEAR(surface.normal[axis], 1.0f, 1e-4f);
     }
@@ -201,7 +202,7 @@ std::vector<int> labelsAlong(const KernelScene& scene, const CellRay& ray)
   NullSink sink;
   while (labels.size() < 50 && advanceToBoundary(scene.view, scene.space(), line, path, boundary, sink))
   {
-    leaveBoundary(scene.view, scene.space(), boundary, BounceSample{ 0.9999f, 0.5f, 0.5f }, path);
+    leaveBoundary(scene.view, boundary, BounceSample{ 0.9999f, 0.5f, 0.5f }, path);
     labels.push_back(path.tissue);
   }
   return labels;
@@ -270,6 +271,32 @@ TEST(SurfaceTopology, AHollowShellKeepsItsCavity)
       const double r = glm::length(p);
       return r < 18.0 && r > 13.0 ? 1 : 0;
     });
+  }
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int roundHits = 4000;
+#else
+constexpr int roundHits = 100000;
+#endif
+
+TEST(SurfaceRestart, NoHitIsOffAndNoWayLeadsThroughAnotherTissue)
+{
+  for (const RoundBody& body : roundBodies())
+  {
+    int away = 0;
+    int again = 0;
+    for (const Turning& turning : allTurnings())
+    {
+      const RoundHits found = meetRoundBody(body, turning, roundHits);
+      const std::string what =
+        body.name + " lobe " + std::to_string(turning.lobeDegrees) + " rough " + std::to_string(turning.roughness);
+      EXPECT_EQ(found.off, 0) << "of " << found.hits << ", worst " << found.worst << " voxels, " << what;
+      EXPECT_EQ(found.through, 0) << "of " << found.hits << ", " << what;
+      away += found.away;
+      again += found.again;
+    }
+    EXPECT_LE(again, 0.002 * away) << "of " << away << ", " << body.name;
   }
 }
 

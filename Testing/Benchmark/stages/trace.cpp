@@ -5,6 +5,7 @@
 #include "Core/Progress.h"
 #include "Core/SoundSpeed.h"
 #include "FalseRehits.h"
+#include "HollowHits.h"
 #include "Labels/AssignTissues.h"
 #include "PhantomScene.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -14,6 +15,7 @@
 #include "Stage.h"
 #include "TestScenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -248,6 +250,30 @@ void printTimeToNoise(const Scene& scene, ImageSettings settings, const std::str
   }
 }
 
+/// Hits on balls, shells and walls, 100,000 in each.
+void printRoundHits()
+{
+  test::RoundHits all;
+  for (const test::RoundBody& body : test::roundBodies())
+  {
+    for (const test::Turning& turning : test::allTurnings())
+    {
+      const test::RoundHits one = test::meetRoundBody(body, turning, 100000);
+      all.hits += one.hits;
+      all.off += one.off;
+      all.through += one.through;
+      all.worst = std::max(all.worst, one.worst);
+      all.away += one.away;
+      all.again += one.again;
+    }
+  }
+  printFigure("hollow_hits", all.hits, "hits");
+  printFigure("hollow_hits_off", all.off, "hits");
+  printFigure("hollow_hits_worst", all.worst, "voxel");
+  printFigure("hollow_ways_through", all.through, "hits");
+  printFigure("hollow_rehit_percent", 100.0 * all.again / all.away, "%");
+}
+
 void measureTrace()
 {
   const auto lines = a4cLines();
@@ -273,6 +299,7 @@ void measureTrace()
   printFigure("snell_max_rad", snellError(), "rad");
   printFigure("false_rehit_percent",
               100.0 * std::max(test::falseRehitShare(30.0, 100000), test::falseRehitShare(90.0, 100000)), "%");
+  printRoundHits();
   const std::vector<ScanLine> third(lines.begin() + 40, lines.begin() + 80);
   printErrorCurve(*scene, third, a4cSettings(), "trace");
   TraceSettings example = a4cSettings(); // of Plugin/examples/simulate.py
