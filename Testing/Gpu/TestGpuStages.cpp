@@ -37,9 +37,12 @@ TEST(GpuStages, BundledThoraxInEveryModel)
 TEST(GpuStages, WeightsOverOrdersOfMagnitudeWithManySeeds)
 {
   SONO_GPU_OR_SKIP();
-  // The seed's equations give some paths a thousand times the weight of others, so a few that part on the two devices
-  // show. Each collision with a curved wall widens what rounding set apart: after four the CPU's own two marches differ
-  // by 2.7e-3 with the second seed, as this device does; after three by 2e-4.
+  // The seed's equations give some paths a thousand times the weight of others, so a single one of the half a million
+  // that rounding sends another way shows. The CPU's own two marches, which differ in rounding alone, part as well: of
+  // these seeds four. So a device may, but no more often, and what has not parted agrees closely.
+  std::vector<double> differences;
+  int parted = 0;
+  int partedOnCpu = 0;
   for (const Sampling sampling : { Sampling::LowDiscrepancy, Sampling::Independent })
   {
     for (std::uint64_t seed = 1; seed <= 10; ++seed)
@@ -50,10 +53,20 @@ TEST(GpuStages, WeightsOverOrdersOfMagnitudeWithManySeeds)
       s.tracing.seed = seed;
       s.tracing.pathsPerLine = 8000;
       s.tracing.maxCollisions = 3;
-      expectSameRf(thoraxChain(s, Device::Cuda), thoraxChain(s, Device::Cpu),
-                   "sampling " + std::to_string(int(sampling)) + ", seed " + std::to_string(seed));
+      const Chain gpu = thoraxChain(s, Device::Cuda);
+      const Chain cpu = thoraxChain(s, Device::Cpu);
+      s.tracing.march = March::NanoVDB;
+      const double own = rfDifference(thoraxChain(s, Device::Cpu).rf, cpu.rf);
+      differences.push_back(rfDifference(gpu.rf, cpu.rf));
+      std::printf("sampling %d, seed %d: %.2g, the CPU's own two marches %.2g\n", int(sampling), int(seed),
+                  differences.back(), own);
+      parted += differences.back() > rfTolerance;
+      partedOnCpu += own > rfTolerance;
     }
   }
+  EXPECT_LE(parted, partedOnCpu);
+  std::sort(differences.begin(), differences.end());
+  EXPECT_LT(differences[differences.size() / 2], 0.2 * rfTolerance);
 }
 
 TEST(GpuStages, ManyCollisionsManyPathsFineBins)
