@@ -48,7 +48,7 @@ SONO_HD inline void takeBranch(const TraceView& view, const PathBoundary& bounda
     const float behind = view.media[boundary.after.medium].rangePerMm;
     path.rangeMm += beyond * (out.reflected ? -2.0f * before : behind - before);
     const int left = out.reflected ? boundary.after.medium : boundary.before.medium;
-    const Vec3f into = boundary.surface.normal * (out.reflected ? -1.0f : 1.0f);
+    const Vec3f into = out.reflected ? -boundary.surface.normal : boundary.surface.normal;
     path.left = leftSurface(left, into, beyond * glm::dot(incident, into));
   }
   else
