@@ -5,40 +5,103 @@
 #include "Study.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace sono::study {
 namespace {
 
 constexpr double sameLineMm = 1.0; // wires that lie so near to a line are seen on it
 
-/// Least squares parabola through (x, y); its vertex. A Gaussian peak is a parabola in dB.
-double vertexOf(const std::vector<double>& x, const std::vector<double>& y)
+// What of an image belongs to a wire's echo.
+constexpr double rowsReachMm = 1.0;
+constexpr double columnsReachMm = 3.0;
+
+/// A paraboloid over (x, z) by least squares: 1, x, z, x^2, x z, z^2.
+class Paraboloid
 {
-  const double middle = std::accumulate(x.begin(), x.end(), 0.0) / double(x.size());
-  double s[5] = {};
-  double t[3] = {};
-  for (std::size_t i = 0; i < x.size(); ++i)
+public:
+  void add(double x, double z, double value)
   {
-    double power = 1.0;
-    for (int p = 0; p < 5; ++p)
+    const std::array<double, 7> row{ 1.0, x, z, x * x, x * z, z * z, value };
+    for (std::size_t i = 0; i < 6; ++i)
     {
-      s[p] += power;
-      t[std::min(p, 2)] += p < 3 ? power * y[i] : 0.0;
-      power *= x[i] - middle;
+      for (std::size_t j = 0; j < 7; ++j)
+      {
+        equations_[i][j] += row[i] * row[j];
+      }
     }
   }
-  // Cramer's rule for a + b u + c u^2.
-  const auto det = [](double a, double b, double c, double d, double e, double f, double g, double h, double i) {
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
-  };
-  const double whole = det(s[0], s[1], s[2], s[1], s[2], s[3], s[2], s[3], s[4]);
-  const double b = det(s[0], t[0], s[2], s[1], t[1], s[3], s[2], t[2], s[4]) / whole;
-  const double c = det(s[0], s[1], t[0], s[1], s[2], t[1], s[2], s[3], t[2]) / whole;
-  return c < 0.0 ? middle - 0.5 * b / c : middle;
+  /// Where it is highest; nothing where it has no such place.
+  std::optional<Vec2d> vertex() const
+  {
+    const std::array<double, 6> c = solved();
+    const double determinant = 4.0 * c[3] * c[5] - c[4] * c[4];
+    if (!(c[3] < 0.0 && determinant > 0.0))
+    {
+      return std::nullopt;
+    }
+    return Vec2d(c[4] * c[2] - 2.0 * c[5] * c[1], c[4] * c[1] - 2.0 * c[3] * c[2]) / determinant;
+  }
+
+private:
+  /// By elimination with pivots.
+  std::array<double, 6> solved() const
+  {
+    auto e = equations_;
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      const auto largest =
+        std::max_element(e.begin() + std::ptrdiff_t(i), e.end(),
+                         [i](const auto& one, const auto& other) { return std::fabs(one[i]) < std::fabs(other[i]); });
+      std::swap(e[i], *largest);
+      for (std::size_t k = 0; k < 6; ++k)
+      {
+        const double share = k == i ? 0.0 : e[k][i] / e[i][i];
+        for (std::size_t j = i; j < 7; ++j)
+        {
+          e[k][j] -= share * e[i][j];
+        }
+      }
+    }
+    std::array<double, 6> c;
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      c[i] = e[i][6] / e[i][i];
+    }
+    return c;
+  }
+
+  std::array<std::array<double, 7>, 6> equations_{};
+};
+
+/// Where in the image an echo is highest: the vertex of the paraboloid through the pixels of its main lobe (-6 dB) in
+/// dB, since a Gaussian pulse under a Gaussian beam is one.
+Vec2d placeOf(const PlaneImage& image, const Vec2d& peak)
+{
+  const double peakDb = valueAt(image, peak.x, peak.y);
+  const int rows = int(rowsReachMm / image.pixelMm);
+  const int columns = int(columnsReachMm / image.pixelMm);
+  Paraboloid echo;
+  for (int j = -rows; j <= rows; ++j)
+  {
+    for (int i = -columns; i <= columns; ++i)
+    {
+      const Vec2d off(i * image.pixelMm, j * image.pixelMm);
+      const double db = valueAt(image, peak.x + off.x, peak.y + off.y) - peakDb;
+      if (db > -6.0)
+      {
+        echo.add(off.x, off.y, db);
+      }
+    }
+  }
+  return peak + echo.vertex().value_or(Vec2d(0.0));
 }
 
 /// Pixels along the expected line around a wire.
@@ -67,6 +130,25 @@ Profile profileAt(const PlaneImage& image, const PhantomTarget& wire, bool verti
     }
   }
   return profile;
+}
+
+/// Brightest pixel beside the one on the expected line.
+Vec2d brightestNear(const PlaneImage& image, const PhantomTarget& wire, double placeMm)
+{
+  const bool vertical = wire.name == "vertical";
+  const Vec2d onLine(vertical ? wire.lateralMm : placeMm, vertical ? placeMm : wire.depthMm);
+  const Vec2d across = vertical ? Vec2d(1.0, 0.0) : Vec2d(0.0, 1.0);
+  const int reach = int((vertical ? columnsReachMm : rowsReachMm) / image.pixelMm);
+  Vec2d brightest = onLine;
+  for (int i = -reach; i <= reach; ++i)
+  {
+    const Vec2d place = onLine + across * (i * image.pixelMm);
+    if (valueAt(image, place.x, place.y) > valueAt(image, brightest.x, brightest.y))
+    {
+      brightest = place;
+    }
+  }
+  return brightest;
 }
 
 /// Not beyond half way to the next wire on the line, of whatever group or view.
@@ -105,23 +187,9 @@ WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire, cons
   std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2), sorted.end());
   place.aboveMedianDb = profile.decibels[peak] - sorted[sorted.size() / 2];
   place.found = place.aboveMedianDb > 10.0 && peak > 0 && peak + 1 < profile.decibels.size();
-  // The pixels of the main lobe, at least three.
-  std::size_t first = peak;
-  std::size_t last = peak;
-  while (first > 0 && (peak - first < 1 || profile.decibels[first - 1] > profile.decibels[peak] - 6.0))
-  {
-    --first;
-  }
-  while (last + 1 < profile.decibels.size() &&
-         (last - peak < 1 || profile.decibels[last + 1] > profile.decibels[peak] - 6.0))
-  {
-    ++last;
-  }
-  const auto part = [&](const std::vector<double>& v) {
-    return std::vector<double>(v.begin() + std::ptrdiff_t(first), v.begin() + std::ptrdiff_t(last) + 1);
-  };
   place.pixelMm = profile.placeMm[peak];
-  place.fittedMm = vertexOf(part(profile.placeMm), part(profile.decibels));
+  const Vec2d fitted = placeOf(decibels, brightestNear(decibels, wire, place.pixelMm));
+  place.fittedMm = vertical ? fitted.y : fitted.x;
   return place;
 }
 
@@ -141,12 +209,18 @@ WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging
   WireErrors errors;
   for (int view = 1; view <= phantomViewCount; ++view)
   {
-    const PlaneImage decibels = decibelImage(imaging, bench.image(imaging, view, seed));
+    const RfLines rf = bench.image(imaging, view, seed);
+    const PlaneImage decibels = decibelImage(imaging, rf);
+    PhantomImaging fine = imaging; // a pulse is as long as a pixel is wide
+    fine.pixelMm *= 0.25;
+    const PlaneImage fineDecibels = decibelImage(fine, rf);
     for (const PhantomTarget& target : bench.targets())
     {
       if (target.view == view && target.kind == PhantomTargetKind::Wire)
       {
-        errors.wires.push_back({ target, locateWire(decibels, target, windowOf(bench, target)) });
+        WirePlace place = locateWire(decibels, target, windowOf(bench, target));
+        place.fittedMm = locateWire(fineDecibels, target, windowOf(bench, target)).fittedMm;
+        errors.wires.push_back({ target, place });
       }
     }
   }

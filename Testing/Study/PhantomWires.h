@@ -14,7 +14,7 @@ struct WirePlace
   bool found = false; ///< a peak 10 dB above the line's median that is not at the end of the searched window
   double expectedMm = 0.0;
   double pixelMm = 0.0;  ///< of the brightest pixel
-  double fittedMm = 0.0; ///< vertex of the parabola through the pixels of the main lobe (-6 dB), in dB
+  double fittedMm = 0.0; ///< of the vertex of the paraboloid through the echo's pixels, in dB, beside the line or on it
   double aboveMedianDb = 0.0;
 };
 
@@ -25,7 +25,9 @@ struct WireWindow
   double behindMm = 4.9;
 };
 
-/// Looks along the expected line, as the seed does, in a scan-converted image in dB.
+/// Looks along the expected line, as the seed does, in a scan-converted image in dB. Of an echo beside the line its own
+/// place is told: on the line an echo that lies slanted, as all beside the middle of a sector do, is brightest
+/// elsewhere.
 WirePlace locateWire(const PlaneImage& decibels, const PhantomTarget& wire, const WireWindow& window = {});
 
 /// Mean and standard deviation of an error's absolute value.

@@ -136,11 +136,19 @@ TEST(ErrorStudy, WithoutNoiseADifferenceIsWhatItIsOnAverage)
 TEST(ErrorStudy, AReferenceIsAsFarOffAsItSays)
 {
   const BenchScene rib = makeBenchScene("rib", 2.0, 4);
-  const BenchReference few = makeReference(rib, 4000);
   const BenchReference many = makeReference(rib, 60000);
-  EXPECT_NEAR(intensityError(few.image, many.image) / few.floor.intensity, 1.0, 0.5);
-  EXPECT_NEAR(imageError(few.image, many.image).rf / few.floor.rf, 1.0, 0.5);
-  EXPECT_LT(many.floor.intensity, 0.5 * few.floor.intensity);
+  // The ratio of one reference, whose error a few rare paths decide, is off by 0.3 itself.
+  double intensity = 0.0;
+  double rf = 0.0;
+  for (const int paths : { 3000, 4000, 6000, 8000 })
+  {
+    const BenchReference few = makeReference(rib, paths);
+    intensity += 0.25 * intensityError(few.image, many.image) / few.floor.intensity;
+    rf += 0.25 * imageError(few.image, many.image).rf / few.floor.rf;
+    EXPECT_LT(many.floor.intensity, 0.5 * few.floor.intensity);
+  }
+  EXPECT_NEAR(intensity, 1.0, 0.5);
+  EXPECT_NEAR(rf, 1.0, 0.5);
 }
 
 TEST(ErrorStudy, AReferencesOwnErrorIsTakenOut)
@@ -183,8 +191,9 @@ TEST(StabilityStudy, SinglePrecisionIsFarBelowTheNoise)
         tracing.pathsPerLine = 100;
         const Difference d = singleAgainstDouble(bench, tracing);
         EXPECT_TRUE(d.finite) << with;
-        // Smooth boundaries leave nothing to chance in Acoustic: there its own digits are what counts.
-        const bool noisy = name == "rib" || model == InterfaceModel::Amadou2024;
+        // Boundaries leave little to chance in Acoustic, but for the rib's rough edge, of which paths of low
+        // discrepancy leave little, too: there its own digits are what counts.
+        const bool noisy = (name == "rib" && sampling == Sampling::Independent) || model == InterfaceModel::Amadou2024;
         EXPECT_EQ(d.noise > 1e-4, noisy) << with;
         EXPECT_LT(d.of.intensity, noisy ? 0.02 * d.noise : 1e-6) << with;
         EXPECT_LT(d.of.rf, 1e-3) << with;

@@ -235,24 +235,28 @@ TEST(PhantomStudy, EchoWidthIsThatOfPulseAndAperture)
 
 TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
 {
+  // An echo 0.03 mm above the line that should hold it, slanted as beside a sector's middle.
   PlaneImage image;
-  image.width = 201;
-  image.height = 401;
-  image.pixelMm = 0.23;
+  image.width = 801;
+  image.height = 1001;
+  image.pixelMm = 0.0575;
   image.lateralMinMm = -23.0;
   for (int j = 0; j < image.height; ++j)
   {
     for (int i = 0; i < image.width; ++i)
     {
-      const double x = (image.lateralMinMm + i * image.pixelMm - 10.07) / 0.8;
-      const double z = (j * image.pixelMm - 45.0) / 0.13;
-      image.value.push_back(float(-4.34 * (x * x + z * z)));
+      const double x = image.lateralMinMm + i * image.pixelMm - 10.07;
+      const double z = j * image.pixelMm - 44.97;
+      const double across = (0.98 * x - 0.2 * z) / 0.8;
+      const double along = (0.2 * x + 0.98 * z) / 0.13;
+      image.value.push_back(float(-4.34 * (across * across + along * along)));
     }
   }
   const WirePlace place = locateWire(image, { PhantomTargetKind::Wire, 1, "near", 10.0, 45.0, 0.1, "phantom_nylon" });
   EXPECT_TRUE(place.found);
   EXPECT_NEAR(place.fittedMm, 10.07, 0.01);
-  EXPECT_NEAR(place.pixelMm, 10.07, 0.12);
+  // On the line it is brightest where the slanted echo crosses it: 0.03 mm above are 0.1 mm aside.
+  EXPECT_NEAR(place.pixelMm, 9.96, 0.06);
 }
 
 TEST(PhantomStudy, WiresAreWhereTheTableHasThem)
