@@ -49,9 +49,7 @@ double focusWeightMm2(const PulseEchoField& field)
   return 4.0 * sum * step * step; // a quarter of a symmetric beam
 }
 
-} // namespace
-
-double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio)
+std::complex<double> scatteredBack(double ka, double impedanceRatio, double speedRatio)
 {
   const double inside = ka / speedRatio;
   std::complex<double> sum = 0.0;
@@ -65,18 +63,29 @@ double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio)
     const std::complex<double> coefficient = -(besselSlope(n, ka) * j1 - j0 * j1Slope) / (h0Slope * j1 - h0 * j1Slope);
     sum += (n == 0 ? 1.0 : 2.0) * (n % 2 == 0 ? 1.0 : -1.0) * coefficient;
   }
-  return std::abs(sum);
+  return sum;
 }
 
-double wireEchoPerMm(const EchoSettings& echo, double diameterMm)
+} // namespace
+
+double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio)
+{
+  return std::abs(scatteredBack(ka, impedanceRatio, speedRatio));
+}
+
+std::complex<double> nylonScattering(double waveNumberPerMm, double diameterMm)
 {
   const TissueTable tissues = bundledTissues();
   const Tissue& gel = *tissues.find("phantom_gel");
   const Tissue& nylon = *tissues.find("phantom_nylon");
+  return scatteredBack(0.5 * waveNumberPerMm * diameterMm, nylon.impedanceMRayl / gel.impedanceMRayl,
+                       nylon.soundSpeedMPerS / gel.soundSpeedMPerS);
+}
+
+double wireEchoPerMm(const EchoSettings& echo, double diameterMm)
+{
   const double k = waveNumberPerMm(echo);
-  const double scattered = cylinderBackscatter(0.5 * k * diameterMm, nylon.impedanceMRayl / gel.impedanceMRayl,
-                                               nylon.soundSpeedMPerS / gel.soundSpeedMPerS);
-  return 2.0 * scattered / (k * focusWeightMm2(*echo.field));
+  return 2.0 * std::abs(nylonScattering(k, diameterMm)) / (k * focusWeightMm2(*echo.field));
 }
 
 double gelLevelDb(const EchoSettings& echo)

@@ -2,6 +2,8 @@
 
 #include "Echo/FormRf.h"
 
+#include <complex>
+
 namespace sono::study {
 
 /// Far-field amplitude |F| of a plane wave scattered straight back by a fluid cylinder, whose scattered pressure at a
@@ -10,6 +12,9 @@ namespace sono::study {
 /// For ka << 1 it is (pi (ka)^2 / 4) |1 - kappa + 2 (rho - 1) / (rho + 1)| with the ratio kappa of the
 /// compressibilities.
 double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio);
+
+/// F of a nylon wire in the phantom's gel, with its phase, for the time factor exp(-i w t).
+std::complex<double> nylonScattering(double waveNumberPerMm, double diameterMm);
 
 /// Echo of a millimetre of a nylon wire of that diameter across the beam's focus, against a perfect plane reflector
 /// there. By reciprocity a source of strength s per area echoes as the integral of s w with the beam's two-way weight
