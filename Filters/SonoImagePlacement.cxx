@@ -74,7 +74,7 @@ void ImagePlacement::setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z)
 
 double pixelMmOf(const ProbeField& probe, double settingMm)
 {
-  return probe.preview ? interactivePixelMm(settingMm) : settingMm;
+  return probe.coarse ? interactivePixelMm(settingMm) : settingMm;
 }
 
 ImagePlacement placementOf(const ProbeField& probe, double pixelMm)

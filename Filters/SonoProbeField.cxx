@@ -16,6 +16,10 @@
 namespace sono {
 namespace {
 
+// "Preview" of a probe that is being moved; 0: it rests.
+constexpr double coarsePreview = 1.0;
+constexpr double fullPreview = 2.0;
+
 vtkInformationDataObjectMetaDataKey* acquisitionKey()
 {
   static auto* const key = vtkInformationDataObjectMetaDataKey::MakeKey("ACQUISITION", "SonoVDB");
@@ -104,7 +108,7 @@ void writeProbe(const ProbeField& probe, vtkFieldData* field, vtkFieldData* befo
   writeVector("ProbePositionMm", probe.pose.positionMm, field, before);
   writeVector("ProbeAxial", probe.pose.axial, field, before);
   writeVector("ProbeLateral", probe.pose.lateral, field, before);
-  writeNumber("Preview", probe.preview ? 1.0 : 0.0, field, before);
+  writeNumber("Preview", probe.coarse ? coarsePreview : probe.preview ? fullPreview : 0.0, field, before);
   writeNumber("LinesApart", probe.linesApart, field, before);
   writeNumber("PrepareInteraction", probe.prepares ? 1.0 : 0.0, field, before);
 }
@@ -139,6 +143,7 @@ ProbeField readProbe(vtkFieldData* field)
   probe.pose.axial = readVector("ProbeAxial", field);
   probe.pose.lateral = readVector("ProbeLateral", field);
   probe.preview = readNumber("Preview", field) != 0.0;
+  probe.coarse = readNumber("Preview", field) == coarsePreview;
   probe.linesApart = field->HasArray("LinesApart") ? int(readNumber("LinesApart", field)) : 1; // not in older files
   probe.prepares = field->HasArray("PrepareInteraction") && readNumber("PrepareInteraction", field) != 0.0;
   return probe;

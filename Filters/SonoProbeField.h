@@ -11,7 +11,8 @@ namespace sono {
 struct ProbeField : ProbeSettings
 {
   ProbePose pose;
-  bool preview = false;  ///< the probe is being moved: coarse and quick is better than fine and late
+  bool preview = false;  ///< the probe is being moved
+  bool coarse = false;   ///< and it is too slow for all that: coarse and quick is better than fine and late
   int linesApart = 1;    ///< of the resting probe's lines, from each that a moving one scans to the next
   bool prepares = false; ///< somebody may move the probe: the anatomy is made ready for that in the background
 };

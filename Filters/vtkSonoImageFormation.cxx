@@ -59,8 +59,8 @@ sono::EchoSettings vtkSonoImageFormation::Settings(const sono::ProbeField& probe
   settings.samplingMHz = samplingMHz;
   settings.depthMm = probe.geometry.rangeMm();
   settings.scattererCellMm =
-    probe.preview ? sono::interactiveCellMm(settings.scattererCellMm) : settings.scattererCellMm;
-  settings.interactive = probe.preview;
+    probe.coarse ? sono::interactiveCellMm(settings.scattererCellMm) : settings.scattererCellMm;
+  settings.interactive = probe.coarse;
   settings.validate();
   return settings;
 }

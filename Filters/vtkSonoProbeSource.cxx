@@ -1,5 +1,6 @@
 #include "vtkSonoProbeSource.h"
 
+#include "Core/Device.h"
 #include "Core/Policy.h"
 #include "Core/Progress.h"
 #include "SonoDataFile.h"
@@ -38,6 +39,18 @@ std::string presetPath(const std::string& preset)
   throw sono::Error("There is no probe preset '" + preset + "'; choose one of " + names + ", or name a JSON file.");
 }
 
+bool runsOnGpu(int device)
+{
+  try
+  {
+    return sono::chooseDevice(static_cast<sono::Device>(device)).cuda;
+  }
+  catch (const std::exception&) // a GPU that is wanted and not there: the stage that traces says so
+  {
+    return false;
+  }
+}
+
 } // namespace
 
 vtkSonoProbeSource::vtkSonoProbeSource()
@@ -61,6 +74,7 @@ void vtkSonoProbeSource::PrintSelf(ostream& os, vtkIndent indent)
   printVector("Axial", this->Axial);
   printVector("Lateral", this->Lateral);
   os << indent << "Preview: " << this->Preview << endl;
+  os << indent << "Device: " << this->Device << endl;
   os << indent << "PrepareInteraction: " << this->PrepareInteraction << endl;
 }
 
@@ -80,8 +94,10 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
                                                : sono::readProbePreset(presetPath(this->PresetFile));
   const auto& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters);
   probe.geometry.assumedSoundSpeedMPerS = given.geometry.assumedSoundSpeedMPerS;
-  probe.geometry.compoundFans = this->Preview ? 1 : given.geometry.compoundFans;
-  if (this->Preview)
+  probe.preview = this->Preview;
+  probe.coarse = this->Preview && !runsOnGpu(this->Device);
+  probe.geometry.compoundFans = probe.coarse ? 1 : given.geometry.compoundFans;
+  if (probe.coarse)
   {
     probe.linesApart = sono::interactiveLinesApart(probe.geometry.lineCount);
     probe.geometry.lineCount = (probe.geometry.lineCount + probe.linesApart - 1) / probe.linesApart;
@@ -90,7 +106,6 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   probe.imagingMode = given.imagingMode;
   probe.facePressureKPa = given.facePressureKPa;
   probe.geometry.validate();
-  probe.preview = this->Preview;
   probe.prepares = this->PrepareInteraction;
 
   const auto vector = [](const double* v) { return sono::Vec3d(v[0], v[1], v[2]); };

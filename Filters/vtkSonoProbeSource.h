@@ -110,14 +110,23 @@ public:
 
   ///@{
   /**
-   * Whether the probe is being moved. The stages then make a coarse image quickly: every second of 120 lines and more,
-   * at most 40 paths a line, RF sampled at four times the centre frequency at most, radial bins and pixels twice and
-   * scatterer cells up to twice as wide as they are set to, a fifth of the scatterers, and surfaces in pieces of 2 mm.
-   * Default off.
+   * Whether the probe is being moved. On a GPU the stages then leave nothing out, but take 1000 paths a line at most;
+   * on the CPU they make a coarse image quickly: every second of 120 lines and more, at most 40 paths a line, RF
+   * sampled at four times the centre frequency at most, radial bins and pixels twice and scatterer cells up to twice as
+   * wide as they are set to, a fifth of the scatterers, and surfaces in pieces of 2 mm. Default off.
    */
   vtkSetMacro(Preview, bool);
   vtkGetMacro(Preview, bool);
   vtkBooleanMacro(Preview, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The Device of the stages that follow (vtkSonoRayTracer), which vtkSonoUltrasound hands on: whether a probe that is
+   * being moved has a GPU. Default 0: Auto.
+   */
+  vtkSetMacro(Device, int);
+  vtkGetMacro(Device, int);
   ///@}
 
   ///@{
@@ -151,6 +160,7 @@ private:
   double Axial[3] = { -0.53, 0.65, 0.545 };
   double Lateral[3] = { 0.843, 0.333, 0.423 };
   bool Preview = false;
+  int Device = 0;
   bool PrepareInteraction = false;
 };
 

@@ -75,17 +75,24 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 
 double vtkSonoRayTracer::RfSamplingMHz(const sono::ProbeField& probe) const
 {
-  return probe.preview ? sono::interactiveSamplingMHz(this->SamplingMHz, probe.receivedMHz()) : this->SamplingMHz;
+  return probe.coarse ? sono::interactiveSamplingMHz(this->SamplingMHz, probe.receivedMHz()) : this->SamplingMHz;
 }
 
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const
 {
   auto settings = sono::settingsIn<sono::TraceSettings>(*this->Parameters);
-  settings.pathsPerLine = probe.preview ? sono::interactivePaths(settings.pathsPerLine) : settings.pathsPerLine;
-  settings.radialBinMm = probe.preview ? sono::interactiveBinMm(settings.radialBinMm) : settings.radialBinMm;
-  settings.rouletteDb = probe.preview ? sono::interactiveRouletteDb(settings.rouletteDb) : settings.rouletteDb;
-  settings.targetErrorDb = probe.preview ? 0.0 : settings.targetErrorDb;
-  settings.timeBudgetS = probe.preview ? 0.0 : settings.timeBudgetS;
+  if (probe.preview)
+  {
+    settings.pathsPerLine =
+      std::min(settings.pathsPerLine, probe.coarse ? sono::interactivePaths : sono::interactiveDevicePaths);
+    settings.targetErrorDb = 0.0;
+    settings.timeBudgetS = 0.0;
+  }
+  if (probe.coarse)
+  {
+    settings.radialBinMm = sono::interactiveBinMm(settings.radialBinMm);
+    settings.rouletteDb = sono::interactiveRouletteDb(settings.rouletteDb);
+  }
   settings.interactive = probe.preview;
   settings.frequencyMHz = probe.centreFrequencyMHz;
   settings.fractionalBandwidth = probe.receivedBandwidth();

@@ -66,7 +66,7 @@ constexpr double anatomyEnd = 0.3;
 /// The probe stands wherever a pose says, and never moves.
 sono::ProbeField resting(sono::ProbeField probe)
 {
-  probe.preview = false;
+  probe.preview = probe.coarse = false;
   probe.prepares = false;
   return probe;
 }

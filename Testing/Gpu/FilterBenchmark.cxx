@@ -143,6 +143,28 @@ void measure(sono::Device device)
   }
   print("filter_differing_pixels", double(differing), "pixels");
 
+  // A drag, 0.6 mm a step.
+  std::vector<double> moved;
+  ultrasound->GetProbe()->SetPreview(true);
+  for (int i = -5; i < repeats; ++i)
+  {
+    const double ms = wallMs([&] {
+      const sono::Vec3d at = pose.positionMm + 0.6 * double(i) * pose.lateral;
+      ultrasound->GetProbe()->SetPositionMm(at.x, at.y, at.z);
+      ultrasound->Update();
+    });
+    if (i >= 0)
+    {
+      moved.push_back(ms);
+    }
+  }
+  print("filter_drag_pictures_per_s", 1e3 / median(moved), "1/s");
+  print("filter_drag_pictures_per_s_least", 1e3 / *std::max_element(moved.begin(), moved.end()), "1/s");
+  const auto pixels = double(ultrasound->GetOutput()->GetNumberOfPoints());
+  ultrasound->GetProbe()->SetPreview(false);
+  ultrasound->Update();
+  print("filter_drag_share_of_pixels", pixels / double(ultrasound->GetOutput()->GetNumberOfPoints()), "1");
+
   vtkNew<vtkSonoProbeSource> probe;
   vtkNew<vtkSonoSceneBuilder> scene;
   scene->SetInputConnection(thorax->GetOutputPort());
