@@ -309,12 +309,12 @@ vtkSMViewProxy* sonoShowSplitLayout(const char* tab, vtkSMSourceProxy* first, vt
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = first->GetSessionProxyManager();
   const auto layout = makeLayout(tab, controller, manager);
-  const int flats = layout->SplitHorizontal(0, 0.34) + 1;
+  const int flats = layout->SplitVertical(0, 0.62);
   const int left = layout->SplitHorizontal(flats, 0.5);
   const auto solid = makeView("RenderView", controller, manager);
   const auto one = makeView("RenderView", controller, manager);
   const auto other = makeView("RenderView", controller, manager);
-  layout->AssignView(flats - 1, solid);
+  layout->AssignView(flats + 1, solid);
   layout->AssignView(left, one);
   layout->AssignView(left + 1, other);
   fillFlatView(one, first, controller);
