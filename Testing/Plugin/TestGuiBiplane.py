@@ -36,7 +36,8 @@ def flat(source):
     return vtk_to_numpy(image.GetPointData().GetArray("BMode")).reshape(depth, height, width).astype(float)
 
 
-made = {source.GetProperty("MatrixPlane").GetData(): source for source in GetSources().values() if source.GetXMLName() == "SonoUltrasound"}
+made = {source.GetProperty("MatrixPlane").GetData(): source for source in GetSources().values()
+        if source.GetXMLName() == "SonoUltrasound"}
 shown = {name: flat(source) for name, source in made.items()}
 one = list(made.values())[0]
 names = ("PositionMm", "DepthMm", "LineCount", "PathsPerLine", "PixelMm", "GainDb")
@@ -166,7 +167,9 @@ class TestGuiBiplane(GuiCase):
             folder = pathlib.Path(folder)
             self.play_on_matrix(
                 folder, click(BIPLANE), play_on(3000), undo(), play_on(2000), check(BIPLANE, "checked", "false"),
-                save_state("undone"), trace, click("TraceOptionsDialog/widget/OKButton"), click(BIPLANE), play_on(3000),
+                menu("menu_Edit", "actionEditRedo"), play_on(3000), check(BIPLANE, "checked", "true"), undo(), play_on(2000),
+                check(BIPLANE, "checked", "false"), save_state("undone"), select(0, 0), pause(1000), trace,
+                click("TraceOptionsDialog/widget/OKButton"), click(BIPLANE), play_on(3000),
                 check(BIPLANE, "checked", "true"), click(f"{PROBE}/TiltPlus"), play_on(3000), trace, pause(500),
                 event(f"{MAIN}/0pqPythonScriptEditor0/PythonScriptEditorMenuBar/File", "activate", "Save &As..."),
                 event(f"{MAIN}/0pqPythonScriptEditor0/FileOpenDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/trace.py"),

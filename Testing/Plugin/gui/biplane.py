@@ -19,8 +19,8 @@ def note(source):
     image = source.SMProxy.GetClientSideObject().GetOutputDataObject(FLAT_IMAGE)
     grey = image.GetPointData().GetArray("BMode") if image else None
     if grey:
-        log.write(json.dumps({"plane": source.GetProperty("MatrixPlane").GetData(), "preview": int(source.Preview), "Lateral": list(source.Lateral),
-                              "size": image.GetDimensions(),
+        log.write(json.dumps({"plane": source.GetProperty("MatrixPlane").GetData(), "preview": int(source.Preview),
+                              "Lateral": list(source.Lateral), "size": image.GetDimensions(),
                               "picture": hashlib.md5(vtk_to_numpy(grey).tobytes()).hexdigest()}) + "\n")
 
 
