@@ -5,16 +5,16 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 namespace sono {
 
-Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose, bool isVolume)
+Vec3d flatFromWorld(const Vec3d& worldMm, const ProbePose& pose)
 {
   const Vec3d from = worldMm - pose.positionMm;
-  const double axial = glm::dot(from, pose.axial);
-  const double elevation = glm::dot(from, glm::cross(pose.axial, pose.lateral));
-  return { glm::dot(from, pose.lateral), isVolume ? elevation : axial, isVolume ? axial : elevation };
+  return { glm::dot(from, pose.lateral), glm::dot(from, pose.axial),
+           glm::dot(from, glm::cross(pose.axial, pose.lateral)) };
 }
 
 ImagePlacement::ImagePlacement(const PlaneImage& plane, const ProbePose& pose)
@@ -38,7 +38,12 @@ ImagePlacement::ImagePlacement(const VolumeImage& volume, const ProbePose& pose)
 ImagePlacement ImagePlacement::flat(const ProbePose& pose) const
 {
   ImagePlacement result = *this;
-  result.originMm_ = flatFromWorld(originMm_, pose, size_.z > 1);
+  result.originMm_ = flatFromWorld(originMm_, pose);
+  if (size_.z > 1)
+  {
+    result.originMm_.z = 0.0;
+    result.size_ = { size_.x, size_.z, 1 };
+  }
   result.setColumns({ 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 });
   return result;
 }
@@ -69,6 +74,26 @@ void ImagePlacement::setColumns(const Vec3d& x, const Vec3d& y, const Vec3d& z)
     direction_[3 * row] = x[row];
     direction_[3 * row + 1] = y[row];
     direction_[3 * row + 2] = z[row];
+  }
+}
+
+void fillFlat(vtkImageData* world, vtkImageData* flat)
+{
+  const Vec3i size(world->GetDimensions()[0], world->GetDimensions()[1], world->GetDimensions()[2]);
+  vtkPointData* from = world->GetPointData();
+  vtkPointData* to = flat->GetPointData();
+  if (size.z == 1)
+  {
+    to->ShallowCopy(from);
+    return;
+  }
+  const vtkIdType middle = size.y / 2;
+  to->Initialize();
+  to->CopyAllOn();
+  to->CopyAllocate(from, vtkIdType(size.x) * size.z);
+  for (vtkIdType k = 0; k < size.z; ++k)
+  {
+    to->CopyData(from, k * size.x, size.x, size.x * (middle + size.y * k));
   }
 }
 

@@ -133,6 +133,7 @@ void UltrasoundStages::givePicture(vtkPointData* arrays, vtkFieldData* fields, v
   placement.place(world);
   flat->ShallowCopy(world);
   placement.flat(field_.pose).place(flat);
+  fillFlat(world, flat);
 }
 
 bool UltrasoundStages::takeKept(vtkInformationVector* output)

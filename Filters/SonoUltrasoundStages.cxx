@@ -351,14 +351,12 @@ void UltrasoundStages::makeImage(const ImageInput& image, std::optional<double> 
     pictureArrays_ = pictureArrays(picture);
     picture_ = picture;
   }
-  for (vtkImageData* output : { world, flat })
+  world->GetPointData()->ShallowCopy(pictureArrays_);
+  if (errors)
   {
-    output->GetPointData()->ShallowCopy(pictureArrays_);
-    if (errors)
-    {
-      output->GetPointData()->AddArray(errors);
-    }
+    world->GetPointData()->AddArray(errors);
   }
+  fillFlat(world, flat);
 }
 
 void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformationVector* output)

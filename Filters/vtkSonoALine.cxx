@@ -52,12 +52,11 @@ void drawLine(int line, const sono::Vec3d& from, const sono::Vec3d& to, vtkPolyD
   sono::writeNumber("Line", line, polyData->GetFieldData());
 }
 
-/// A place in the world as it is drawn on the flat image; of a volume, in it.
+/// A place in the world as it is drawn on the flat image, also of lines beside its plane.
 sono::Vec3d drawnFlat(const sono::Vec3d& worldMm, const sono::ProbeField& probe)
 {
-  const bool isVolume = probe.geometry.isVolume();
-  const sono::Vec3d front(0.0, 0.0, isVolume ? 0.0 : sono::flatDrawingMm);
-  return sono::flatFromWorld(worldMm, probe.pose, isVolume) + front;
+  const sono::Vec3d flat = sono::flatFromWorld(worldMm, probe.pose);
+  return { flat.x, flat.y, sono::flatDrawingMm };
 }
 
 } // namespace

@@ -81,6 +81,6 @@ int vtkSonoErrorMap::RequestData(vtkInformation*, vtkInformationVector** input, 
     sono::placeFlat(map, probe.pose, world, flat);
     const auto arrays = sono::errorArrays(map);
     world->GetPointData()->ShallowCopy(arrays);
-    flat->GetPointData()->ShallowCopy(arrays);
+    sono::fillFlat(world, flat);
   });
 }

@@ -196,12 +196,10 @@ int vtkSonoFlatScale::RequestData(vtkInformation*, vtkInformationVector** input,
 {
   return sono::runStage(this, output, [&] {
     vtkFieldData* fields = vtkDataSet::GetData(input[0])->GetFieldData();
-    const sono::ScanGeometry geometry = sono::readProbe(fields).geometry;
-    if (!geometry.isVolume())
-    {
-      FlatDrawing drawing;
-      draw(geometry, fields->HasArray("DynamicRangeDb") ? sono::readNumber("DynamicRangeDb", fields) : 0.0, drawing);
-      drawing.finish(vtkPolyData::GetData(output));
-    }
+    sono::ScanGeometry geometry = sono::readProbe(fields).geometry;
+    geometry.elevationLineCount = 1; // of a volume the flat image shows the plane in the middle
+    FlatDrawing drawing;
+    draw(geometry, fields->HasArray("DynamicRangeDb") ? sono::readNumber("DynamicRangeDb", fields) : 0.0, drawing);
+    drawing.finish(vtkPolyData::GetData(output));
   });
 }

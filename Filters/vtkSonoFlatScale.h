@@ -15,7 +15,7 @@
  * its middle; right of its lower part a bar of the greys from black to white, with the dB of its ends where the input
  * says its dynamic range; right of the face, clear of the fan, a dot on the side of the probe's marker, to which the
  * lateral direction points. The cell array "Part" is 0 on the ruler, 1 on the marker, 2 on the lateral ruler and 3 on
- * the grey bar; "Color" is RGB. For a matrix, whose image is a volume, the output is empty.
+ * the grey bar; "Color" is RGB. Of a matrix's volume it is that of the plane in the middle.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoFlatScale : public vtkPolyDataAlgorithm
 {

@@ -16,6 +16,8 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
+#include <utility>
+
 vtkStandardNewMacro(vtkSonoProbeSource);
 
 namespace {
@@ -51,6 +53,18 @@ bool runsOnGpu(int device)
   }
 }
 
+/// Leaves of a matrix's volume one plane; the second one is across the array.
+void takePlane(bool isSecond, sono::ProbeField& probe)
+{
+  probe.geometry.elevationLineCount = 1;
+  if (isSecond)
+  {
+    std::swap(probe.geometry.sectorDeg, probe.geometry.elevationSectorDeg);
+    std::swap(probe.apertureMm, probe.elevationApertureMm);
+    probe.pose.lateral = glm::cross(probe.pose.axial, probe.pose.lateral);
+  }
+}
+
 } // namespace
 
 vtkSonoProbeSource::vtkSonoProbeSource()
@@ -73,6 +87,7 @@ void vtkSonoProbeSource::PrintSelf(ostream& os, vtkIndent indent)
   printVector("PositionMm", this->PositionMm);
   printVector("Axial", this->Axial);
   printVector("Lateral", this->Lateral);
+  os << indent << "MatrixPlane: " << this->MatrixPlane << endl;
   os << indent << "Preview: " << this->Preview << endl;
   os << indent << "Device: " << this->Device << endl;
   os << indent << "PrepareInteraction: " << this->PrepareInteraction << endl;
@@ -111,6 +126,10 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   const auto vector = [](const double* v) { return sono::Vec3d(v[0], v[1], v[2]); };
   const sono::ProbePose pose{ vector(this->PositionMm), vector(this->Axial), vector(this->Lateral) };
   probe.pose = pose.orthonormalized();
+  if (this->MatrixPlane != WHOLE_VOLUME && probe.geometry.isMatrix())
+  {
+    takePlane(this->MatrixPlane == SECOND_PLANE, probe);
+  }
   return probe;
 }
 

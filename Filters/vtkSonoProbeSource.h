@@ -44,6 +44,12 @@ public:
     MATRIX = 3,
     RADIAL = 4
   };
+  enum MatrixPlanes
+  {
+    WHOLE_VOLUME = 0,
+    FIRST_PLANE = 1,
+    SECOND_PLANE = 2
+  };
   enum ImagingModes
   {
     FUNDAMENTAL = 0,
@@ -110,6 +116,16 @@ public:
 
   ///@{
   /**
+   * What a matrix probe scans: all elevations, or one of two planes, as a biplane picture has them: the one along the
+   * array, and the one across it, through the elevation sector. A plane has LineCount lines. Other kinds take no
+   * notice. Default WHOLE_VOLUME.
+   */
+  vtkSetClampMacro(MatrixPlane, int, WHOLE_VOLUME, SECOND_PLANE);
+  vtkGetMacro(MatrixPlane, int);
+  ///@}
+
+  ///@{
+  /**
    * Whether the probe is being moved. On a GPU the stages then leave nothing out, but take 1000 paths a line at most;
    * on the CPU they make a coarse image quickly: every second of 120 lines and more, at most 40 paths a line, RF
    * sampled at four times the centre frequency at most, radial bins and pixels twice and scatterer cells up to twice as
@@ -159,6 +175,7 @@ private:
   double PositionMm[3] = { 87.8, -86.5, -45.0 };
   double Axial[3] = { -0.53, 0.65, 0.545 };
   double Lateral[3] = { 0.843, 0.333, 0.423 };
+  int MatrixPlane = WHOLE_VOLUME;
   bool Preview = false;
   int Device = 0;
   bool PrepareInteraction = false;

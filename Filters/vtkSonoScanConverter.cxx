@@ -153,6 +153,6 @@ int vtkSonoScanConverter::RequestData(vtkInformation*, vtkInformationVector** in
     }
     const auto arrays = sono::pictureArrays(picture);
     world->GetPointData()->ShallowCopy(arrays);
-    flat->GetPointData()->ShallowCopy(arrays);
+    sono::fillFlat(world, flat);
   });
 }

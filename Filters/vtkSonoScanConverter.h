@@ -28,8 +28,8 @@ struct LabelVolume;
  * that of the optional port 1, an image whose active point scalars are labels, else that of the scene that was traced;
  * its names and colours are in the field data. Without either there are no "Labels".
  *
- * Output 1 is the same image in the probe's own frame, mm, to look at it flat: x lateral, y range (of a matrix
- * y elevation, z range), 0 at the centre of the transducer's face.
+ * Output 1 is the same image in the probe's own frame, mm, to look at it flat: x lateral, y range, 0 at the centre of
+ * the transducer's face; of a matrix's volume the plane in the middle, up to half a voxel beside it.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoScanConverter : public vtkImageAlgorithm
 {

@@ -304,17 +304,17 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
   return solid;
 }
 
-vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second)
+vtkSMViewProxy* sonoShowSplitLayout(const char* tab, vtkSMSourceProxy* first, vtkSMSourceProxy* second)
 {
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = first->GetSessionProxyManager();
-  const auto layout = makeLayout("Split Screen", controller, manager);
-  const int flats = layout->SplitHorizontal(0, 0.34) + 1;
+  const auto layout = makeLayout(tab, controller, manager);
+  const int flats = layout->SplitVertical(0, 0.62);
   const int left = layout->SplitHorizontal(flats, 0.5);
   const auto solid = makeView("RenderView", controller, manager);
   const auto one = makeView("RenderView", controller, manager);
   const auto other = makeView("RenderView", controller, manager);
-  layout->AssignView(flats - 1, solid);
+  layout->AssignView(flats + 1, solid);
   layout->AssignView(left, one);
   layout->AssignView(left + 1, other);
   fillFlatView(one, first, controller);
@@ -325,6 +325,12 @@ vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* s
     view->StillRender();
   }
   return solid;
+}
+
+void sonoShowImageInBody(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* body)
+{
+  vtkNew<Controller> controller;
+  showQuietly(ultrasound, vtkSonoUltrasound::IMAGE, body, controller);
 }
 
 void sonoDrawEasily(vtkSMSessionProxyManager* manager)

@@ -13,9 +13,11 @@ class vtkSMViewProxy;
 /// the screen: the rest can take long. The view with the anatomy.
 vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function<void(vtkSMViewProxy*)>& drawNow);
 
-/// A tab "Split Screen" with the body of the first of two Simulate Ultrasounds, and the flat views of both side by
-/// side.
-vtkSMViewProxy* sonoShowSplitLayout(vtkSMSourceProxy* first, vtkSMSourceProxy* second);
+/// A tab of this name with the flat views of two Simulate Ultrasounds side by side, and below them the first one's
+/// body. Returns the body's view.
+vtkSMViewProxy* sonoShowSplitLayout(const char* tab, vtkSMSourceProxy* first, vtkSMSourceProxy* second);
+/// One more image in a body's view.
+void sonoShowImageInBody(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* body);
 
 /// Has the views of anatomies draw as the layout's do. A state file loses that: ParaView's settings for all views
 /// overwrite it there.

@@ -4,21 +4,46 @@
 
 #include "pqApplicationCore.h"
 #include "pqLinksModel.h"
+#include "pqObjectBuilder.h"
+#include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 #include "pqView.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineController.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
+#include "vtkSMViewLayoutProxy.h"
 #include "vtkSMViewProxy.h"
 #include "vtkSmartPointer.h"
+#include "vtkSonoProbeSource.h"
+#include "vtkSonoUltrasound.h"
 
+#include <cstring>
 #include <initializer_list>
+#include <sstream>
+#include <string>
+#include <vector>
 
-SonoSplit sonoSplitScreen(pqPipelineSource* first)
+namespace {
+
+constexpr const char* matrixPlane = "MatrixPlane";
+
+pqPipelineSource* itemOf(vtkSMProxy* proxy)
 {
-  auto* one = vtkSMSourceProxy::SafeDownCast(first->getProxy());
+  return pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(proxy);
+}
+
+vtkSMSourceProxy* proxyOf(const pqPipelineSource* source)
+{
+  return vtkSMSourceProxy::SafeDownCast(source->getProxy());
+}
+
+/// Of the same input, with the settings of the first.
+vtkSmartPointer<vtkSMSourceProxy> makeSecond(vtkSMSourceProxy* one)
+{
   auto other = vtkSmartPointer<vtkSMSourceProxy>::Take(
     vtkSMSourceProxy::SafeDownCast(one->GetSessionProxyManager()->NewProxy("filters", one->GetXMLName())));
   vtkNew<vtkSMParaViewPipelineController> controller;
@@ -26,16 +51,137 @@ SonoSplit sonoSplitScreen(pqPipelineSource* first)
   other->Copy(one);
   controller->PostInitializeProxy(other);
   other->Copy(one); // what was initialized by the input
-  other->UpdateVTKObjects();
-  controller->RegisterPipelineProxy(other);
+  return other;
+}
+
+pqPipelineSource* registered(vtkSMSourceProxy* proxy)
+{
+  proxy->UpdateVTKObjects();
+  vtkNew<vtkSMParaViewPipelineController> controller;
+  controller->RegisterPipelineProxy(proxy);
+  itemOf(proxy)->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  return itemOf(proxy);
+}
+
+SonoSplit show(const char* tab, const pqPipelineSource* first, pqPipelineSource* second)
+{
+  vtkSMProxy* body = sonoShowSplitLayout(tab, proxyOf(first), proxyOf(second));
+  return { second, pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(body) };
+}
+
+int planeOf(const pqPipelineSource* source)
+{
+  return vtkSMPropertyHelper(source->getProxy(), matrixPlane, true).GetAsInt();
+}
+
+void scan(int plane, const pqPipelineSource* source)
+{
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source->getProxy());
+  vtkSMPropertyHelper(source->getProxy(), matrixPlane).Set(plane);
+  source->getProxy()->UpdateVTKObjects();
+}
+
+/// What pqSonoBiplane does, for those who run a trace without it.
+void traceLink(pqPipelineSource* first, pqPipelineSource* second)
+{
+  std::ostringstream text;
+  text << "linkedPlanes = servermanager.vtkSMProxyLink()\nlinkedPlanes.AddException('" << matrixPlane << "')\n"
+       << "for direction in (linkedPlanes.INPUT, linkedPlanes.OUTPUT):\n";
+  for (pqPipelineSource* each : { first, second })
+  {
+    text << "    linkedPlanes.AddLinkedProxy(FindSource('" << each->getSMName().toStdString()
+         << "').SMProxy, direction)\n";
+  }
+  SM_SCOPED_TRACE(TraceText).arg(text.str().c_str()).arg("comment", "both planes have all other settings in common");
+}
+
+vtkSMProxy* inputOf(const pqPipelineSource* source)
+{
+  return vtkSMPropertyHelper(source->getProxy(), "Input").GetAsProxy();
+}
+
+void destroyWithConsumers(pqPipelineSource* source)
+{
+  for (pqPipelineSource* consumer : source->getAllConsumers())
+  {
+    destroyWithConsumers(consumer);
+  }
+  pqApplicationCore::instance()->getObjectBuilder()->destroy(source);
+}
+
+} // namespace
+
+SonoSplit sonoSplitScreen(pqPipelineSource* first)
+{
+  pqPipelineSource* second = registered(makeSecond(proxyOf(first)));
   pqLinksModel* links = pqApplicationCore::instance()->getLinksModel();
-  auto* second = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(other.Get());
   for (const char* name : { "PositionMm", "Axial", "Lateral", "DepthMm", "Preview", "PrepareInteraction" })
   {
-    links->addPropertyLink(QString("%1 of %2 and %3").arg(name, first->getSMName(), second->getSMName()), one, name,
-                           other, name);
+    links->addPropertyLink(QString("%1 of %2 and %3").arg(name, first->getSMName(), second->getSMName()),
+                           first->getProxy(), name, second->getProxy(), name);
   }
-  second->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
-  vtkSMProxy* body = sonoShowSplitLayout(one, other);
-  return { second, pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(body) };
+  return show("Split Screen", first, second);
+}
+
+bool sonoHasPlanes(const pqPipelineSource* source)
+{
+  return std::strcmp(source->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+}
+
+SonoPlanes sonoPlanesOf(const pqPipelineSource* source)
+{
+  SonoPlanes planes;
+  bool isIn = false;
+  for (auto* each : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  {
+    if (sonoHasPlanes(source) && sonoHasPlanes(each) && inputOf(each) == inputOf(source))
+    {
+      pqPipelineSource** place = planeOf(each) == vtkSonoProbeSource::FIRST_PLANE    ? &planes.first
+                                 : planeOf(each) == vtkSonoProbeSource::SECOND_PLANE ? &planes.second
+                                                                                     : nullptr;
+      if (place && *place != source) // of several, the last one
+      {
+        *place = each;
+        isIn = isIn || each == source;
+      }
+    }
+  }
+  return isIn && planes.first && planes.second ? planes : SonoPlanes();
+}
+
+SonoSplit sonoShowBiplane(pqPipelineSource* first)
+{
+  scan(vtkSonoProbeSource::FIRST_PLANE, first);
+  const auto made = makeSecond(proxyOf(first));
+  vtkSMPropertyHelper(made, matrixPlane).Set(vtkSonoProbeSource::SECOND_PLANE);
+  pqPipelineSource* second = registered(made);
+  traceLink(first, second);
+  const SonoSplit split = show("Biplane", first, second);
+  sonoShowImageInBody(made, split.body->getViewProxy());
+  return split;
+}
+
+void sonoEndBiplane(const SonoPlanes& planes)
+{
+  vtkSMViewLayoutProxy* layout = nullptr;
+  for (pqView* view : planes.second->getOutputPort(vtkSonoUltrasound::FLAT_IMAGE)->getViews())
+  {
+    layout = vtkSMViewLayoutProxy::FindLayout(view->getViewProxy());
+  }
+  const std::vector<vtkSMViewProxy*> views = layout ? layout->GetViews() : std::vector<vtkSMViewProxy*>();
+  {
+    SM_SCOPED_TRACE(TraceText).arg("linkedPlanes = None");
+  }
+  destroyWithConsumers(planes.second);
+  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
+  for (vtkSMViewProxy* view : views)
+  {
+    builder->destroy(pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(view));
+  }
+  if (layout)
+  {
+    vtkNew<vtkSMParaViewPipelineController> controller;
+    controller->UnRegisterProxy(layout);
+  }
+  scan(vtkSonoProbeSource::WHOLE_VOLUME, planes.first);
 }

@@ -3,6 +3,7 @@
 class pqPipelineSource;
 class pqView;
 
+/// Two of a probe's pictures, side by side.
 struct SonoSplit
 {
   pqPipelineSource* second = nullptr;
@@ -13,3 +14,20 @@ struct SonoSplit
 /// both side by side. Where the probe stands, how deep it looks and whether it is being moved are linked, in Tools >
 /// Manage Links; all else is each one's own.
 SonoSplit sonoSplitScreen(pqPipelineSource* first);
+
+/// The two of a matrix probe's planes, each one's own Simulate Ultrasound of the same input.
+struct SonoPlanes
+{
+  pqPipelineSource* first = nullptr; ///< none: there is no such pair
+  pqPipelineSource* second = nullptr;
+};
+
+/// Whether it is a Simulate Ultrasound.
+bool sonoHasPlanes(const pqPipelineSource* source);
+/// The pair that this one is of, also of a state's. See vtkSonoProbeSource::SetMatrixPlane.
+SonoPlanes sonoPlanesOf(const pqPipelineSource* source);
+/// As sonoSplitScreen, but the first one scans the first plane from now on, and the second one, which has all other
+/// settings in common with it while there is a pqSonoBiplane, the second plane. The body shows both.
+SonoSplit sonoShowBiplane(pqPipelineSource* first);
+/// The second one goes, with what was made of it and the layout that shows both; the first one scans the volume again.
+void sonoEndBiplane(const SonoPlanes& planes);

@@ -2,8 +2,10 @@
 
 #include "SonoFreeze.h"
 #include "SonoScannerSettings.h"
+#include "SonoSplitScreen.h"
 #include "SonoStore.h"
 #include "pqSonoBeat.h"
+#include "pqSonoBiplane.h"
 #include "pqSonoCine.h"
 #include "pqSonoPath.h"
 #include "pqSonoProbeWidget.h"
@@ -15,6 +17,7 @@
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 #include "vtkCommand.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
@@ -97,6 +100,11 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
                               "back."));
   planeAct_->setCheckable(true);
   QObject::connect(planeAct_, &QAction::triggered, this, [this] { turnPlane(); });
+  biplaneAct_ = this->addAct("Biplane", tr("Biplane"), Qt::SHIFT + Qt::Key_F9,
+                             tr("Of a matrix probe: the pictures of two of its planes side by side, the second at 90 "
+                                "degrees to the first; again: the volume."));
+  biplaneAct_->setCheckable(true);
+  QObject::connect(biplaneAct_, &QAction::triggered, this, [this] { toggleBiplane(); });
   this->addNudge("GainUp", tr("More Gain"), Qt::ALT + Qt::Key_PageUp, "GainDb", gainStepDb);
   this->addNudge("GainDown", tr("Less Gain"), Qt::ALT + Qt::Key_PageDown, "GainDb", -gainStepDb);
   this->addNudge("Shallower", tr("Less Depth"), Qt::ALT + Qt::SHIFT + Qt::Key_PageUp, "DepthMm", -depthStepMm);
@@ -106,7 +114,7 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
   rows_->setContentsMargins(4, 0, 4, 0);
   auto* buttons = new QGridLayout;
   int place = 0;
-  for (QAction* act : { freezeAct_, storeAct, folderAct, flipAct, planeAct_ })
+  for (QAction* act : { freezeAct_, storeAct, folderAct, flipAct, planeAct_, biplaneAct_ })
   {
     auto* button = new QToolButton;
     button->setDefaultAction(act);
@@ -154,6 +162,7 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
                        fill();
                      }
                    });
+  QObject::connect(new pqSonoBiplane(this), &pqSonoBiplane::changed, this, [this] { showPlane(); });
   QObject::connect(this, &QDockWidget::visibilityChanged, this, [this] { enable(); });
   this->toggleViewAction()->setObjectName("actionSonoScanner");
   this->toggleViewAction()->setIcon(QIcon(":/sono/scanner.svg"));
@@ -335,6 +344,30 @@ void pqSonoScannerDock::showPlane()
 {
   planeAct_->setEnabled(source_ && this->isVisible() && isVolumeProbe(source_));
   planeAct_->setChecked(source_ && this->isPlaneTurned());
+  biplaneAct_->setChecked(source_ && sonoPlanesOf(source_).first);
+  biplaneAct_->setEnabled(planeAct_->isEnabled() || (source_ && this->isVisible() && biplaneAct_->isChecked()));
+}
+
+void pqSonoScannerDock::toggleBiplane()
+{
+  const SonoPlanes planes = sonoPlanesOf(source_);
+  pqPipelineSource* first = planes.first ? planes.first : source_.data();
+  if (planes.first)
+  {
+    BEGIN_UNDO_SET(tr("End Biplane"));
+    sonoEndBiplane(planes);
+    END_UNDO_SET();
+  }
+  else
+  {
+    BEGIN_UNDO_SET(tr("Biplane"));
+    const SonoSplit split = sonoShowBiplane(first);
+    END_UNDO_SET();
+    pqActiveObjects::instance().setActiveView(split.body); // where the probe can be seen and dragged
+  }
+  pqActiveObjects::instance().setActiveSource(first);
+  pqApplicationCore::instance()->render();
+  this->showPlane();
 }
 
 /// Of the source, in the properties panel.

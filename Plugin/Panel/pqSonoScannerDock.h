@@ -43,6 +43,7 @@ private:
   void store();
   bool chooseFolder();
   void turnPlane();
+  void toggleBiplane();
   bool isPlaneTurned() const;
   pqSonoProbeWidget* probeWidget() const;
   void say(const QString& sentence);
@@ -51,6 +52,7 @@ private:
   std::vector<QAction*> acts_;
   QAction* freezeAct_;
   QAction* planeAct_;
+  QAction* biplaneAct_;
   QLabel* message_;
   QScrollArea* scroll_;
   QWidget* controls_;

@@ -22,14 +22,14 @@ struct VolumeImage
   std::size_t voxelCount() const { return std::size_t(size.x) * size.y * size.z; }
 };
 
-/// Size and place of that image, without values. Throws Error when the geometry is no matrix, and when voxelMm
+/// Size and place of that image, without values. Throws Error when the geometry fills no volume, and when voxelMm
 /// is not positive or asks for more than 2^28 voxels.
 VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm);
 
 /// Trilinear scan conversion, in (line, elevation, depth), of elevations x lines x samples (`sampleMm` apart, the first
 /// at depth 0) onto cubic voxels that cover the scanned volume's bounding box, centred laterally and elevationally. The
 /// last sample holds for up to one sample more; what lies beyond the samples or the geometry's depth is outside. One
-/// line or one elevation is drawn one voxel wide. Throws Error when the geometry is no matrix, when voxelMm is not
+/// line is drawn one voxel wide. Throws Error when the geometry fills no volume, when voxelMm is not
 /// positive or asks for more than 2^28 voxels, and when `values` is not totalLineCount x sampleCount; Aborted.
 VolumeImage scanConvertVolume(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount,
                               double sampleMm, double voxelMm, const Progress& progress = {});

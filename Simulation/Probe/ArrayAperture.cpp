@@ -76,7 +76,7 @@ ArrayAperture apertureOf(const ProbePreset& preset)
   aperture.elevationFocusMm = preset.elevationFocusMm;
   aperture.centreFrequencyMHz = preset.centreFrequencyMHz;
   aperture.fractionalBandwidth = preset.fractionalBandwidth;
-  if (preset.geometry.isVolume())
+  if (preset.geometry.isMatrix())
   {
     aperture.elementCount = std::max(1, int(std::lround(std::sqrt(double(preset.elementCount)))));
     aperture.elevationCount = aperture.elementCount;

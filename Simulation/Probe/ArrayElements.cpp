@@ -47,7 +47,7 @@ ArrayElements elementsOf(const ProbeSettings& probe, int named)
   const double builtPitchMm = elements.widthMm + probe.kerfMm;
   const double widthMm = faceWidthMm(probe, elements.widthMm);
   const double pitchMm = named > 0 ? widthMm / double(named) : builtPitchMm;
-  const bool isGrid = geometry.isVolume();
+  const bool isGrid = geometry.isMatrix();
   const long built = isGrid ? std::lround(std::sqrt(double(probe.elementCount))) : long(probe.elementCount);
   const auto countOver = [&](double mm) {
     return std::max({ 1l, built, std::lround((mm + probe.kerfMm) / builtPitchMm) });
@@ -83,7 +83,7 @@ ArrayElements arrayElements(const ProbeSettings& probe)
 ArrayElements arrayElements(const ProbeSettings& probe, int count)
 {
   const ScanGeometry& geometry = probe.geometry;
-  if (geometry.isVolume() || geometry.lineOrigin() == LineOrigin::Catheter)
+  if (geometry.isMatrix() || geometry.lineOrigin() == LineOrigin::Catheter)
   {
     throw Error(std::string("the probe is a ") + traitsOf(geometry.kind).label +
                 ": channels are made of arrays with one row of elements; choose a linear, phased or curvilinear one");

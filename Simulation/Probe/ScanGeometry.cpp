@@ -213,7 +213,7 @@ bool operator==(const BeamAperture& a, const BeamAperture& b)
 BeamAperture ProbeSettings::aperture() const
 {
   BeamAperture aperture = *this;
-  aperture.elevationIsArray = geometry.isVolume();
+  aperture.elevationIsArray = geometry.isMatrix();
   return aperture;
 }
 

@@ -64,7 +64,8 @@ struct ScanGeometry
                                      "Distance of the outermost lines on a flat face in mm, above 0." });
     visitor(self.elevationLineCount,
             Parameter{ "elevationLineCount", "Elevation Line Count", between(1, 4096),
-                       "Elevations of a matrix probe, 1 to 4096, no unit; at most 65,536 lines altogether." });
+                       "Elevations of a matrix probe, 1 to 4096, no unit; at most 65,536 lines altogether. 1 makes a "
+                       "picture of the plane in the middle instead of a volume." });
     visitor(self.elevationSectorDeg,
             Parameter{ "elevationSectorDeg", "Elevation Sector (deg)", inside(0, 180),
                        "Angle between the outermost elevations of a matrix probe in degrees, between 0 and 180." });
@@ -94,8 +95,10 @@ struct ScanGeometry
   /// Whether the kind uses a number, and what it may be.
   bool uses(const Parameter& number) const;
   Range rangeOf(const Parameter& number) const;
-  /// Whether the lines fill a volume instead of a plane.
-  bool isVolume() const { return traitsOf(kind).isVolume; }
+  /// Whether the array has rows that are focused by delays, too: a matrix.
+  bool isMatrix() const { return traitsOf(kind).isMatrix; }
+  /// Whether the lines fill a volume instead of a plane: those of a matrix of more than one elevation.
+  bool isVolume() const { return isMatrix() && elevationLineCount > 1; }
   LineOrigin lineOrigin() const { return traitsOf(kind).origin; }
   /// Fans that are compounded; of lines from one point, 1.
   int fanCount() const { return traitsOf(kind).takesPart ? compoundFans : 1; }

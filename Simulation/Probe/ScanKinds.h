@@ -11,7 +11,7 @@ enum class ScanKind
   Linear,       ///< parallel lines over the aperture's width
   PhasedSector, ///< lines from one apex on the face
   Curvilinear,  ///< lines along the radii of a convex face
-  Matrix,       ///< lines from one apex over a grid of angles: a 3-D volume
+  Matrix,       ///< lines from one apex over a grid of angles: a 3-D volume, or a plane of it
   Radial        ///< lines along the radii of a catheter, in the plane across it (ICE, IVUS)
 };
 
@@ -33,7 +33,7 @@ struct ScanKindTraits
   const char* dicomType;  ///< DICOM's Transducer Type (PS3.3 C.8.5.6.1.4)
   LineOrigin origin;
   bool takesPart;                   ///< a line is sent and heard by a part of the elements, those about its start
-  bool isVolume;                    ///< each elevation is such a plane, turned about the lateral axis
+  bool isMatrix;                    ///< each elevation is such a plane, turned about the lateral axis
   double maxSectorDeg;              ///< of the outermost lines; 360 is allowed, 180 is not
   std::vector<std::string> numbers; ///< of ScanGeometry: those that it uses and not all do
 };

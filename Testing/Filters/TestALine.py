@@ -117,10 +117,12 @@ class TestFlatScale(unittest.TestCase):
         self.assertGreater(to_line, 1.5 * radius)
         self.assertLess(to_line, 10 * radius)
 
-    def test_a_matrix_has_none(self):
+    def test_a_matrix_has_that_of_its_middle_plane(self):
         self.chain.probe.SetScanKind(MATRIX)
-        self.scale.Update()
-        self.assertEqual(self.scale.GetOutput().GetNumberOfPoints(), 0)
+        of_matrix, _ = self.drawn()
+        self.chain.probe.SetScanKind(SECTOR)
+        of_sector, _ = self.drawn()
+        np.testing.assert_array_equal(of_matrix, of_sector)
 
     def test_what_carries_no_probe(self):
         self.scale.SetInputConnection(self.chain.thorax.GetOutputPort())

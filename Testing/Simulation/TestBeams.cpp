@@ -147,6 +147,9 @@ TEST(Beams, OfAMatrixFocusesBothWaysAlike)
   {
     EXPECT_NEAR(model.widthAt(z).elevationalSigmaMm / model.widthAt(z).lateralSigmaMm, 1.0, 1e-6) << z;
   }
+  preset.geometry.elevationLineCount = 1; // a plane is scanned with the same array
+  EXPECT_TRUE(preset.aperture() == s.aperture);
+  preset.geometry.elevationLineCount = 3;
   // Lines that lean to the side, across the plane and in it, are as weak.
   preset.geometry.sectorDeg = 60.0;
   const auto lines = makeScanLines(preset.geometry, ProbePose{});

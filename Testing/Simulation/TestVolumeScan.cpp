@@ -144,24 +144,42 @@ TEST(MatrixScan, LinearRampReturnsTheRamp)
   EXPECT_NEAR(inside * voxelMm * voxelMm * voxelMm / exact, 1.0, 0.01);
 }
 
-TEST(MatrixScan, OneElevationIsThePhasedSector)
+TEST(MatrixScan, OneElevationIsThePlaneInTheMiddle)
 {
   ScanGeometry geometry = matrix();
-  geometry.elevationLineCount = 1;
-  std::vector<float> values(25 * 61);
-  std::iota(values.begin(), values.end(), 0.0f);
+  geometry.elevationLineCount = 3;
+  std::vector<float> values(3 * 25 * 61, 1e4f);
+  const auto middle = values.begin() + 25 * 61;
+  std::iota(middle, middle + 25 * 61, 0.0f);
   const VolumeImage volume = scanConvertVolume(geometry, values, 61, 1.0, 0.5);
-  geometry.kind = ScanKind::PhasedSector;
-  const PlaneImage plane = scanConvert(geometry, values, 61, 1.0, 0.5);
-  EXPECT_EQ(volume.size, Vec3i(plane.width, 1, plane.height));
-  EXPECT_EQ(volume.mask, plane.mask);
-  for (std::size_t n = 1; n < plane.value.size(); ++n)
-  {
-    ASSERT_NEAR(volume.value[n], plane.value[n], 2e-3) << n; // values up to 1525
-  }
-  expectContains(errorOf([&] { scanConvertVolume(geometry, values, 61, 1.0, 0.5); }), "scanConvert");
-  geometry.kind = ScanKind::Matrix;
   expectContains(errorOf([&] { scanConvert(geometry, values, 61, 1.0, 0.5); }), "scanConvertVolume");
+  const auto lines = makeScanLines(geometry, ProbePose());
+
+  geometry.elevationLineCount = 1;
+  const std::vector<float> ofPlane(middle, middle + 25 * 61);
+  const PlaneImage plane = scanConvert(geometry, ofPlane, 61, 1.0, 0.5);
+  const int row = volume.size.y / 2;
+  EXPECT_EQ(volume.minMm.y + row * 0.5, 0.0);
+  ASSERT_EQ(volume.size.x, plane.width);
+  ASSERT_EQ(volume.size.z, plane.height);
+  for (int k = 0; k < plane.height; ++k)
+  {
+    for (int i = 0; i < plane.width; ++i)
+    {
+      const std::size_t inVolume = std::size_t(i + plane.width * (row + volume.size.y * k));
+      const std::size_t inPlane = std::size_t(i + plane.width * k);
+      ASSERT_EQ(volume.mask[inVolume], plane.mask[inPlane]) << i << ' ' << k;
+      ASSERT_NEAR(volume.value[inVolume], plane.value[inPlane], 2e-3) << i << ' ' << k; // values up to 1525
+    }
+  }
+  expectContains(errorOf([&] { scanConvertVolume(geometry, ofPlane, 61, 1.0, 0.5); }), "scanConvert");
+  const auto planeLines = makeScanLines(geometry, ProbePose());
+  ASSERT_EQ(planeLines.size(), 25u);
+  for (std::size_t n = 0; n < 25; ++n)
+  {
+    expectNear(planeLines[n].axis, lines[25 + n].axis, 1e-12);
+    expectNear(planeLines[n].elevation, lines[25 + n].elevation, 1e-12);
+  }
 }
 
 TEST(MatrixScan, DoesNotDependOnTheNumberOfThreads)
