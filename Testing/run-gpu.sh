@@ -7,7 +7,7 @@
 #   run-gpu.sh dataset FILE FOLDER [PART PARTS]  there: writes a data set (the same pack)
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh peers [FOLDER]  there: programs of others on the same scenes, tables and report in the folder (build-gpu/peers);
-#                          `pack peers` packs what the machine's Python 3.12 lacks beside JAX, CuPy, SciPy, Matplotlib and h5py
+#                          `pack peers` packs them for Python 3.12 with JAX, CuPy, SciPy, scikit-learn, OpenCV and h5py
 #   run-gpu.sh sanitize    there: the checks of compute-sanitizer on small scenes
 set -euo pipefail
 
@@ -62,8 +62,8 @@ pack_filters()
   archive filters "$work"
 }
 
-# As install-dependencies.sh knows them, but those that run on a GPU, and PyMUST. Without what they need of what the machine
-# has, which is the machine's choice of versions; numba and PyVista, which eSDIva needs, are larger than all of these.
+# Those that run on a GPU, as install-dependencies.sh knows them, and what they need beside what the machine has. The others
+# would only repeat there what the CPU's study has measured.
 pack_peers()
 {
   local work
@@ -73,7 +73,7 @@ pack_peers()
     zea==0.1.8 keras==3.15.1 optree==0.20.0 \
     FastSIMUS==0.0.1 array-api-compat==1.16.0 array-api-extra==0.11.0 beartype==0.23.1 jaxtyping==0.3.11 \
     wadler-lindig==0.1.8 pydantic==2.14.4 pydantic-core==2.50.5 typing-inspection==0.4.5 annotated-types==0.8.0 \
-    k-Wave-python==0.6.2 deprecated==1.2.18 wrapt==2.5.2 PyMUST==0.1.9
+    k-Wave-python==0.6.2 deprecated==1.2.18 wrapt==2.5.2
   archive peers "$work"
 }
 

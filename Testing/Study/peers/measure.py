@@ -105,16 +105,18 @@ def rows_of(folder, name, device, device_name):
     kind = getattr(simulators, name)
     # One thread for matrices: PyMUST multiplies small ones, for which two waiting for each other take many times as long.
     environment = dict(os.environ, KERAS_BACKEND="jax", XDG_CACHE_HOME=str(folder / "cache"), OPENBLAS_NUM_THREADS="1",
-                       JAX_PLATFORMS=device)
+                       JAX_PLATFORMS=device, JAX_TRACEBACK_FILTERING="off")
     try:
         process = subprocess.run([sys.executable, __file__, str(folder), "--one", name, device, *sys.argv[2:]],
                                  env=environment, text=True, capture_output=True, timeout=LONGEST)
-        output, trouble = process.stdout, process.stderr.strip().splitlines()[-1:] if process.returncode else []
+        output, errors, failed = process.stdout, process.stderr.strip(), process.returncode != 0
     except subprocess.TimeoutExpired as error:
-        output, trouble = (error.stdout or b"").decode(), [f"stopped after {LONGEST} s"]
+        output, errors, failed = (error.stdout or b"").decode(), f"stopped after {LONGEST} s", True
     rows = [json.loads(line[4:]) + [device_name] for line in output.splitlines() if line.startswith("ROW ")]
-    if trouble:
-        rows.append([kind.scenes[0], kind.name, "", "failed: " + trouble[0], "", "", "", "", device_name])
+    if failed:
+        print(errors, file=sys.stderr, flush=True)
+        last = errors.splitlines()[-1] if errors else "it ended without a word"
+        rows.append([kind.scenes[0], kind.name, "", "failed: " + last, "", "", "", "", device_name])
     return rows
 
 

@@ -239,6 +239,6 @@ class KWave(Simulator):
             speed[node(points[:, 0], points[:, 2])] = SPEED / np.sqrt(1 + 2e-5 * points[:, 3] / step ** 2)
             return lambda: ((solve() - without[step, courant])[None], 1 / dt, -lead)
 
-        # The finest would take a CPU four minutes a call.
+        # The finest would take a CPU minutes a call.
         for step, courant in ((0.15, 0.3), (0.1, 0.3), (0.05, 0.3))[:3 if self.device == "cuda" else 2]:
             yield f"grid of {step} mm, CFL {courant}", run(step, courant)
