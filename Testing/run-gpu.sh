@@ -6,6 +6,8 @@
 #   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
 #   run-gpu.sh dataset FILE FOLDER [PART PARTS]  there: writes a data set (the same pack)
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
+#   run-gpu.sh peers [FOLDER]  there: programs of others on the same scenes, tables and report in the folder (build-gpu/peers);
+#                          `pack peers` packs them for Python 3.12 with JAX, CuPy, SciPy, scikit-learn, OpenCV and h5py
 #   run-gpu.sh sanitize    there: the checks of compute-sanitizer on small scenes
 set -euo pipefail
 
@@ -60,6 +62,21 @@ pack_filters()
   archive filters "$work"
 }
 
+# Those that run on a GPU, as install-dependencies.sh knows them, and what they need beside what the machine has. The others
+# would only repeat there what the CPU's study has measured.
+pack_peers()
+{
+  local work
+  work="$(mktemp -d)"
+  python3 -m pip install --quiet --no-compile --no-deps --target "$work" --python-version 3.12 --only-binary=:all: \
+    --platform manylinux2014_x86_64 --platform manylinux_2_28_x86_64 \
+    zea==0.1.8 keras==3.15.1 optree==0.20.0 \
+    FastSIMUS==0.0.1 array-api-compat==1.16.0 array-api-extra==0.11.0 beartype==0.23.1 jaxtyping==0.3.11 \
+    wadler-lindig==0.1.8 pydantic==2.14.4 pydantic-core==2.50.5 typing-inspection==0.4.5 annotated-types==0.8.0 \
+    k-Wave-python==0.6.2 deprecated==1.2.18 wrapt==2.5.2
+  archive peers "$work"
+}
+
 unpack()
 {
   local part
@@ -107,6 +124,19 @@ case "${1:-}" in
     unpack programs libraries
     with_libraries "$unpacked/programs/study_curves" "${2:-$pack/study}" error_gpu report
     ;;
+  peers)
+    unpack programs libraries peers
+    # The machine's own Python, with these packages, and without the simulator's libraries.
+    mkdir -p "$unpacked/python/bin"
+    cat > "$unpacked/python/bin/python" << END
+#!/bin/sh
+export PYTHONPATH='$unpacked/peers' LD_LIBRARY_PATH='${LD_LIBRARY_PATH:-}'
+exec '$(command -v python3)' "\$@"
+END
+    chmod +x "$unpacked/python/bin/python"
+    with_libraries env SONOVDB_DATA_DIR="$root/Data" SONOVDB_PEERS="$unpacked/python" \
+      "$unpacked/programs/study_curves" "${2:-$pack/peers}" peers report
+    ;;
   sanitize)
     unpack programs libraries
     for tool in memcheck racecheck initcheck synccheck; do
@@ -115,7 +145,7 @@ case "${1:-}" in
     done
     ;;
   *)
-    sed -n '2,9s/^# *//p' "$0" >&2
+    sed -n '2,11s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac

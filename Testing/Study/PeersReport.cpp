@@ -27,13 +27,13 @@ std::optional<CsvFile> tableIn(const std::filesystem::path& folder, const std::s
   return CsvFile::read((folder / name).string());
 }
 
-/// A scene's programs, each a curve of its settings; rows without an error are no points.
-std::string peersPlot(const CsvFile& csv, const std::string& scene)
+/// A scene's programs on the CPU or on a GPU, each a curve of its settings; rows without an error are no points.
+std::string peersPlot(const CsvFile& csv, const std::string& scene, bool gpu)
 {
   std::vector<Curve> curves;
   for (const CsvFile::Row& row : csv.rows)
   {
-    if (row.fields[0] != scene || row.fields[7].empty())
+    if (row.fields[0] != scene || row.fields[7].empty() || gpu == (row.fields[8] == "CPU"))
     {
       continue;
     }
@@ -43,10 +43,15 @@ std::string peersPlot(const CsvFile& csv, const std::string& scene)
     {
       curve = curves.insert(curve, Curve{ name, {}, {}, CurveKind::Dots });
     }
-    curve->x.push_back(numberOf(row.fields[5]));
+    curve->x.push_back(numberOf(row.fields[gpu ? 4 : 5]));
     curve->y.push_back(numberOf(row.fields[7]));
   }
-  return svgPlot("Scene '" + scene + "': error over core seconds", { "seconds of all cores, one call", true },
+  if (curves.empty())
+  {
+    return {};
+  }
+  return svgPlot("Scene '" + scene + (gpu ? "' on a GPU: error over time" : "': error over core seconds"),
+                 { gpu ? "seconds by the wall, one call" : "seconds of all cores, one call", true },
                  { "root mean square error, share of the rms", true }, curves);
 }
 
@@ -69,18 +74,20 @@ std::string peersSection(const std::filesystem::path& folder)
     "field, as zea wants it. 'waves': a grid of waves in two dimensions, 32 line sources and 24 weak points. The "
     "others have 64 elements, three transmits and 1000 points. One factor for each transmit is free, and for "
     "theirs one delay. Seconds are of a call after the first, so that what is compiled at run time is not "
-    "counted; the table has the first call, too. Ours has no setting of accuracy.");
+    "counted; the table has the first call, too. Those of a GPU end with the signals in the host's memory. Ours has no "
+    "setting of accuracy.");
   std::vector<std::string> scenes;
   for (const CsvFile::Row& row : csv->rows)
   {
     if (!row.fields[0].empty() && std::find(scenes.begin(), scenes.end(), row.fields[0]) == scenes.end())
     {
       scenes.push_back(row.fields[0]);
-      text << peersPlot(*csv, row.fields[0]);
+      text << peersPlot(*csv, row.fields[0], false) << peersPlot(*csv, row.fields[0], true);
     }
   }
   text << htmlParagraph(
-    "At equal error: of a program's settings the fastest that is no further off than ours, or than it ever comes.");
+    "At equal error: of a program's settings the fastest that is no further off than ours, or than it ever comes, on "
+    "the same device: on the CPU by core seconds, on a GPU by the wall.");
   for (const char* name : { "peers_equal.csv", "peers.csv", "peers_reference.csv" })
   {
     if (const auto table = tableIn(folder, name, text))

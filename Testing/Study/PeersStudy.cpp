@@ -1,5 +1,6 @@
 #include "PeerScenes.h"
 
+#include "Core/Device.h"
 #include "Core/Version.h"
 #include "Labels/CsvFile.h"
 #include "SimulateChannels.h"
@@ -18,6 +19,7 @@ namespace sono::study {
 namespace {
 
 constexpr const char* us = "SonoVDB";
+constexpr const char* processor = "CPU"; ///< how tables name it; other devices are GPUs
 
 /// A program's time and error on a scene, with a setting.
 struct Measured
@@ -28,6 +30,7 @@ struct Measured
   double seconds;     ///< by the wall
   double coreSeconds; ///< of all cores, which other programs on the machine hardly touch
   double error;
+  std::string device;
 };
 
 double coreSeconds()
@@ -48,8 +51,7 @@ double median(std::vector<double> values)
 std::string python()
 {
   const char* named = std::getenv("SONOVDB_PEERS");
-  const std::filesystem::path folder =
-    named ? std::filesystem::path(named) : std::filesystem::path(SONOVDB_DATA_DIR) / ".." / "build" / "peers";
+  const std::filesystem::path folder = named ? named : dataFile("../build/peers");
   const std::filesystem::path own = folder / "bin" / "python";
   const char* machines = "/usr/bin/python3"; // Debian's, which has python3-numpy
   return std::filesystem::exists(own) ? own.string() : std::filesystem::exists(machines) ? machines : "python3";
@@ -57,12 +59,12 @@ std::string python()
 
 void runScript(const Output& output, const std::string& option)
 {
-  const auto script = std::filesystem::path(SONOVDB_DATA_DIR) / ".." / "Testing" / "Study" / "peers" / "measure.py";
+  const std::string script = dataFile("../Testing/Study/peers/measure.py");
   const std::string command = "env -u PYTHONPATH -u PYTHONHOME PYTHONDONTWRITEBYTECODE=1 '" + python() + "' '" +
-                              script.string() + "' '" + output.file("").string() + "' " + option;
+                              script + "' '" + output.file("").string() + "' " + option;
   if (std::system(command.c_str()) != 0)
   {
-    throw Error("'" + script.string() +
+    throw Error("'" + script +
                 "' failed, which measures the programs of others; it needs Python 3 with NumPy (python3-numpy)");
   }
 }
@@ -72,9 +74,11 @@ std::shared_ptr<const SampledPulse> pulseOf(const Output& output, const PeerScen
   return std::make_shared<const SampledPulse>(readPulse(output.file("peers_pulse_" + scene.name + ".csv").string()));
 }
 
-/// Our signals go into a file that the same script compares with the reference as it compares theirs.
-Measured measureOurs(const Output& output, const PeerScene& scene, double& firstSeconds)
+/// Our signals go into a file that the same script compares with the reference as it compares theirs. They end in the
+/// host's memory on either device.
+Measured measureOurs(const Output& output, PeerScene scene, Device device, double& firstSeconds)
 {
+  scene.settings.device = device;
   const auto pulse = pulseOf(output, scene);
   std::vector<double> wall;
   std::vector<double> core;
@@ -93,13 +97,21 @@ Measured measureOurs(const Output& output, const PeerScene& scene, double& first
     wall.push_back(seconds);
     core.push_back(coreSeconds() - coreBefore);
   }
-  std::ofstream file(output.file("peers_ours_" + scene.name + ".f32"), std::ios::binary);
+  const std::string suffix = device == Device::Cuda ? "_cuda.f32" : "_cpu.f32";
+  std::ofstream file(output.file("peers_ours_" + scene.name + suffix), std::ios::binary);
   file.write(reinterpret_cast<const char*>(data.rf.data()), std::streamsize(data.rf.size() * sizeof(float)));
-  return { us, scene.name, "as it is", median(wall), median(core), 0.0 };
+  return { us, scene.name, "as it is", median(wall), median(core), 0.0, "" };
 }
 
-/// What each peer takes at equal error: of its settings the fastest that is no further off than we are, or than it ever
-/// comes where that is more. Where none comes so near, the ratio is what it is at least.
+/// What counts: on the CPU core seconds, which other programs on the machine hardly touch; on a GPU the wall, since no
+/// core is busy.
+double cost(const Measured& measured)
+{
+  return measured.device == processor ? measured.coreSeconds : measured.seconds;
+}
+
+/// What each peer takes at equal error, on one device: of its settings the fastest that is no further off than we are,
+/// or than it ever comes where that is more. Where none comes so near, the ratio is what it is at least.
 void compare(Output& output, const std::vector<Measured>& measured)
 {
   std::map<std::string, std::vector<Measured>> programs;
@@ -107,15 +119,19 @@ void compare(Output& output, const std::vector<Measured>& measured)
   {
     if (one.program != us)
     {
-      programs[one.program + "_" + one.scene].push_back(one);
+      programs[one.program + "_" + one.scene + (one.device == processor ? "" : "_gpu")].push_back(one);
     }
   }
   std::vector<std::vector<std::string>> rows;
   for (const auto& [key, runs] : programs)
   {
     const auto ours = std::find_if(measured.begin(), measured.end(), [&, &runs = runs](const Measured& m) {
-      return m.program == us && m.scene == runs.front().scene;
+      return m.program == us && m.scene == runs.front().scene && m.device == runs.front().device;
     });
+    if (ours == measured.end())
+    {
+      continue; // theirs found a GPU that ours can't use
+    }
     const auto best =
       std::min_element(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
     const double allowed = std::max(ours->error, 1.02 * best->error);
@@ -123,26 +139,32 @@ void compare(Output& output, const std::vector<Measured>& measured)
     const Measured* fastest = &runs.front();
     for (const Measured& run : runs)
     {
-      fastest = run.coreSeconds < fastest->coreSeconds ? &run : fastest;
-      if (run.error <= allowed && (!equal || run.coreSeconds < equal->coreSeconds))
+      fastest = cost(run) < cost(*fastest) ? &run : fastest;
+      if (run.error <= allowed && (!equal || cost(run) < cost(*equal)))
       {
         equal = &run;
       }
     }
+    const bool byCores = ours->device == processor;
     const double ratio = equal->seconds / ours->seconds;
     const double coreRatio = equal->coreSeconds / ours->coreSeconds;
     std::string name = key;
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return c == '-' ? '_' : char(std::tolower(c)); });
     output.figure("peer_" + name + "_time_ratio", ratio, "1");
-    output.figure("peer_" + name + "_core_time_ratio", coreRatio, "1");
-    rows.push_back({ runs.front().program, ours->scene, equal->setting, number(equal->error), number(ours->error),
-                     number(ratio), number(coreRatio), fastest->setting, number(fastest->error),
-                     number(fastest->coreSeconds / ours->coreSeconds) });
+    if (byCores)
+    {
+      output.figure("peer_" + name + "_core_time_ratio", coreRatio, "1");
+    }
+    rows.push_back({ runs.front().program, ours->scene, ours->device, byCores ? "core seconds" : "the wall",
+                     equal->setting, number(equal->error), number(ours->error), number(ratio),
+                     byCores ? number(coreRatio) : "", fastest->setting, number(fastest->error),
+                     number(cost(*fastest) / cost(*ours)) });
   }
   output.table("peers_equal.csv",
-               { "program", "scene", "its setting at equal error", "its error", "our error", "its time to ours",
-                 "its core seconds to ours", "its fastest setting", "error of that", "core seconds of that to ours" },
+               { "program", "scene", "device", "compared by", "its setting at equal error", "its error", "our error",
+                 "its time to ours", "its core seconds to ours", "its fastest setting", "error of that",
+                 "that to ours, as compared" },
                rows);
 }
 
@@ -153,12 +175,17 @@ void peers(Output& output)
   runScript(output, output.quick() ? "--quick" : "");
   const CsvFile theirs = CsvFile::read(output.file("peers_theirs.csv").string());
   std::vector<Measured> measured;
-  std::map<std::string, double> firstSeconds;
+  std::vector<double> firstSeconds;
   for (const PeerScene& scene : scenes)
   {
-    if (std::filesystem::exists(output.file("peers_pulse_" + scene.name + ".csv")))
+    if (!std::filesystem::exists(output.file("peers_pulse_" + scene.name + ".csv")))
     {
-      measured.push_back(measureOurs(output, scene, firstSeconds[scene.name]));
+      continue;
+    }
+    measured.push_back(measureOurs(output, scene, Device::Cpu, firstSeconds.emplace_back()));
+    if (chooseDevice(Device::Auto).cuda)
+    {
+      measured.push_back(measureOurs(output, scene, Device::Cuda, firstSeconds.emplace_back()));
     }
   }
   runScript(output, "--ours");
@@ -168,8 +195,9 @@ void peers(Output& output)
   {
     Measured& ours = measured[n];
     ours.error = std::stod(errors.rows[n].fields[1]);
+    ours.device = errors.rows[n].fields[2];
     rows.push_back({ ours.scene, us, version(), ours.setting, number(ours.seconds), number(ours.coreSeconds),
-                     number(firstSeconds[ours.scene]), number(ours.error), "CPU" });
+                     number(firstSeconds[n]), number(ours.error), ours.device });
   }
   for (const CsvFile::Row& row : theirs.rows)
   {
@@ -177,8 +205,8 @@ void peers(Output& output)
     const double error = std::strtod(row.fields[7].c_str(), nullptr);
     if (error > 0.0)
     {
-      measured.push_back(
-        { row.fields[1], row.fields[0], row.fields[3], std::stod(row.fields[4]), std::stod(row.fields[5]), error });
+      measured.push_back({ row.fields[1], row.fields[0], row.fields[3], std::stod(row.fields[4]),
+                           std::stod(row.fields[5]), error, row.fields[8] });
     }
   }
   output.table("peers.csv", theirs.header, rows);

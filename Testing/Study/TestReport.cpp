@@ -137,6 +137,8 @@ TEST(StudyReport, PlotsPeersAndGrowthAndNamesWhatIsNotInstalled)
                { { "plane", "SonoVDB", "1", "as it is", "0.1", "0.2", "0.1", "0.001", "CPU" },
                  { "plane", "Other", "2", "fast", "1", "1", "1", "0.01", "CPU" },
                  { "plane", "Other", "2", "exact", "3", "3", "3", "0.0005", "CPU" },
+                 { "array", "Third", "4", "fast", "1", "1", "1", "0.01", "CPU" },
+                 { "plane", "SonoVDB", "1", "as it is", "0.01", "0.02", "0.1", "0.001", "GPU, a name" },
                  { "plane", "Absent", "", "not installed", "", "", "", "", "" } });
   output.table(
     "growth.csv",
@@ -147,6 +149,8 @@ TEST(StudyReport, PlotsPeersAndGrowthAndNamesWhatIsNotInstalled)
   writeReport(folder);
   const std::string html = textOf(folder / "report.html");
   sono::testing::expectContains(html, "Scene 'plane': error over core seconds");
+  sono::testing::expectContains(html, "Scene 'plane' on a GPU: error over time");
+  EXPECT_EQ(html.find("Scene 'array' on a GPU"), std::string::npos);
   sono::testing::expectContains(html, ">Other 2<");
   sono::testing::expectContains(html, "not installed");
   sono::testing::expectContains(html, "Time over labels");

@@ -1,8 +1,8 @@
 """How each program of others is asked for a scene's signals.
 
-A simulator has a name, the package whose version counts, the scene that it can do, and `settings(scene)`: pairs of
-words and a function without arguments, whose time is measured and which returns (signals as transmits x elements x
-samples, sampling MHz, time of the first sample us).
+A simulator has a name, the package whose version counts, the scenes that it can do, the devices that it runs on (cpu,
+cuda), and `settings(scene)`: pairs of words and a function without arguments, whose time is measured and which returns
+(signals as transmits x elements x samples, sampling MHz, time of the first sample us), in the host's memory.
 """
 import contextlib
 import io
@@ -22,9 +22,16 @@ def padded(rf):
     return np.array([np.pad(signals, ((0, 0), (0, longest - signals.shape[1]))) for signals in rf])
 
 
-class PyMust:
+class Simulator:
+    devices = ("cpu",)
+
+    def __init__(self, device):
+        """JAX_PLATFORMS must name the same device: those that run by JAX go by it."""
+        self.device = device
+
+
+class PyMust(Simulator):
     name, package, scenes = "PyMUST", "PyMUST", ("plane", "lens")
-    device = "CPU"
 
     def settings(self, scene):
         with_numpy_2(np)
@@ -61,12 +68,8 @@ class PyMust:
             yield words or "default", lambda choice=choice: run(**choice)
 
 
-class FastSimus:
-    name, package, scenes = "FastSIMUS", "FastSIMUS", ("plane",)
-
-    @property
-    def device(self):
-        return jax_device()
+class FastSimus(Simulator):
+    name, package, scenes, devices = "FastSIMUS", "FastSIMUS", ("plane",), ("cpu", "cuda")
 
     def settings(self, scene):
         import jax
@@ -80,28 +83,49 @@ class FastSimus:
         places, amplitude = jnp.asarray(1e-3 * points[:, [0, 2]]), jnp.asarray(points[:, 3])
         delays = [jnp.asarray(1e-6 * np.array(d), dtype=jnp.float32) for d in scene["delays"]]
         fs = 1e6 * scene["sampling"]
-        for words, plan_of, full in (("default", dict(), False), ("full_frequency_directivity", dict(), True),
-                                     ("full_frequency_directivity, db_thresh -100", dict(db_thresh=-100), True)):
+        choices = [("default", dict(), False, None), ("full_frequency_directivity", dict(), True, None),
+                   ("full_frequency_directivity, db_thresh -100", dict(db_thresh=-100), True, None)]
+        if self.device == "cuda":
+            # A GPU's matrix products are of 10 bits unless more is asked for.
+            choices += [(words + ", products in full precision", plan_of, full, "highest")
+                        for words, plan_of, full, _ in choices[1:]]
+        for words, plan_of, full, precision in choices:
             compiled = {}
 
-            def run(words=words, plan_of=plan_of, full=full, compiled=compiled):
+            def run(plan_of=plan_of, full=full, precision=precision, compiled=compiled):
                 rf = []
                 for n, d in enumerate(delays):
                     if n not in compiled:
                         plan = simus_precompute(places, amplitude, d, params, fs=fs, **plan_of)
                         compiled[n] = jax.jit(lambda places, amplitude, d, plan=plan: simus_compute(
                             places, amplitude, d, plan, params, full_frequency_directivity=full).rf)
-                    rf.append(np.asarray(compiled[n](places, amplitude, d)).T)
+                    with jax.default_matmul_precision(precision):
+                        rf.append(np.asarray(compiled[n](places, amplitude, d)).T)
                 return padded(rf), scene["sampling"], 0.0
             yield words + " (compiled before)", run
+        if self.device == "cuda":
+            yield "its own kernel, by CuPy (compiled before)", self._kernel(scene, params, points, fs)
+
+    def _kernel(self, scene, params, points, fs):
+        """It knows the directivity of one frequency alone."""
+        import cupy
+        from fast_simus.simus import simus_compute, simus_precompute
+        places, amplitude = cupy.asarray(1e-3 * points[:, [0, 2]]), cupy.asarray(points[:, 3])
+        delays = [cupy.asarray(1e-6 * np.array(d), dtype=cupy.float32) for d in scene["delays"]]
+        plans = {}
+
+        def run():
+            rf = []
+            for n, d in enumerate(delays):
+                if n not in plans:
+                    plans[n] = simus_precompute(places, amplitude, d, params, fs=fs)
+                rf.append(cupy.asnumpy(simus_compute(places, amplitude, d, plans[n], params).rf).T)
+            return padded(rf), scene["sampling"], 0.0
+        return run
 
 
-class Zea:
-    name, package, scenes = "zea", "zea", ("array",)
-
-    @property
-    def device(self):
-        return jax_device()
+class Zea(Simulator):
+    name, package, scenes, devices = "zea", "zea", ("array",), ("cpu", "cuda")
 
     def settings(self, scene):
         import jax
@@ -132,9 +156,8 @@ class Zea:
             yield words + " (compiled before)", run
 
 
-class Esdiva:
+class Esdiva(Simulator):
     name, package, scenes = "eSDIva", "esdiva", ("array",)
-    device = "CPU"
 
     def settings(self, scene):
         import esdiva
@@ -165,12 +188,11 @@ class Esdiva:
                    lambda given=(along, times, method): run(*given))
 
 
-class KWave:
+class KWave(Simulator):
     """Solves waves on a grid; the echo is what a run with points hears less what one without does, of which the first is
-    timed. Points are a node each, so weak that none hears another. Its solver in Python: the package would fetch
-    programs when it is imported, which a study of fixed versions doesn't want."""
-    name, package, scenes = "k-Wave", "k-Wave-python", ("waves",)
-    device = "CPU"
+    timed. Points are a node each, so weak that none hears another. Its solver in Python, on a GPU by CuPy: the package
+    would fetch programs when it is imported, which a study of fixed versions doesn't want."""
+    name, package, scenes, devices = "k-Wave", "k-Wave-python", ("waves",), ("cpu", "cuda")
 
     def settings(self, scene):
         import logging
@@ -209,18 +231,14 @@ class KWave:
             speed = np.full(tuple(grid.N), SPEED)
 
             def solve():
+                device = "gpu" if self.device == "cuda" else "cpu"
                 return np.asarray(kspaceFirstOrder(grid, kWaveMedium(sound_speed=speed, density=1000.0), source, sensor,
-                                                   quiet=True, pml_size=20)["p"])
+                                                   quiet=True, pml_size=20, device=device)["p"])
             if (step, courant) not in without:
                 without[step, courant] = solve()
             speed[node(points[:, 0], points[:, 2])] = SPEED / np.sqrt(1 + 2e-5 * points[:, 3] / step ** 2)
             return lambda: ((solve() - without[step, courant])[None], 1 / dt, -lead)
 
-        for step, courant in ((0.15, 0.3), (0.1, 0.3)):
+        # The finest would take a CPU minutes a call.
+        for step, courant in ((0.15, 0.3), (0.1, 0.3), (0.05, 0.3))[:3 if self.device == "cuda" else 2]:
             yield f"grid of {step} mm, CFL {courant}", run(step, courant)
-
-
-def jax_device():
-    import jax
-    device = jax.devices()[0]
-    return "CPU" if device.platform == "cpu" else device.device_kind
