@@ -145,7 +145,7 @@ void UltrasoundStages::announce(vtkInformationVector** input, vtkInformationVect
 {
   const auto on = [&](int port) { return output->GetInformationObject(port); };
   formation->SetDevice(tracer->GetDevice()); // what it says when it is asked
-  probe->SetDevice(tracer->GetDevice());
+  probe->UseDevice(tracer->GetDevice());
   field_ = probe->Probe();
   settings_ = imageSettings(field_, *tracer, *formation, *bmode, pixelMmOf(field_, converter->GetPixelMm()));
   begin(input);

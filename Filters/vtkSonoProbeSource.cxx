@@ -101,6 +101,15 @@ void vtkSonoProbeSource::SetNumber(const char* name, double value)
   }
 }
 
+void vtkSonoProbeSource::UseDevice(int device)
+{
+  if (this->Device != device)
+  {
+    this->Device = device;
+    this->Modified();
+  }
+}
+
 sono::ProbeField vtkSonoProbeSource::Probe() const
 {
   sono::ProbeField probe;

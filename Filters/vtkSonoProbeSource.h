@@ -136,14 +136,11 @@ public:
   vtkBooleanMacro(Preview, bool);
   ///@}
 
-  ///@{
   /**
    * The Device of the stages that follow (vtkSonoRayTracer), which vtkSonoUltrasound hands on: whether a probe that is
-   * being moved has a GPU. Default 0: Auto.
+   * being moved has a GPU. Without a word: Auto.
    */
-  vtkSetMacro(Device, int);
-  vtkGetMacro(Device, int);
-  ///@}
+  void UseDevice(int device);
 
   ///@{
   /**

@@ -202,6 +202,15 @@ ChannelShells makeShells(const ChannelPlan& plan, const ChannelPoints& points)
   out.stepMHz = plan.samplingMHz / out.samples;
   out.firstBin = std::max(1, int(std::ceil(plan.spectrum.lowMHz() / out.stepMHz)));
   out.bins = std::max(0, int(std::floor(plan.highMHz / out.stepMHz)) - out.firstBin + 1);
+  for (const std::complex<double>& value : plan.spectrum.at(out.frequencyMHz(0), out.stepMHz, out.bins))
+  {
+    out.pulse.emplace_back(2.0 * out.stepMHz * value);
+  }
+  for (int n = 0; n < out.samples; ++n)
+  {
+    out.turnCosine.push_back(float(std::cos(2.0 * pi * n / out.samples)));
+    out.turnSine.push_back(float(std::sin(2.0 * pi * n / out.samples)));
+  }
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include "Core/Progress.h"
 #include "Kernel/ChannelWave.h"
 
+#include <complex>
 #include <vector>
 
 namespace sono {
@@ -79,6 +80,8 @@ struct ChannelShells
   int firstBin = 0;
   int bins = 0;
   double stepMHz = 0.0;
+  std::vector<std::complex<float>> pulse;  ///< of each frequency: twice the step times its spectrum, for both sides
+  std::vector<float> turnCosine, turnSine; ///< of 2 pi n / samples
 
   double frequencyMHz(int bin) const { return (firstBin + bin) * stepMHz; }
 };

@@ -1,6 +1,7 @@
 #include "Channels/PulseSpectrum.h"
 
 #include "Core/Error.h"
+#include "Core/Simd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,27 @@ constexpr double faintest = 3e-4;
 constexpr double leastShare = 0.08; // of the strongest frequency: from there on the taper rises,
 constexpr double wholeShare = 0.24; // up to here; half of it at 0.16, as surfaces' echoes end, section 12.6
 constexpr int searched = 2048;      // frequencies of a sampled pulse
+constexpr int together = 64;        // frequencies that are summed together
 
 bool isFinite(double a)
 {
   return std::isfinite(a);
+}
+
+/// Clenshaw's recurrence for sums of a_n exp(i n w), b_n = a_n + 2 cos(w) b_(n+1) - b_(n+2): b_0 and b_1.
+SONO_SIMD_CLONES void sumTones(const std::vector<double>& amplitudes, const double* cosines, double* sums,
+                               double* before)
+{
+  for (std::size_t k = amplitudes.size(); k-- > 0;)
+  {
+    const double amplitude = amplitudes[k];
+    for (int n = 0; n < together; ++n)
+    {
+      const double next = amplitude + 2.0 * cosines[n] * sums[n] - before[n];
+      before[n] = sums[n];
+      sums[n] = next;
+    }
+  }
 }
 
 } // namespace
@@ -51,9 +69,9 @@ PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
   endUs_ = p.startUs + p.stepUs * double(p.amplitude.size() - 1);
   const double stepMHz = 0.5 / p.stepUs / searched;
   std::vector<double> moduli;
-  for (int n = 0; n <= searched; ++n)
+  for (const std::complex<double>& value : at(0.0, stepMHz, searched + 1))
   {
-    moduli.push_back(std::abs(at(n * stepMHz)));
+    moduli.push_back(std::abs(value));
   }
   const auto strongest = std::max_element(moduli.begin(), moduli.end());
   strongestMHz_ = stepMHz * double(strongest - moduli.begin());
@@ -64,24 +82,48 @@ PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
   highMHz_ = stepMHz * double(moduli.rend() - last - 1);
 }
 
-std::complex<double> PulseSpectrum::at(double frequencyMHz) const
+double PulseSpectrum::taperAt(double frequencyMHz) const
 {
   const double risen = std::clamp((frequencyMHz / strongestMHz_ - leastShare) / (wholeShare - leastShare), 0.0, 1.0);
-  const double taper = 0.5 - 0.5 * std::cos(pi * risen);
-  if (!pulse_)
+  return 0.5 - 0.5 * std::cos(pi * risen);
+}
+
+std::complex<double> PulseSpectrum::at(double frequencyMHz) const
+{
+  return at(frequencyMHz, 0.0, 1).front();
+}
+
+std::vector<std::complex<double>> PulseSpectrum::at(double firstMHz, double stepMHz, int count) const
+{
+  std::vector<std::complex<double>> values;
+  for (int first = 0; first < count; first += together)
   {
-    const double off = (frequencyMHz - strongestMHz_) / spreadMHz_;
-    return taper * 0.5 / (spreadMHz_ * std::sqrt(2.0 * pi)) * std::exp(-0.5 * off * off);
+    double cosines[together];
+    double sums[together] = {};
+    double before[together] = {};
+    for (int n = 0; n < together; ++n)
+    {
+      cosines[n] = pulse_ ? std::cos(2.0 * pi * (firstMHz + (first + n) * stepMHz) * pulse_->stepUs) : 0.0;
+    }
+    if (pulse_)
+    {
+      sumTones(pulse_->amplitude, cosines, sums, before);
+    }
+    for (int n = 0; n < std::min(together, count - first); ++n)
+    {
+      const double f = firstMHz + (first + n) * stepMHz;
+      if (!pulse_)
+      {
+        const double off = (f - strongestMHz_) / spreadMHz_;
+        values.emplace_back(taperAt(f) * 0.5 / (spreadMHz_ * std::sqrt(2.0 * pi)) * std::exp(-0.5 * off * off));
+        continue;
+      }
+      const std::complex<double> sum(sums[n] - before[n] * cosines[n],
+                                     before[n] * std::sin(2.0 * pi * f * pulse_->stepUs));
+      values.push_back(std::polar(taperAt(f) * pulse_->stepUs, 2.0 * pi * f * pulse_->startUs) * sum);
+    }
   }
-  const std::complex<double> turn = std::polar(1.0, 2.0 * pi * frequencyMHz * pulse_->stepUs);
-  std::complex<double> phase = std::polar(taper * pulse_->stepUs, 2.0 * pi * frequencyMHz * pulse_->startUs);
-  std::complex<double> sum = 0.0;
-  for (const double amplitude : pulse_->amplitude)
-  {
-    sum += amplitude * phase;
-    phase *= turn;
-  }
-  return sum;
+  return values;
 }
 
 } // namespace sono

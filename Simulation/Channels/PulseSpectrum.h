@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <memory>
+#include <vector>
 
 namespace sono {
 
@@ -18,6 +19,8 @@ public:
   explicit PulseSpectrum(std::shared_ptr<const SampledPulse> pulse);
 
   std::complex<double> at(double frequencyMHz) const;
+  /// At evenly spaced frequencies, all at once.
+  std::vector<std::complex<double>> at(double firstMHz, double stepMHz, int count) const;
   /// Where it is above -70 dB of its largest modulus.
   double lowMHz() const { return lowMHz_; }
   double highMHz() const { return highMHz_; }
@@ -27,6 +30,8 @@ public:
   double endUs() const { return endUs_; }
 
 private:
+  double taperAt(double frequencyMHz) const;
+
   std::shared_ptr<const SampledPulse> pulse_; // null: the Gaussian
   double strongestMHz_;
   double spreadMHz_ = 0.0;

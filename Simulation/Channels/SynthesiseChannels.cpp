@@ -10,7 +10,6 @@ namespace sono {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int tile = 64; // samples that are summed together
 
 /// signal[m] += sum over bins of re[bin] cosines[bin][m] + im[bin] sines[bin][m], of one tile.
@@ -32,6 +31,13 @@ SONO_SIMD_CLONES void addTile(const float* re, const float* im, int bins, const 
   std::copy(sum, sum + tile, signal);
 }
 
+/// How far a frequency has turned after so many samples, in samples' shares of a turn.
+std::size_t turnOf(const ChannelShells& shells, int bin, int sample)
+{
+  const std::int64_t turn = (std::int64_t(shells.firstBin) + bin) * sample % shells.samples;
+  return std::size_t(turn < 0 ? turn + shells.samples : turn);
+}
+
 } // namespace
 
 void synthesise(const ChannelPlan& plan, const ChannelShells& shells, const ChannelShell& shell,
@@ -47,17 +53,17 @@ void synthesise(const ChannelPlan& plan, const ChannelShells& shells, const Chan
   std::vector<float> im(re.size());
   for (std::size_t bin = 0; bin < bins; ++bin)
   {
-    const double turns = (double(shells.firstBin) + double(bin)) * shell.firstSample / shells.samples;
-    const std::complex<double> weight = 2.0 * shells.stepMHz * plan.spectrum.at(shells.frequencyMHz(int(bin))) *
-                                        std::polar(1.0, -2.0 * pi * (turns - std::floor(turns)));
+    const std::size_t turn = turnOf(shells, int(bin), shell.firstSample);
+    const std::complex<float> weight =
+      shells.pulse[bin] * std::complex<float>(shells.turnCosine[turn], -shells.turnSine[turn]);
     for (std::size_t t = 0; t < transmits; ++t)
     {
       const float* row = sums.data() + (bin * transmits + t) * 2 * padded;
       for (std::size_t n = 0; n < elements; ++n)
       {
-        const std::complex<double> value = weight * std::complex<double>(row[n], row[padded + n]);
-        re[(t * elements + n) * bins + bin] = float(value.real());
-        im[(t * elements + n) * bins + bin] = float(value.imag());
+        const std::complex<float> value = weight * std::complex<float>(row[n], row[padded + n]);
+        re[(t * elements + n) * bins + bin] = value.real();
+        im[(t * elements + n) * bins + bin] = value.imag();
       }
     }
   }
@@ -73,13 +79,13 @@ void synthesise(const ChannelPlan& plan, const ChannelShells& shells, const Chan
     std::vector<float> sines(bins * tile);
     for (std::size_t bin = 0; bin < bins; ++bin)
     {
-      for (int m = 0; m < tile; ++m)
+      std::size_t turn = turnOf(shells, int(bin), number * tile);
+      const std::size_t step = std::size_t(shells.firstBin) + bin;
+      for (std::size_t m = 0; m < std::size_t(tile); ++m)
       {
-        const std::int64_t turn =
-          (std::int64_t(shells.firstBin) + std::int64_t(bin)) * (number * tile + m) % shells.samples;
-        const double angle = 2.0 * pi * double(turn) / shells.samples;
-        cosines[bin * tile + std::size_t(m)] = float(std::cos(angle));
-        sines[bin * tile + std::size_t(m)] = float(std::sin(angle));
+        cosines[bin * tile + m] = shells.turnCosine[turn];
+        sines[bin * tile + m] = shells.turnSine[turn];
+        turn = (turn + step) % std::size_t(shells.samples);
       }
     }
     float added[tile];

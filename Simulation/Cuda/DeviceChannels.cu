@@ -20,6 +20,7 @@ constexpr int tilePoints = 16;
 constexpr int tileTransmits = 16;
 constexpr int tileElements = 64;
 constexpr int sumsPerThread = tileTransmits * tileElements / threads;
+constexpr double mostAsked = 3e10; ///< points times sums, some tenths of a second
 
 struct DevicePoints
 {
@@ -266,13 +267,139 @@ __global__ void addParts(const float* parts, int count, size_t values, float* su
   }
 }
 
+/// What elements send (driveTable), of delays in us; one thread for a frequency, transmit and element.
+__global__ void driveKernel(const double* delays, const float* weights, double stepMHz, int firstBin, int bins,
+                            int transmits, int elements, int padded, float* drive)
+{
+  const size_t i = size_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  const int n = int(i % padded);
+  const int t = int(i / padded % transmits);
+  const int bin = int(i / padded / transmits);
+  if (bin >= bins)
+  {
+    return;
+  }
+  float sine = 0.0f;
+  float cosine = 0.0f;
+  float weight = 0.0f;
+  if (n < elements)
+  {
+    const double turns = (firstBin + bin) * stepMHz * delays[t * elements + n];
+    sincospif(2.0f * float(turns - rint(turns)), &sine, &cosine);
+    weight = weights[t * elements + n];
+  }
+  float* re = drive + (size_t(bin) * transmits + t) * 2 * padded;
+  re[n] = weight * cosine;
+  re[padded + n] = weight * sine;
+}
+
+constexpr int synthSamples = 64;
+constexpr int synthSignals = 32;
+constexpr int synthBins = 32;
+constexpr int signalsPerThread = synthSamples * synthSignals / threads;
+
+struct SynthesisJob
+{
+  int bins;
+  int firstBin;
+  int samples; ///< of the stretch
+  int firstSample;
+  int transmits;
+  int elements;
+  int padded;
+  int sampleCount; ///< of a signal
+  const float2* pulse;
+  const float *turnCosine, *turnSine;
+};
+
+/// A shell's sums to samples (synthesise), added to the signals. blockIdx: x the tile of samples, y that of signals.
+__global__ void __launch_bounds__(threads) synthesiseKernel(SynthesisJob job, const float* sums, float* rf)
+{
+  __shared__ float2 tones[synthBins][synthSamples];
+  __shared__ float2 values[synthBins][synthSignals];
+  const int signals = job.transmits * job.elements;
+  const int firstInStretch = int(blockIdx.x) * synthSamples;
+  const int firstSignal = int(blockIdx.y) * synthSignals;
+  const int m = int(threadIdx.x) % synthSamples;
+  constexpr int groups = threads / synthSamples;
+  const int group = int(threadIdx.x) / synthSamples;
+  const auto turnOf = [&](int bin, int sample) {
+    const long long turn = static_cast<long long>(job.firstBin + bin) * sample % job.samples;
+    return int(turn < 0 ? turn + job.samples : turn);
+  };
+  float added[signalsPerThread] = {};
+  for (int first = 0; first < job.bins; first += synthBins)
+  {
+    for (int at = int(threadIdx.x); at < synthBins * synthSamples; at += threads)
+    {
+      const int turn = turnOf(first + at / synthSamples, firstInStretch + at % synthSamples);
+      tones[at / synthSamples][at % synthSamples] = { job.turnCosine[turn], job.turnSine[turn] };
+    }
+    for (int at = int(threadIdx.x); at < synthBins * synthSignals; at += threads)
+    {
+      const int bin = first + at / synthSignals;
+      const int signal = firstSignal + at % synthSignals;
+      float2 value = { 0.0f, 0.0f };
+      if (bin < job.bins && signal < signals)
+      {
+        const int t = signal / job.elements;
+        const float* row = sums + (size_t(bin) * job.transmits + t) * 2 * job.padded + (signal - t * job.elements);
+        const int turn = turnOf(bin, job.firstSample);
+        const float2 pulse = job.pulse[bin];
+        const ComplexNumber weight =
+          ComplexNumber{ pulse.x, pulse.y } * ComplexNumber{ job.turnCosine[turn], -job.turnSine[turn] };
+        const ComplexNumber sum = weight * ComplexNumber{ row[0], row[job.padded] };
+        value = { sum.re, sum.im };
+      }
+      values[at / synthSignals][at % synthSignals] = value;
+    }
+    __syncthreads();
+    for (int bin = 0; bin < synthBins; ++bin)
+    {
+      const float2 tone = tones[bin][m];
+      for (int n = 0; n < signalsPerThread; ++n)
+      {
+        const float2 value = values[bin][group + n * groups];
+        added[n] += value.x * tone.x + value.y * tone.y;
+      }
+    }
+    __syncthreads();
+  }
+  const int sample = job.firstSample + firstInStretch + m;
+  if (firstInStretch + m >= job.samples || sample < 0 || sample >= job.sampleCount)
+  {
+    return;
+  }
+  for (int n = 0; n < signalsPerThread; ++n)
+  {
+    const int signal = firstSignal + group + n * groups;
+    if (signal < signals)
+    {
+      rf[size_t(signal) * job.sampleCount + sample] += added[n];
+    }
+  }
+}
+
 /// What stays on the device for all shells.
 struct OnDevice
 {
+  DeviceArray<double> delays;
+  DeviceArray<float> weights, turnCosine, turnSine, rf;
+  DeviceArray<float2> pulse;
   DeviceArray<float> pieceX, pieceZ, pieceNormalX, pieceNormalZ;
   DeviceArray<float> x, y, z, re, im, lagMm, sinkNp, rise;
   DeviceArray<float> drive, parts, sums;
 };
+
+int largestShell(const ChannelShells& shells)
+{
+  std::size_t points = 0;
+  for (const ChannelShell& shell : shells.shells)
+  {
+    points = std::max(points, shell.end - shell.first);
+  }
+  return int(points);
+}
 
 } // namespace
 
@@ -294,7 +421,6 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   {
     return data;
   }
-  const std::vector<float> drive = driveTable(plan, shells);
   Traffic traffic;
   OnDevice on;
   const ElementPieces& pieces = plan.pieces;
@@ -310,7 +436,13 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   on.lagMm.upload(shells.points.lagMm, stream, traffic);
   on.sinkNp.upload(shells.points.sinkNp, stream, traffic);
   on.rise.upload(shells.points.rise, stream, traffic);
-  on.drive.upload(drive, stream, traffic);
+  on.delays.upload(plan.transmits.delaysUs, stream, traffic);
+  on.weights.upload(plan.transmits.weights, stream, traffic);
+  on.turnCosine.upload(shells.turnCosine, stream, traffic);
+  on.turnSine.upload(shells.turnSine, stream, traffic);
+  on.pulse.upload(reinterpret_cast<const float2*>(shells.pulse.data()), shells.pulse.size(), stream, traffic);
+  on.rf.resize(data.rf.size());
+  on.rf.clear(stream);
   ShellJob job{};
   job.pieceX = on.pieceX.data();
   job.pieceZ = on.pieceZ.data();
@@ -329,7 +461,6 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   job.firstBin = shells.firstBin;
   job.centreMHz = float(plan.centreMHz);
   job.transmits = int(plan.transmits.each.size());
-  job.drive = on.drive.data();
   job.points = { on.x.data(),  on.y.data(),     on.z.data(),      on.re.data(),
                  on.im.data(), on.lagMm.data(), on.sinkNp.data(), on.rise.data() };
   const std::size_t bytes = std::size_t(tilePoints) * std::size_t(pieces.padded) * sizeof(float2);
@@ -342,10 +473,23 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   const int elementTiles = (pieces.padded + tileElements - 1) / tileElements;
   // A few thousand blocks keep a large GPU busy.
   const int blocks = shells.bins * transmitTiles * elementTiles;
-  job.parts = std::clamp(4096 / blocks, 1, 16);
-  on.parts.resize(drive.size() * std::size_t(job.parts));
-  on.sums.resize(drive.size());
-  std::vector<float> sums(drive.size());
+  const int tiles = (largestShell(shells) + tilePoints - 1) / tilePoints;
+  job.parts = std::clamp(4096 / blocks, 1, std::min(16, tiles));
+  const std::size_t values = std::size_t(shells.bins) * std::size_t(job.transmits) * 2 * std::size_t(pieces.padded);
+  on.drive.resize(values);
+  on.parts.resize(values * std::size_t(job.parts));
+  on.sums.resize(values);
+  driveKernel<<<unsigned((values / 2 + threads - 1) / threads), threads, 0, stream>>>(
+    on.delays.data(), on.weights.data(), shells.stepMHz, shells.firstBin, shells.bins, job.transmits, job.elements,
+    job.padded, on.drive.data());
+  check(cudaGetLastError(), "delaying transmits");
+  job.drive = on.drive.data();
+  SynthesisJob synthesis{ shells.bins,     shells.firstBin,      shells.samples,    0,
+                          job.transmits,   job.elements,         job.padded,        plan.sampleCount,
+                          on.pulse.data(), on.turnCosine.data(), on.turnSine.data() };
+  const dim3 synthesisGrid(unsigned((shells.samples + synthSamples - 1) / synthSamples),
+                           unsigned((job.transmits * job.elements + synthSignals - 1) / synthSignals));
+  double asked = 0.0; // since the device was waited for
   for (const ChannelShell& shell : shells.shells)
   {
     report(progress, double(shell.first) / double(shells.points.size()));
@@ -354,13 +498,22 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
     const dim3 grid(unsigned(shells.bins), unsigned(elementTiles), unsigned(transmitTiles * job.parts));
     sumShellKernel<<<grid, threads, bytes, stream>>>(job, on.parts.data());
     check(cudaGetLastError(), "summing channels");
-    addParts<<<unsigned((drive.size() + threads - 1) / threads), threads, 0, stream>>>(on.parts.data(), job.parts,
-                                                                                       drive.size(), on.sums.data());
+    addParts<<<unsigned((values + threads - 1) / threads), threads, 0, stream>>>(on.parts.data(), job.parts, values,
+                                                                                 on.sums.data());
     check(cudaGetLastError(), "summing channels");
-    download(on.sums.data(), drive.size(), sums.data(), stream, traffic);
-    check(await(stream), "summing channels");
-    synthesise(plan, shells, shell, sums, data);
+    synthesis.firstSample = shell.firstSample;
+    synthesiseKernel<<<synthesisGrid, threads, 0, stream>>>(synthesis, on.sums.data(), on.rf.data());
+    check(cudaGetLastError(), "making signals");
+    // Whoever stops it need not wait for all that was asked for.
+    asked += double(shell.end - shell.first) * double(values);
+    if (asked > mostAsked)
+    {
+      check(await(stream), "summing channels");
+      asked = 0.0;
+    }
   }
+  download(on.rf.data(), data.rf.size(), data.rf.data(), stream, traffic);
+  check(await(stream), "summing channels");
   report(progress, 1.0);
   return data;
 }
