@@ -20,8 +20,8 @@ SWEEP_S, SWEEPS = 2.0, 6  # one way along the skin, and how many ways there and 
 GAIN_STEPS, GAIN_EVERY_S = 20, 0.3
 # Where things are on the screen.
 FAN = (757, 122)
-SCANNER = (859, 122)
-GAIN = (1013, 415)  # the slider's handle at 0 dB
+SCANNER = (940, 122)
+GAIN = (994, 509)  # the slider's handle at 0 dB
 FROM, TO = (538, 539), (499, 516)  # in the view with the body: where the probe lies at first, and up the chest
 
 # Inside ParaView: the thorax, the time at which each view of the layout has been drawn, and when a hand moved what.
