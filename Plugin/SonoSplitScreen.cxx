@@ -29,8 +29,6 @@
 
 namespace {
 
-constexpr const char* matrixPlane = "MatrixPlane";
-
 pqPipelineSource* itemOf(vtkSMProxy* proxy)
 {
   return pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(proxy);
@@ -71,13 +69,13 @@ SonoSplit show(const char* tab, const pqPipelineSource* first, pqPipelineSource*
 
 int planeOf(const pqPipelineSource* source)
 {
-  return vtkSMPropertyHelper(source->getProxy(), matrixPlane, true).GetAsInt();
+  return vtkSMPropertyHelper(source->getProxy(), sonoMatrixPlane, true).GetAsInt();
 }
 
 void scan(int plane, const pqPipelineSource* source)
 {
   SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source->getProxy());
-  vtkSMPropertyHelper(source->getProxy(), matrixPlane).Set(plane);
+  vtkSMPropertyHelper(source->getProxy(), sonoMatrixPlane).Set(plane);
   source->getProxy()->UpdateVTKObjects();
 }
 
@@ -85,7 +83,7 @@ void scan(int plane, const pqPipelineSource* source)
 void traceLink(pqPipelineSource* first, pqPipelineSource* second)
 {
   std::ostringstream text;
-  text << "linkedPlanes = servermanager.vtkSMProxyLink()\nlinkedPlanes.AddException('" << matrixPlane << "')\n"
+  text << "linkedPlanes = servermanager.vtkSMProxyLink()\nlinkedPlanes.AddException('" << sonoMatrixPlane << "')\n"
        << "for direction in (linkedPlanes.INPUT, linkedPlanes.OUTPUT):\n";
   for (pqPipelineSource* each : { first, second })
   {
@@ -153,7 +151,7 @@ SonoSplit sonoShowBiplane(pqPipelineSource* first)
 {
   scan(vtkSonoProbeSource::FIRST_PLANE, first);
   const auto made = makeSecond(proxyOf(first));
-  vtkSMPropertyHelper(made, matrixPlane).Set(vtkSonoProbeSource::SECOND_PLANE);
+  vtkSMPropertyHelper(made, sonoMatrixPlane).Set(vtkSonoProbeSource::SECOND_PLANE);
   pqPipelineSource* second = registered(made);
   traceLink(first, second);
   const SonoSplit split = show("Biplane", first, second);

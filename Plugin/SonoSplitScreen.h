@@ -22,9 +22,11 @@ struct SonoPlanes
   pqPipelineSource* second = nullptr;
 };
 
+/// Their property that names the plane; see vtkSonoProbeSource::SetMatrixPlane.
+constexpr const char* sonoMatrixPlane = "MatrixPlane";
 /// Whether it is a Simulate Ultrasound.
 bool sonoHasPlanes(const pqPipelineSource* source);
-/// The pair that this one is of, also of a state's. See vtkSonoProbeSource::SetMatrixPlane.
+/// The pair that this one is of, also of a state's.
 SonoPlanes sonoPlanesOf(const pqPipelineSource* source);
 /// As sonoSplitScreen, but the first one scans the first plane from now on, and the second one, which has all other
 /// settings in common with it while there is a pqSonoBiplane, the second plane. The body shows both.

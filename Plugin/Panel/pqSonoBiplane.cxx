@@ -13,12 +13,6 @@
 
 #include <utility>
 
-namespace {
-
-constexpr const char* planeSetting = "MatrixPlane";
-
-} // namespace
-
 pqSonoBiplane::pqSonoBiplane(QObject* parent)
   : Superclass(parent)
 {
@@ -38,7 +32,7 @@ void pqSonoBiplane::watch(pqPipelineSource* source)
 {
   if (sonoHasPlanes(source))
   {
-    for (const char* name : { planeSetting, "Input" })
+    for (const char* name : { sonoMatrixPlane, "Input" })
     {
       pqCoreUtilities::connect(source->getProxy()->GetProperty(name), vtkCommand::ModifiedEvent, this, SLOT(link()));
     }
@@ -65,7 +59,7 @@ void pqSonoBiplane::link()
       continue;
     }
     made = vtkSmartPointer<vtkSMProxyLink>::New();
-    made->AddException(planeSetting);
+    made->AddException(sonoMatrixPlane);
     for (const int direction : { vtkSMLink::INPUT, vtkSMLink::OUTPUT })
     {
       made->AddLinkedProxy(first, direction);

@@ -96,6 +96,17 @@ std::complex<double> PulseSpectrum::at(double frequencyMHz) const
 std::vector<std::complex<double>> PulseSpectrum::at(double firstMHz, double stepMHz, int count) const
 {
   std::vector<std::complex<double>> values;
+  if (!pulse_)
+  {
+    for (int n = 0; n < count; ++n)
+    {
+      const double f = firstMHz + n * stepMHz;
+      const double off = (f - strongestMHz_) / spreadMHz_;
+      values.emplace_back(taperAt(f) * 0.5 / (spreadMHz_ * std::sqrt(2.0 * pi)) * std::exp(-0.5 * off * off));
+    }
+    return values;
+  }
+  const double radPerMHz = 2.0 * pi * pulse_->stepUs;
   for (int first = 0; first < count; first += together)
   {
     double cosines[together];
@@ -103,23 +114,13 @@ std::vector<std::complex<double>> PulseSpectrum::at(double firstMHz, double step
     double before[together] = {};
     for (int n = 0; n < together; ++n)
     {
-      cosines[n] = pulse_ ? std::cos(2.0 * pi * (firstMHz + (first + n) * stepMHz) * pulse_->stepUs) : 0.0;
+      cosines[n] = std::cos(radPerMHz * (firstMHz + (first + n) * stepMHz));
     }
-    if (pulse_)
-    {
-      sumTones(pulse_->amplitude, cosines, sums, before);
-    }
+    sumTones(pulse_->amplitude, cosines, sums, before);
     for (int n = 0; n < std::min(together, count - first); ++n)
     {
       const double f = firstMHz + (first + n) * stepMHz;
-      if (!pulse_)
-      {
-        const double off = (f - strongestMHz_) / spreadMHz_;
-        values.emplace_back(taperAt(f) * 0.5 / (spreadMHz_ * std::sqrt(2.0 * pi)) * std::exp(-0.5 * off * off));
-        continue;
-      }
-      const std::complex<double> sum(sums[n] - before[n] * cosines[n],
-                                     before[n] * std::sin(2.0 * pi * f * pulse_->stepUs));
+      const std::complex<double> sum(sums[n] - before[n] * cosines[n], before[n] * std::sin(radPerMHz * f));
       values.push_back(std::polar(taperAt(f) * pulse_->stepUs, 2.0 * pi * f * pulse_->startUs) * sum);
     }
   }

@@ -219,8 +219,9 @@ WireErrors measureWires(const PhantomBench& bench, const PhantomImaging& imaging
     {
       if (target.view == view && target.kind == PhantomTargetKind::Wire)
       {
-        WirePlace place = locateWire(decibels, target, windowOf(bench, target));
-        place.fittedMm = locateWire(fineDecibels, target, windowOf(bench, target)).fittedMm;
+        const WireWindow window = windowOf(bench, target);
+        WirePlace place = locateWire(decibels, target, window);
+        place.fittedMm = locateWire(fineDecibels, target, window).fittedMm;
         errors.wires.push_back({ target, place });
       }
     }

@@ -75,7 +75,7 @@ double cylinderBackscatter(double ka, double impedanceRatio, double speedRatio)
 
 std::complex<double> nylonScattering(double waveNumberPerMm, double diameterMm)
 {
-  const TissueTable tissues = bundledTissues();
+  static const TissueTable tissues = bundledTissues(); // asked for tone by tone
   const Tissue& gel = *tissues.find("phantom_gel");
   const Tissue& nylon = *tissues.find("phantom_nylon");
   return scatteredBack(0.5 * waveNumberPerMm * diameterMm, nylon.impedanceMRayl / gel.impedanceMRayl,
