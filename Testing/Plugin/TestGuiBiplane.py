@@ -4,7 +4,6 @@ import json
 import pathlib
 import sys
 import tempfile
-import threading
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -12,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 from events import MAIN, PANEL, PROBE, SCANNER, check, click, event, menu, pause, play_on, save_state, select, undo, write
 from guicase import PLAYBACKS, GuiCase, save_screen
-from person import Person
+from person import Person, while_acting
 
 WINDOW = "1152x762+0+0"
 BIPLANE = f"{SCANNER}/Biplane"
@@ -72,24 +71,12 @@ def layouts(state):
 
 
 class TestGuiBiplane(GuiCase):
-    def play_on_matrix(self, folder, *events, act=None):
+    def play_on_matrix(self, folder, *events, act=lambda person: None):
         """What was made, a dictionary a picture."""
-        failures = []
-        person = Person(self, folder)
-
-        def act_alone():
-            try:
-                act(person)
-            except Exception as failure:  # to be told by the test, not by the thread
-                failures.append(failure)
-
-        acting = threading.Thread(target=act_alone if act else lambda: None)
-        acting.start()
         script = write(folder / "biplane.xml", select(0, 0), pause(1000), click(f"{MAIN}/SonoToolBar/SonoScannerButton"),
                        pause(500), check(BIPLANE, "enabled", "true"), *events)
-        errors = self.play(script, folder, f"--script={PLAYBACKS / 'biplane.py'}")
-        person.ended.set()
-        acting.join()
+        errors, failures = while_acting(Person(self, folder), act,
+                                        lambda: self.play(script, folder, f"--script={PLAYBACKS / 'biplane.py'}"))
         self.assertEqual(failures, [])
         self.assertEqual(errors, [])
         return [json.loads(line) for line in (folder / "biplane.jsonl").read_text().splitlines()]

@@ -3,13 +3,12 @@ when a probe is dragged. Needs Xvfb and python3-xlib; run by ctest -L gui."""
 import pathlib
 import sys
 import tempfile
-import threading
 import time
 import unittest
 
 from guicase import PLAYBACKS, GuiCase
 from link import Server
-from person import Person
+from person import Person, while_acting
 
 FAN = (757, 122)  # in the toolbar
 FROM, TO = (538, 539), (499, 516)  # in the view with the body: where the probe lies at first, and up the chest
@@ -30,21 +29,16 @@ class TestGuiRemote(GuiCase):
 
     def play_with(self, act, script, *arguments):
         """ParaView as the server's client, with a person before it."""
-        failures = []
-        person = Person(self, self.folder)
 
-        def act_alone():
+        def act_or_quit(person):
             try:
                 act(person)
-            except Exception as failure:  # to be told by the test, not by the thread
-                failures.append(failure)
+            except Exception:
                 person.press_quit()
+                raise
 
-        acting = threading.Thread(target=act_alone)
-        acting.start()
-        done = self.paraview(self.folder, f"--server-url=cs://127.0.0.1:{self.pvserver.port}", f"--script={script}", *arguments)
-        person.ended.set()
-        acting.join()
+        done, failures = while_acting(Person(self, self.folder), act_or_quit, lambda: self.paraview(
+            self.folder, f"--server-url=cs://127.0.0.1:{self.pvserver.port}", f"--script={script}", *arguments))
         self.assertEqual(failures, [], done.stdout)
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertNotIn("ERR|", done.stdout)

@@ -6,12 +6,11 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 
 from guicase import PLAYBACKS, GuiCase, save_screen
-from person import Person
+from person import Person, while_acting
 
 WINDOW = "1152x762+0+0"
 RELOAD = """
@@ -29,22 +28,10 @@ with open(sys.argv[2], "w", encoding="utf-8") as file:
 
 
 class TestGuiScanner(GuiCase):
-    def play_panel(self, name, folder, scene="scanner.py", act=None):
+    def play_panel(self, name, folder, scene="scanner.py", act=lambda person: None):
         """Plays a script on the scene, while a person may act; what was drawn, a dictionary a picture."""
-        failures = []
-        person = Person(self, folder)
-
-        def act_alone():
-            try:
-                act(person)
-            except Exception as failure:  # to be told by the test, not by the thread
-                failures.append(failure)
-
-        acting = threading.Thread(target=act_alone if act else lambda: None)
-        acting.start()
-        errors = self.play(name, folder, f"--script={PLAYBACKS / scene}")
-        person.ended.set()
-        acting.join()
+        errors, failures = while_acting(Person(self, folder), act,
+                                        lambda: self.play(name, folder, f"--script={PLAYBACKS / scene}"))
         self.assertEqual(failures, [])
         self.assertEqual(errors, [])
         return [json.loads(line) for line in pathlib.Path(folder, "scanner.jsonl").read_text().splitlines()]

@@ -3,13 +3,12 @@ events of a real mouse and keyboard. Needs Xvfb and python3-xlib; run by ctest -
 import pathlib
 import sys
 import tempfile
-import threading
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 from guicase import PLAYBACKS, GuiCase
-from person import Person
+from person import Person, while_acting
 
 THORAX = (85, 197)  # its row in the pipeline browser
 
@@ -17,20 +16,8 @@ THORAX = (85, 197)  # its row in the pipeline browser
 class TestGuiStop(GuiCase):
     def play_with(self, name, folder, act, scene="stop.py"):
         """Plays a script on a scene while a person acts; what ParaView wrote, and its return code."""
-        failures = []
-        person = Person(self, folder)
-
-        def act_alone():
-            try:
-                act(person)
-            except Exception as failure:  # to be told by the test, not by the thread
-                failures.append(failure)
-
-        acting = threading.Thread(target=act_alone)
-        acting.start()
-        done = self.paraview(folder, f"--script={PLAYBACKS / scene}", f"--test-script={PLAYBACKS / name}", "--exit")
-        person.ended.set()
-        acting.join()
+        done, failures = while_acting(Person(self, folder), act, lambda: self.paraview(
+            folder, f"--script={PLAYBACKS / scene}", f"--test-script={PLAYBACKS / name}", "--exit"))
         self.assertEqual(failures, [], done.stdout)
         return done
 

@@ -125,3 +125,22 @@ class Person:
                 window.send_event(event.ClientMessage(window=window, client_type=atom("WM_PROTOCOLS"),
                                                       data=(32, [atom("WM_DELETE_WINDOW"), 0, 0, 0, 0])))
         self.display.sync()
+
+
+def while_acting(person, act, play):
+    """What `play()` returns while `act(person)` runs beside it, and a list of what acting failed with, which is for the test to
+    tell, not for the thread."""
+    failures = []
+
+    def act_alone():
+        try:
+            act(person)
+        except Exception as failure:
+            failures.append(failure)
+
+    acting = threading.Thread(target=act_alone)
+    acting.start()
+    played = play()
+    person.ended.set()
+    acting.join()
+    return played, failures
