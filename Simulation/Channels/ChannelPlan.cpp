@@ -146,13 +146,19 @@ ChannelPlan::ChannelPlan(const ChannelSettings& given, const ProbeSettings& prob
   sampleCount = int(count);
 }
 
-ChannelData ChannelPlan::empty() const
+ChannelData ChannelPlan::described() const
 {
   ChannelData data;
   data.transmitCount = int(transmits.each.size());
   data.elementCount = pieces.elements;
   data.sampleCount = sampleCount;
   data.samplingMHz = samplingMHz;
+  return data;
+}
+
+ChannelData ChannelPlan::empty() const
+{
+  ChannelData data = described();
   data.rf.assign(transmits.each.size() * std::size_t(pieces.elements) * std::size_t(sampleCount), 0.0f);
   return data;
 }

@@ -59,7 +59,8 @@ struct ChannelPlan
   int sampleCount;
   double highMHz; ///< end of the band
 
-  ChannelData empty() const;
+  ChannelData described() const; ///< without signals
+  ChannelData empty() const;     ///< signals of zeros
 };
 
 /// Points whose echoes arrive in one stretch of time, [first, end) of the sorted ones, and its first sample.

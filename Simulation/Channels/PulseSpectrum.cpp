@@ -1,5 +1,6 @@
 #include "Channels/PulseSpectrum.h"
 
+#include "Channels/EvenSpectrum.h"
 #include "Core/Error.h"
 #include "Core/Simd.h"
 
@@ -14,7 +15,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double faintest = 3e-4;
 constexpr double leastShare = 0.08; // of the strongest frequency: from there on the taper rises,
 constexpr double wholeShare = 0.24; // up to here; half of it at 0.16, as surfaces' echoes end, section 12.6
-constexpr int searched = 2048;      // frequencies of a sampled pulse
 constexpr int together = 64;        // frequencies that are summed together
 
 bool isFinite(double a)
@@ -55,7 +55,6 @@ PulseSpectrum::PulseSpectrum(double centreMHz, double fractionalBandwidth)
 
 PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
   : pulse_(std::move(pulse))
-  , strongestMHz_(1e-9) // no taper until it is known
 {
   const SampledPulse& p = *pulse_;
   if (p.amplitude.empty() || !(p.stepUs > 0.0) || !std::isfinite(p.startUs + p.stepUs) ||
@@ -67,12 +66,9 @@ PulseSpectrum::PulseSpectrum(std::shared_ptr<const SampledPulse> pulse)
   }
   startUs_ = p.startUs;
   endUs_ = p.startUs + p.stepUs * double(p.amplitude.size() - 1);
-  const double stepMHz = 0.5 / p.stepUs / searched;
-  std::vector<double> moduli;
-  for (const std::complex<double>& value : at(0.0, stepMHz, searched + 1))
-  {
-    moduli.push_back(std::abs(value));
-  }
+  std::vector<double> moduli = evenSpectrum(p.amplitude);
+  moduli.front() = 0.0; // nothing echoes what does not swing
+  const double stepMHz = 0.5 / p.stepUs / double(moduli.size() - 1);
   const auto strongest = std::max_element(moduli.begin(), moduli.end());
   strongestMHz_ = stepMHz * double(strongest - moduli.begin());
   const auto counts = [&](double modulus) { return modulus > faintest * *strongest; };

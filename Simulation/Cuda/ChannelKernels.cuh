@@ -2,8 +2,8 @@
 
 #include "Kernel/ChannelWave.h"
 
-// Channels on a device, shell by shell (Channels/ChannelPlan.h): what elements send, the sums over points, and signals
-// of these.
+// Channels on a device, several shells at once (Channels/ChannelPlan.h): what elements send, the sums over points, and
+// signals of these.
 //
 // A block of threads sums a frequency of a shell for up to `tileTransmits` transmits: points go through shared memory
 // by tiles, first what each element hears of each point (G), then what arrives at each point from each transmit, then
@@ -21,6 +21,14 @@ constexpr int sumsPerThread = tileTransmits * tileElements / threads;
 struct DevicePoints
 {
   const float *x, *y, *z, *re, *im, *lagMm, *sinkNp, *rise;
+};
+
+/// A shell's points, [first, end), and the first sample of its stretch.
+struct DeviceShell
+{
+  int first;
+  int end;
+  int firstSample;
 };
 
 struct ShellJob
@@ -41,8 +49,8 @@ struct ShellJob
   int transmits;
   const float* drive; ///< bins x transmits x (re, im of padded elements)
   DevicePoints points;
-  int firstPoint;
-  int endPoint;
+  const DeviceShell* shells;
+  int elementTiles;
   int parts; ///< blocks that share the points of a frequency
 };
 
@@ -113,8 +121,8 @@ __device__ ComplexNumber heardBy(const ShellJob& job, int n, const TilePoint& po
   return job.isFlat ? sum : sum * point.elevation.at(point.span.at(1.0f / (range * perPiece)));
 }
 
-/// blockIdx: x the frequency, y the tile of elements that are heard, z the tile of transmits and the part of the
-/// points. `sums` are parts x bins x transmits x (re, im of padded elements).
+/// blockIdx: x the frequency, y the shell and the tile of elements that are heard, z the tile of transmits and the part
+/// of the points. `sums` are parts x shells x bins x transmits x (re, im of padded elements).
 __global__ void __launch_bounds__(threads) sumShellKernel(ShellJob job, float* sums)
 {
   extern __shared__ float2 heard[]; // points of a tile x padded elements
@@ -126,7 +134,8 @@ __global__ void __launch_bounds__(threads) sumShellKernel(ShellJob job, float* s
   const int part = int(blockIdx.z) % job.parts;
   const int firstTransmit = int(blockIdx.z) / job.parts * tileTransmits;
   const int transmits = min(tileTransmits, job.transmits - firstTransmit);
-  const int firstElement = int(blockIdx.y) * tileElements;
+  const int shell = int(blockIdx.y) / job.elementTiles;
+  const int firstElement = int(blockIdx.y) % job.elementTiles * tileElements;
   const float frequencyMHz = float((job.firstBin + bin) * job.stepMHz);
   const float* drive = job.drive + (size_t(bin) * job.transmits + firstTransmit) * 2 * job.padded;
   const int element = firstElement + int(threadIdx.x) % tileElements;
@@ -137,10 +146,10 @@ __global__ void __launch_bounds__(threads) sumShellKernel(ShellJob job, float* s
   {
     own[n] = { 0.0f, 0.0f };
   }
-  const int all = job.endPoint - job.firstPoint;
-  const int perPart = (all + job.parts - 1) / job.parts;
-  const int begin = job.firstPoint + part * perPart;
-  const int end = min(begin + perPart, job.endPoint);
+  const DeviceShell mine = job.shells[shell];
+  const int perPart = (mine.end - mine.first + job.parts - 1) / job.parts;
+  const int begin = mine.first + part * perPart;
+  const int end = min(begin + perPart, mine.end);
   for (int first = begin; first < end; first += tilePoints)
   {
     const int count = min(tilePoints, end - first);
@@ -240,8 +249,8 @@ __global__ void __launch_bounds__(threads) sumShellKernel(ShellJob job, float* s
     const int t = ownTransmit + n * transmitStep;
     if (t < transmits)
     {
-      float* out =
-        sums + ((size_t(part) * gridDim.x + bin) * job.transmits + firstTransmit + t) * 2 * size_t(job.padded);
+      const size_t row = (size_t(part) * (gridDim.y / job.elementTiles) + shell) * gridDim.x + bin;
+      float* out = sums + (row * job.transmits + firstTransmit + t) * 2 * size_t(job.padded);
       out[element] = own[n].x;
       out[job.padded + element] = own[n].y;
     }
@@ -296,10 +305,11 @@ constexpr int signalsPerThread = synthSamples * synthSignals / threads;
 
 struct SynthesisJob
 {
+  const DeviceShell* shells;
+  int shellCount;
   int bins;
   int firstBin;
-  int samples; ///< of the stretch
-  int firstSample;
+  int samples; ///< of a stretch
   int transmits;
   int elements;
   int padded;
@@ -308,61 +318,68 @@ struct SynthesisJob
   const float *turnCosine, *turnSine;
 };
 
-/// A shell's sums to samples (synthesise), added to the signals. blockIdx: x the tile of samples, y that of signals.
+/// Sums of shells to samples (synthesise), added to the signals. blockIdx: x the tile of samples, y that of signals.
 __global__ void __launch_bounds__(threads) synthesiseKernel(SynthesisJob job, const float* sums, float* rf)
 {
   __shared__ float2 tones[synthBins][synthSamples];
   __shared__ float2 values[synthBins][synthSignals];
   const int signals = job.transmits * job.elements;
-  const int firstInStretch = int(blockIdx.x) * synthSamples;
+  const int firstSample = int(blockIdx.x) * synthSamples;
   const int firstSignal = int(blockIdx.y) * synthSignals;
   const int m = int(threadIdx.x) % synthSamples;
   constexpr int groups = threads / synthSamples;
   const int group = int(threadIdx.x) / synthSamples;
-  const auto turnOf = [&](int bin, int sample) {
-    const long long turn = static_cast<long long>(job.firstBin + bin) * sample % job.samples;
-    return int(turn < 0 ? turn + job.samples : turn);
-  };
   float added[signalsPerThread] = {};
-  for (int first = 0; first < job.bins; first += synthBins)
+  for (int shell = 0; shell < job.shellCount; ++shell)
   {
-    for (int at = int(threadIdx.x); at < synthBins * synthSamples; at += threads)
+    const int inStretch = firstSample - job.shells[shell].firstSample;
+    if (inStretch >= job.samples || inStretch + synthSamples <= 0)
     {
-      const int turn = turnOf(first + at / synthSamples, firstInStretch + at % synthSamples);
-      tones[at / synthSamples][at % synthSamples] = { job.turnCosine[turn], job.turnSine[turn] };
+      continue; // the same for the whole block
     }
-    for (int at = int(threadIdx.x); at < synthBins * synthSignals; at += threads)
+    const float* shellSums = sums + size_t(shell) * job.bins * job.transmits * 2 * job.padded;
+    const bool isMine = inStretch + m >= 0 && inStretch + m < job.samples;
+    for (int first = 0; first < job.bins; first += synthBins)
     {
-      const int bin = first + at / synthSignals;
-      const int signal = firstSignal + at % synthSignals;
-      float2 value = { 0.0f, 0.0f };
-      if (bin < job.bins && signal < signals)
+      for (int at = int(threadIdx.x); at < synthBins * synthSamples; at += threads)
       {
-        const int t = signal / job.elements;
-        const float* row = sums + (size_t(bin) * job.transmits + t) * 2 * job.padded + (signal - t * job.elements);
-        const int turn = turnOf(bin, job.firstSample);
-        const float2 pulse = job.pulse[bin];
-        const ComplexNumber weight =
-          ComplexNumber{ pulse.x, pulse.y } * ComplexNumber{ job.turnCosine[turn], -job.turnSine[turn] };
-        const ComplexNumber sum = weight * ComplexNumber{ row[0], row[job.padded] };
-        value = { sum.re, sum.im };
+        const long long bin = job.firstBin + first + at / synthSamples;
+        const int turn = int(bin * (firstSample + at % synthSamples) % job.samples);
+        tones[at / synthSamples][at % synthSamples] = { job.turnCosine[turn], job.turnSine[turn] };
       }
-      values[at / synthSignals][at % synthSignals] = value;
-    }
-    __syncthreads();
-    for (int bin = 0; bin < synthBins; ++bin)
-    {
-      const float2 tone = tones[bin][m];
-      for (int n = 0; n < signalsPerThread; ++n)
+      for (int at = int(threadIdx.x); at < synthBins * synthSignals; at += threads)
       {
-        const float2 value = values[bin][group + n * groups];
-        added[n] += value.x * tone.x + value.y * tone.y;
+        const int bin = first + at / synthSignals;
+        const int signal = firstSignal + at % synthSignals;
+        float2 value = { 0.0f, 0.0f };
+        if (bin < job.bins && signal < signals)
+        {
+          const int t = signal / job.elements;
+          const float* row =
+            shellSums + (size_t(bin) * job.transmits + t) * 2 * job.padded + (signal - t * job.elements);
+          const ComplexNumber sum =
+            ComplexNumber{ job.pulse[bin].x, job.pulse[bin].y } * ComplexNumber{ row[0], row[job.padded] };
+          value = { sum.re, sum.im };
+        }
+        values[at / synthSignals][at % synthSignals] = value;
       }
+      __syncthreads();
+      if (isMine)
+      {
+        for (int bin = 0; bin < synthBins; ++bin)
+        {
+          const float2 tone = tones[bin][m];
+          for (int n = 0; n < signalsPerThread; ++n)
+          {
+            const float2 value = values[bin][group + n * groups];
+            added[n] += value.x * tone.x + value.y * tone.y;
+          }
+        }
+      }
+      __syncthreads();
     }
-    __syncthreads();
   }
-  const int sample = job.firstSample + firstInStretch + m;
-  if (firstInStretch + m >= job.samples || sample < 0 || sample >= job.sampleCount)
+  if (firstSample + m >= job.sampleCount)
   {
     return;
   }
@@ -371,7 +388,7 @@ __global__ void __launch_bounds__(threads) synthesiseKernel(SynthesisJob job, co
     const int signal = firstSignal + group + n * groups;
     if (signal < signals)
     {
-      rf[size_t(signal) * job.sampleCount + sample] += added[n];
+      rf[size_t(signal) * job.sampleCount + firstSample + m] += added[n];
     }
   }
 }

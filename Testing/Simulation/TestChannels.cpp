@@ -1,4 +1,5 @@
 #include "Channels/ChannelPlan.h"
+#include "Channels/EvenSpectrum.h"
 #include "Core/SoundSpeed.h"
 
 #include <gtest/gtest.h>
@@ -103,6 +104,30 @@ double arrivalUs(const Transmits& transmits, std::size_t t, const Vec3d& place)
                        ? glm::length(place + sent.distanceMm * direction) - sent.distanceMm
                        : sent.distanceMm - glm::length(sent.distanceMm * direction - place);
   return transmits.passUs + way / assumedSoundSpeedMmPerUs;
+}
+
+// Of fewer and of more samples than a period, against the sum itself.
+TEST(EvenSpectrum, IsTheSumAtEachFrequency)
+{
+  for (const std::size_t count : { 1, 63, 1201, 4096, 5000 })
+  {
+    std::vector<double> samples(count);
+    for (std::size_t n = 0; n < count; ++n)
+    {
+      samples[n] = std::sin(0.37 * double(n)) + double(n * 2654435761u % 1000) / 1000.0;
+    }
+    const std::vector<double> moduli = evenSpectrum(samples);
+    ASSERT_EQ(moduli.size(), 2049u);
+    for (std::size_t k = 0; k < moduli.size(); k += 37)
+    {
+      Complex sum = 0.0;
+      for (std::size_t n = 0; n < count; ++n)
+      {
+        sum += std::polar(samples[n], pi * double(n * k % 4096) / 2048.0);
+      }
+      EXPECT_NEAR(moduli[k], std::abs(sum), 1e-9 * double(count)) << count << " samples, frequency " << k;
+    }
+  }
 }
 
 TEST(Channels, APointIsHeardWhenItsWaveHasBeenThere)
