@@ -203,7 +203,7 @@ struct LaneSink : PathSink
     if (piece.reflections > 0 && launch.view.model == InterfaceModel::Acoustic)
     {
       const TissueBins bins = launch.tissueBins();
-      stage(ownWayEcho(piece), piece.length, bins, staged);
+      stage(ownWayEcho(launch.view, piece), piece.length, bins, staged);
       if (isStraightBack(launch.lines[line], piece))
       {
         straight = straightBackEcho(launch.wayOf(line), launch.lines[line], beam, piece);

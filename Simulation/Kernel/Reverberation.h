@@ -74,15 +74,16 @@ struct TissueEcho
   float mu;
   float level;
   float decay;
-  float absorbed;  ///< what the media have taken at its start, two-way exponent of the amplitude
-  Vec3f start;     ///< of its own way; straight back, as seen from where mirrors would have taken the path: placeAside
+  float absorbed; ///< what the media have taken at its start, two-way exponent of the amplitude
+  Vec3f start;    ///< of its own way, in the scene; straight back, as seen from where mirrors would have taken the path
   Vec3f direction; ///< how either changes with s
 };
 
 /// Of the path's own way (13.5).
-SONO_HD inline TissueEcho ownWayEcho(const PathSegment& s)
+SONO_HD inline TissueEcho ownWayEcho(const TraceView& view, const PathSegment& s)
 {
-  return { s.rangeMm, s.rangePerMm, s.intensity * s.scatter, s.decayPerMm, s.absorbed, s.start, s.direction };
+  return { s.rangeMm,  s.rangePerMm, s.intensity * s.scatter, s.decayPerMm, s.absorbed, s.start + view.cornerMm,
+           s.direction };
 }
 
 /// Whether a segment is heard straight back as well: on its way into the body, after an even number of reflections.

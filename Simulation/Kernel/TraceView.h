@@ -56,6 +56,7 @@ struct TraceView
   float faceRadiusMm = 10.0f;
   float cellLateralPerMm = 0.0f; ///< how wide the line hears at a range, mm of each (see resolutionCell); 0: not known
   float cellElevationPerMm = 0.0f;
+  Vec3f cornerMm = Vec3f(0.0f); ///< the region's in the scene, where cells of the tissue stay while regions come and go
   int maxCollisions = 7;
   float coherenceMm = 0.1f;
   float depthMm = 160.0f;

@@ -242,7 +242,7 @@ inline void LineTally::addToTissueBins(const TissueEcho& echo, const DepthSpan& 
 
 SONO_SIMD_CLONES __attribute__((flatten)) void LineTally::addReverberation(const PathSegment& s)
 {
-  const TissueEcho own = ownWayEcho(s);
+  const TissueEcho own = ownWayEcho(*view_, s);
   addToTissueBins(own, depthSpan(own.r0, own.mu, s.length, tissueBins_.endMm()),
                   [&](int b, const BinEcho& inBin, ReverberationSums& sums) {
                     const float sign = signInBin(own, inBin, lineKey_, b, cellMm_[std::size_t(b)]);

@@ -270,6 +270,7 @@ void TraceSetup::tune(const Scene& scene, const TraceSettings& settings,
   }
   view = makeView(settings, scene);
   view.media = media.data();
+  view.cornerMm = Vec3f(scene.localFromWorld(cornerWorldMm));
   frequencyMHz = settings.frequencyMHz;
 }
 

@@ -276,6 +276,26 @@ TEST(ReverberationSpread, ASmoothWallKeepsItTogether)
   }
 }
 
+// A region reaches as far as its lines do; one of another probe's pose begins elsewhere.
+TEST(ReverberationSpread, DoesNotDependOnWhereTheRegionBegins)
+{
+  const auto scene = roughWall(0.1);
+  TraceSettings s = settings(200);
+  s.depthMm = 45.0;
+  constexpr std::size_t untouched = 9; // of 18 lines those that the last is too far from to be averaged with
+  std::vector<ScanLine> lines = linesDown(18);
+  const TracedLines here = trace(*scene, lines, s);
+  lines.back().originMm.x -= 17.3;
+  const TracedLines there = trace(*scene, lines, s);
+  const std::size_t bins = untouched * std::size_t(here.binCount);
+  const float most = *std::max_element(here.reverberation.begin(), here.reverberation.begin() + std::ptrdiff_t(bins));
+  ASSERT_GT(most, 0.0f);
+  for (std::size_t i = 0; i < bins; ++i)
+  {
+    ASSERT_NEAR(here.reverberation[i], there.reverberation[i], 1e-3f * most) << "bin " << i;
+  }
+}
+
 TEST(ReverberationSpread, TheErrorIsNoLessThanTheSpreadOverSeeds)
 {
   const auto scene = roughWall(0.1);

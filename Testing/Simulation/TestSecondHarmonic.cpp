@@ -316,6 +316,7 @@ TEST(SecondHarmonic, ATunedSetupIsThatOfTheTone)
   EXPECT_EQ(tuned.view.waveNumberAtOne, made.view.waveNumberAtOne);
   EXPECT_EQ(tuned.view.cellLateralPerMm, made.view.cellLateralPerMm);
   EXPECT_EQ(tuned.view.cellElevationPerMm, made.view.cellElevationPerMm);
+  EXPECT_EQ(tuned.view.cornerMm, made.view.cornerMm);
   EXPECT_EQ(tuned.view.depthMm, made.view.depthMm);
   EXPECT_EQ(tuned.seeds, made.seeds);
   EXPECT_EQ(tuned.paths, made.paths);
