@@ -91,8 +91,7 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
   const std::size_t weightsAt = packed.add(plan.transmits.weights);
   const std::size_t cosineAt = packed.add(shells.turnCosine);
   const std::size_t sineAt = packed.add(shells.turnSine);
-  const std::size_t pulseAt =
-    packed.add(reinterpret_cast<const float*>(shells.pulse.data()), 2 * shells.pulse.size());
+  const std::size_t pulseAt = packed.add(reinterpret_cast<const float*>(shells.pulse.data()), 2 * shells.pulse.size());
   on.packed.upload(packed.values(), stream, traffic);
   on.delays.upload(plan.transmits.delaysUs, stream, traffic);
   on.shells.upload(toDevice(shells.shells), stream, traffic);
@@ -143,18 +142,12 @@ ChannelData formChannelsOnDevice(const ChannelPlan& plan, const ChannelPoints& p
     job.padded, on.drive.data());
   check(cudaGetLastError(), "delaying transmits");
   job.drive = on.drive.data();
-  SynthesisJob synthesis{ nullptr,
-                          0,
-                          shells.bins,
-                          shells.firstBin,
-                          shells.samples,
-                          transmits,
-                          job.elements,
-                          job.padded,
-                          plan.sampleCount,
-                          reinterpret_cast<const float2*>(floats + pulseAt),
-                          floats + cosineAt,
-                          floats + sineAt };
+  SynthesisJob synthesis{ nullptr,           0,
+                          shells.bins,       shells.firstBin,
+                          shells.samples,    transmits,
+                          job.elements,      job.padded,
+                          plan.sampleCount,  reinterpret_cast<const float2*>(floats + pulseAt),
+                          floats + cosineAt, floats + sineAt };
   const dim3 synthesisGrid(unsigned((plan.sampleCount + synthSamples - 1) / synthSamples),
                            unsigned((transmits * job.elements + synthSignals - 1) / synthSignals));
   double asked = 0.0; // since the device was waited for

@@ -71,6 +71,11 @@ BenchReference makeReference(const BenchScene& bench, int paths)
   {
     return { exactStackImage(bench), {} };
   }
+  return meanReference(bench, paths);
+}
+
+BenchReference meanReference(const BenchScene& bench, int paths)
+{
   constexpr int count = 8;
   std::vector<BenchImage> images(count);
   parallelFor(count, {}, [&](int i) {

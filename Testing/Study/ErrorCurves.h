@@ -37,8 +37,11 @@ struct BenchReference
   ImageError floor;
 };
 
-/// The stack's is a finite sum, without error. The others' is the mean of eight images of low discrepancy, `paths`
-/// altogether, whose seeds nobody else takes; how far they lie from it tells its error.
+/// The mean of eight images of low discrepancy, `paths` altogether, whose seeds nobody else takes; how far they lie from
+/// it tells its error.
+BenchReference meanReference(const BenchScene& bench, int paths);
+
+/// The stack's is a finite sum, without error; the others' are such means.
 BenchReference makeReference(const BenchScene& bench, int paths);
 
 /// An image's error with the reference's own taken out, which is of another chance, so that their squares add up. 0

@@ -13,6 +13,7 @@ namespace {
 
 const char* const command = "Testing/study.sh FOLDER error report";
 const char* const gpuCommand = "Testing/run-gpu.sh study";
+const char* const modelsCommand = "Testing/study.sh FOLDER error_models report";
 
 /// A column of errors in a plot's words.
 struct Meaning
@@ -76,9 +77,10 @@ std::vector<Curve> curvesOf(const CsvFile& csv, const std::string& error, const 
   }
   for (Curve& curve : curves)
   {
-    if (curve.name == "reference")
+    const std::string reference = "reference";
+    if (curve.name.rfind(reference, 0) == 0)
     {
-      curve.name = "the reference's own error";
+      curve.name = "the reference's own error" + curve.name.substr(reference.size());
       curve.kind = CurveKind::Level;
     }
     else if (curve.x.size() == 1) // an error that more paths do not lessen
@@ -162,7 +164,14 @@ std::string errorSection(const std::filesystem::path& folder)
     "root of the mean product of the differences by two seeds, in which nothing of the paths' noise is left, and "
     "radial bins against bins of 0.05 mm with the same paths. A curve that has fallen below a dot is no place to spend "
     "time: the dot is.");
-  for (const auto& [file, by] : { std::pair{ "convergence.csv", command }, { "convergence_gpu.csv", gpuCommand } })
+  text << htmlParagraph("What a picture is made of by default, all that reverberates among it, beside the model of "
+                        "Amadou et al. 2024 (tables "
+                        "and plots *_models): 32 neighbouring lines, root mean squares over three seeds, each model "
+                        "against the mean of eight "
+                        "images of its own of 50,000 paths a line.");
+  for (const auto& [file, by] : { std::pair{ "convergence.csv", command },
+                                  { "convergence_gpu.csv", gpuCommand },
+                                  { "convergence_models.csv", modelsCommand } })
   {
     if (std::filesystem::exists(folder / file))
     {
