@@ -37,8 +37,8 @@ struct BenchReference
   ImageError floor;
 };
 
-/// The mean of eight images of low discrepancy, `paths` altogether, whose seeds nobody else takes; how far they lie from
-/// it tells its error.
+/// The mean of eight images of low discrepancy, `paths` altogether, whose seeds nobody else takes; how far they lie
+/// from it tells its error.
 BenchReference meanReference(const BenchScene& bench, int paths);
 
 /// The stack's is a finite sum, without error; the others' are such means.
