@@ -26,8 +26,7 @@ struct Model
   InterfaceModel model;
 };
 
-constexpr Model models[] = { { "Acoustic, all defaults", InterfaceModel::Acoustic },
-                             { "Amadou et al. 2024", InterfaceModel::Amadou2024 } };
+constexpr Model models[] = { { "Acoustic", InterfaceModel::Acoustic }, { "Amadou 2024", InterfaceModel::Amadou2024 } };
 
 const std::vector<std::string> header = {
   "model", "device", "paths", "seconds", "rmse_intensity", "rmse_rf", "rmse_db"
