@@ -99,7 +99,8 @@ void fillFlat(vtkImageData* world, vtkImageData* flat)
 
 double pixelMmOf(const ProbeField& probe, double settingMm)
 {
-  return probe.coarse ? interactivePixelMm(settingMm) : settingMm;
+  const double pixelMm = probe.geometry.isVolume() ? voxelMmThatFits(probe.geometry, settingMm) : settingMm;
+  return probe.coarse ? interactivePixelMm(pixelMm) : pixelMm;
 }
 
 ImagePlacement placementOf(const ProbeField& probe, double pixelMm)

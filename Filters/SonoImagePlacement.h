@@ -42,7 +42,8 @@ private:
   std::array<double, 9> direction_{}; // row-major
 };
 
-/// The edge of a pixel that is made of the one that is set: wider while the probe is being moved.
+/// The edge of a pixel that is made of the one that is set: wider while the probe is being moved, and where a matrix
+/// would have too many voxels.
 double pixelMmOf(const ProbeField& probe, double settingMm);
 
 /// Gives a placed flat image the values of the one in the world: all, or of a volume those of the plane in the middle.

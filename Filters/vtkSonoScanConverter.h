@@ -40,8 +40,8 @@ public:
 
   ///@{
   /**
-   * Edge of a square pixel, of a matrix a cubic voxel, in mm, above 0; at most 2^28 of them. Twice as wide
-   * while the probe is being moved. Default 0.23.
+   * Edge of a square pixel, in mm, above 0; at most 2^28 of them. Of a matrix the edge of a cubic voxel, or as much
+   * wider as 2^25 of them fill the volume. Twice as wide while the probe is being moved. Default 0.23.
    */
   vtkSetMacro(PixelMm, double);
   vtkGetMacro(PixelMm, double);

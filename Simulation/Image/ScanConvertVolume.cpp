@@ -10,7 +10,8 @@
 namespace sono {
 namespace {
 
-constexpr double maxVoxels = 268435456.0; // 2^28
+constexpr double maxVoxels = 268435456.0;    // 2^28
+constexpr double fittingVoxels = 33554432.0; // 2^25
 constexpr double radPerDeg = 0.017453292519943295;
 constexpr float lineSlack = 1e-3f; // rounding must not cut the voxels on the border
 
@@ -97,9 +98,17 @@ void requireFits(const ScanGeometry& geometry, const std::vector<float>& values,
   }
 }
 
-} // namespace
+/// In voxels.
+struct VolumeSize
+{
+  double width;
+  double height;
+  double depth;
 
-VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm)
+  double voxels() const { return width * height * depth; }
+};
+
+VolumeSize sizeOf(const ScanGeometry& geometry, double voxelMm)
 {
   geometry.validate();
   if (!geometry.isVolume())
@@ -112,21 +121,39 @@ VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm)
     return lines > 1 ? geometry.depthMm * std::sin(0.5 * extentDeg * radPerDeg) : 0.0;
   };
   const auto voxelsOver = [&](double lengthMm) { return std::ceil(lengthMm / voxelMm - 1e-6) + 1.0; };
-  const double width = voxelsOver(2.0 * halfWidthMm(geometry.lineCount, geometry.sectorDeg));
-  const double height = voxelsOver(2.0 * halfWidthMm(geometry.elevationLineCount, geometry.elevationSectorDeg));
-  const double depth = voxelsOver(geometry.depthMm);
-  if (width * height * depth > maxVoxels)
+  return { voxelsOver(2.0 * halfWidthMm(geometry.lineCount, geometry.sectorDeg)),
+           voxelsOver(2.0 * halfWidthMm(geometry.elevationLineCount, geometry.elevationSectorDeg)),
+           voxelsOver(geometry.depthMm) };
+}
+
+} // namespace
+
+VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm)
+{
+  const VolumeSize size = sizeOf(geometry, voxelMm);
+  if (size.voxels() > maxVoxels)
   {
     std::ostringstream message;
-    message << "voxelMm is " << voxelMm << ", which asks for " << width << " x " << height << " x " << depth
-            << " voxels; choose larger voxels, for at most 2^28 of them.";
+    message << "voxelMm is " << voxelMm << ", which asks for " << size.width << " x " << size.height << " x "
+            << size.depth << " voxels; choose larger voxels, for at most 2^28 of them.";
     throw Error(message.str());
   }
   VolumeImage image;
-  image.size = { int(width), int(height), int(depth) };
+  image.size = { int(size.width), int(size.height), int(size.depth) };
   image.voxelMm = voxelMm;
-  image.minMm = { -0.5 * (width - 1.0) * voxelMm, -0.5 * (height - 1.0) * voxelMm, 0.0 };
+  image.minMm = { -0.5 * (size.width - 1.0) * voxelMm, -0.5 * (size.height - 1.0) * voxelMm, 0.0 };
   return image;
+}
+
+double voxelMmThatFits(const ScanGeometry& geometry, double wishedMm)
+{
+  double voxelMm = wishedMm;
+  for (VolumeSize size = sizeOf(geometry, voxelMm); size.voxels() > fittingVoxels; size = sizeOf(geometry, voxelMm))
+  {
+    // Sides are whole voxels, so that the root alone may leave some too many.
+    voxelMm *= std::max(1.001, std::cbrt(size.voxels() / fittingVoxels));
+  }
+  return voxelMm;
 }
 
 VolumeImage scanConvertVolume(const ScanGeometry& geometry, const std::vector<float>& values, int sampleCount,

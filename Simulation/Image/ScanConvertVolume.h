@@ -26,6 +26,10 @@ struct VolumeImage
 /// is not positive or asks for more than 2^28 voxels.
 VolumeImage volumeImageLayout(const ScanGeometry& geometry, double voxelMm);
 
+/// The edge of a voxel, mm, of which the image has at most 2^25: the one wished for, or where that asks for more, as
+/// little wider as will do. Throws Error when the geometry fills no volume and when the wish is not positive.
+double voxelMmThatFits(const ScanGeometry& geometry, double wishedMm);
+
 /// Trilinear scan conversion, in (line, elevation, depth), of elevations x lines x samples (`sampleMm` apart, the first
 /// at depth 0) onto cubic voxels that cover the scanned volume's bounding box, centred laterally and elevationally. The
 /// last sample holds for up to one sample more; what lies beyond the samples or the geometry's depth is outside. One

@@ -219,6 +219,18 @@ TEST(MatrixScan, RefusesWhatMakesNoSense)
   expectContains(errorOf([&] { needle.validate(); }), "radiusMm is 0");
 }
 
+TEST(MatrixScan, VoxelsFitAtTheDefaults)
+{
+  ScanGeometry geometry;
+  geometry.kind = ScanKind::Matrix;
+  const double voxelMm = voxelMmThatFits(geometry, 0.23);
+  const std::size_t voxels = volumeImageLayout(geometry, voxelMm).voxelCount();
+  EXPECT_LE(voxels, std::size_t(1) << 25);
+  EXPECT_GT(double(voxels), 0.98 * (1 << 25));
+  EXPECT_EQ(voxelMmThatFits(geometry, 0.8), 0.8); // what fits stays
+  EXPECT_THROW(voxelMmThatFits(geometry, 0.0), Error);
+}
+
 TEST(RadialScan, AngleAgreesWithAtan2)
 {
   for (int k = -1999; k <= 2000; ++k)
