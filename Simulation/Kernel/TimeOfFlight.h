@@ -25,6 +25,12 @@ SONO_HD inline int flightSteps(float binMm)
   return steps > 1 ? steps : 1;
 }
 
+/// At c0.
+SONO_HD inline float wavelengthMm(const TraceView& view)
+{
+  return 6.2831853f * 1000.0f * float(assumedSoundSpeedMmPerUs) / view.waveNumberAtOne;
+}
+
 /// Where a line's axis runs inside targets, which count instead of the cells there. Not where it does for less than a
 /// wavelength at c0: the beam is wider, and its wave closes behind a wire unchanged.
 struct TargetSpans
@@ -45,7 +51,7 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
   {
     return spans;
   }
-  const float shortest = 6.2831853f * 1000.0f * float(assumedSoundSpeedMmPerUs) / view.waveNumberAtOne;
+  const float shortest = wavelengthMm(view);
   float from = 0.0f;
   while (spans.count < TargetSpans::most && from < view.depthMm)
   {
@@ -75,8 +81,57 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
   return spans;
 }
 
-/// The medium at a depth of the axis; -1 in coupling in front of the body, and in what lies outside of it behind, from
+/// The medium of the cell at a place; -1 in coupling in front of the body, and in what lies outside of it behind, from
 /// which nothing comes: both have c0.
+template<class Space>
+SONO_HD inline int mediumAt(const TraceView& view, const Space& space, const Vec3f& place)
+{
+  const Vec3i cell = space.cellAt(place);
+  const int tissue = space.contains(cell) ? space.tissueAt(cell) : -1;
+  return tissue == view.outsideTissue ? -1 : tissue;
+}
+
+constexpr float strandWavelengths = 2.0f; ///< a wave closes behind a body of labels that is no wider
+constexpr float strandRangePerMm = 0.1f;  ///< |c0 / c - 1|: softer ones shift by less than a fifth of a wavelength
+constexpr int strandPlaces = 24; ///< around the axis: one lies in a wall as thin as a quarter of their distance
+
+/// Whether none of a medium lies on the circle around a place of which these are two radii.
+template<class Space>
+SONO_HD inline bool isNoneAround(const TraceView& view, const Space& space, const Vec3f& place, const Vec3f& across,
+                                 const Vec3f& along, int medium)
+{
+  for (int i = 0; i < strandPlaces; ++i)
+  {
+    const float angle = float(i) * (6.2831853f / float(strandPlaces));
+    if (mediumAt(view, space, place + across * cosf(angle) + along * sinf(angle)) == medium)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// What counts where the axis is in a medium: the one beside it where the body is a strand, as a wire is, of which most
+/// of the aperture sees nothing. It is one where in a plane through the axis none of its medium lies around the place:
+/// of a wall, however aslant, some does.
+template<class Space>
+SONO_HD inline int mediumAround(const TraceView& view, const Space& space, const TraceLine& line, const Vec3f& place,
+                                int medium)
+{
+  const float aroundMm = strandWavelengths * wavelengthMm(view);
+  const Vec3f along = line.axis * aroundMm;
+  for (int plane = 0; plane < 2; ++plane)
+  {
+    const Vec3f across = glm::normalize(plane == 0 ? line.lateral : line.elevation) * aroundMm;
+    if (isNoneAround(view, space, place, across, along, medium))
+    {
+      return mediumAt(view, space, place + across);
+    }
+  }
+  return medium;
+}
+
+/// The medium that counts at a depth of the axis, as mediumAt.
 template<class Space>
 SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const TraceLine& line,
                                 const TargetSpans& spans, float depthMm)
@@ -88,9 +143,12 @@ SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const
       return spans.medium[s];
     }
   }
-  const Vec3i cell = space.cellAt(line.origin + line.axis * depthMm);
-  const int tissue = space.contains(cell) ? space.tissueAt(cell) : -1;
-  return tissue == view.outsideTissue ? -1 : tissue;
+  const Vec3f place = line.origin + line.axis * depthMm;
+  const int medium = mediumAt(view, space, place);
+  // Without an aperture there is no beam that is wider than the axis.
+  const bool mayBeStrand =
+    view.startsApart && medium >= 0 && fabsf(view.media[medium].rangePerMm - 1.0f) > strandRangePerMm;
+  return mayBeStrand ? mediumAround(view, space, line, place, medium) : medium;
 }
 
 /// What a piece of the way along the axis adds to it: its range, and the exponent of the intensity that is left of what

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 // Range is time: Data/docs/physics.md 13.1.
@@ -278,6 +279,60 @@ TEST(TimeOfFlight, AWireIsTooThinToCount)
     const double counts = thickness < 0.616 ? 0.0 : thickness;
     const double behind = 50.0 - (10.0 + counts) * (1.0 - 1540.0 / 2600.0);
     EXPECT_NEAR(mapOf(traced).depthOf(float(behind)), 50.0, 0.005) << thickness;
+  }
+}
+
+TEST(TimeOfFlight, AStrandOfLabelsIsTooNarrowToCountAndAWallIsNot)
+{
+  // A row of bodies of nylon one behind the other, the axis through all of them. Two wavelengths are 1.23 mm.
+  const std::vector<Tissue> tissues{ makeTissue("gel", 1.6, 1540.0, 0.5), makeTissue("nylon", 2.96, 2600.0, 0.0) };
+  const ScanLine line = makeLine({ 10.1, 9.9, 0.0 }, { 0.0, 0.0, 1.0 });
+  using Body = std::function<bool(const Vec3d&)>;
+  const auto strand = [](double mm) -> Body {
+    return [=](const Vec3d& p) { return p.x > 10.0 && p.x < 10.0 + mm && p.z > 0.0 && p.z < mm; };
+  };
+  const Body turned = [&](const Vec3d& p) { return strand(0.5)({ p.y + 0.5, p.x, p.z }); };
+  const auto wall = [](double degrees) -> Body { // of half a millimetre to one, as the voxels have it
+    const double slope = std::tan(degrees * M_PI / 180.0);
+    return [=](const Vec3d& p) { return std::fabs(p.z - 2.0 - slope * (p.x - 10.0)) < 0.26 * std::hypot(1.0, slope); };
+  };
+  struct Case
+  {
+    const char* name;
+    Body body;
+    bool counts;
+  };
+  const std::vector<Case> cases{
+    { "strand of 0.5 mm across the plane", strand(0.5), false },
+    { "strand of 0.5 mm in the plane", turned, false },
+    { "strand of 2 mm", strand(2.0), true },
+    { "wall", wall(0.0), true },
+    { "wall at 20 degrees", wall(20.0), true },
+    { "wall at 45 degrees", wall(45.0), true },
+    { "wall at 60 degrees", wall(60.0), true },
+  };
+  for (const Case& c : cases)
+  {
+    const auto isNylon = [&](const Vec3d& p) {
+      return p.z > 10.0 && p.z < 60.0 && c.body({ p.x, p.y, std::fmod(p.z, 10.0) });
+    };
+    const auto scene = makeScene({ 40, 40, 160 }, Vec3d(0.5), tissues, isNylon);
+    double onAxisMm = 0.0; // the axis lies beside the middles of its column of voxels
+    for (double z = 0.25; z < 80.0; z += 0.5)
+    {
+      onAxisMm += isNylon({ 10.25, 9.75, z }) ? 0.5 : 0.0;
+    }
+    ASSERT_GE(onAxisMm, 2.5) << c.name;
+    TraceSettings t = tracing();
+    for (const bool hasAperture : { false, true })
+    {
+      t.aperture.apertureMm = hasAperture ? 20.0 : 0.0;
+      t.aperture.elevationApertureMm = hasAperture ? 14.0 : 0.0;
+      const TracedLines traced = trace(*scene, { line }, t);
+      const double counted = c.counts || !hasAperture ? onAxisMm : 0.0;
+      EXPECT_NEAR(mapOf(traced).depthOf(float(65.0 - counted * (1.0 - 1540.0 / 2600.0))), 65.0, 0.01)
+        << c.name << (hasAperture ? ", aperture" : "");
+    }
   }
 }
 

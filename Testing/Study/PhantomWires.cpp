@@ -83,7 +83,8 @@ private:
 };
 
 /// Where in the image an echo is highest: the vertex of the paraboloid through the pixels of its main lobe (-6 dB) in
-/// dB, since a Gaussian pulse under a Gaussian beam is one.
+/// dB, since a Gaussian pulse under a Gaussian beam is one. Of an echo that is none, as the two faces of a column of
+/// voxels, the vertex may lie far beside it: then the brightest pixel counts.
 Vec2d placeOf(const PlaneImage& image, const Vec2d& peak)
 {
   const double peakDb = valueAt(image, peak.x, peak.y);
@@ -102,7 +103,9 @@ Vec2d placeOf(const PlaneImage& image, const Vec2d& peak)
       }
     }
   }
-  return peak + echo.vertex().value_or(Vec2d(0.0));
+  const Vec2d vertex = echo.vertex().value_or(Vec2d(0.0));
+  const bool isWithin = std::fabs(vertex.x) < columnsReachMm && std::fabs(vertex.y) < rowsReachMm;
+  return isWithin ? peak + vertex : peak;
 }
 
 /// Pixels along the expected line around a wire.

@@ -260,6 +260,29 @@ TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
   EXPECT_NEAR(place.pixelMm, 9.96, 0.06);
 }
 
+TEST(PhantomStudy, AnEchoThatIsNoParaboloidLiesAtItsBrightestPixel)
+{
+  // It rises to its lower rim, where it ends: the paraboloid of its shape has its vertex 4 mm further down.
+  PlaneImage image;
+  image.width = 401;
+  image.height = 1001;
+  image.pixelMm = 0.05;
+  image.lateralMinMm = -10.0;
+  for (int j = 0; j < image.height; ++j)
+  {
+    for (int i = 0; i < image.width; ++i)
+    {
+      const double x = image.lateralMinMm + i * image.pixelMm;
+      const double z = j * image.pixelMm - 45.0;
+      image.value.push_back(z < 0.01 ? float(-x * x - 0.5 * (z - 4.0) * (z - 4.0)) : -60.0f);
+    }
+  }
+  const WirePlace place =
+    locateWire(image, { PhantomTargetKind::Wire, 1, "vertical", 0.0, 45.0, 0.1, "phantom_nylon" });
+  EXPECT_NEAR(place.pixelMm, 45.0, 0.06);
+  EXPECT_NEAR(place.fittedMm, 45.0, 0.06);
+}
+
 TEST(PhantomStudy, AnEchoFromTheFocusOfDelaysAndLensHasItsRange)
 {
   // All ways to it are alike. A fluid cylinder of 0.1 mm that is much thinner than the wavelength turns the phase by
