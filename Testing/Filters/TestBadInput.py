@@ -35,12 +35,10 @@ class TestBadInput(unittest.TestCase):
     def test_missing_vtk_image(self):
         self.expect(make(vtkSonoLabelMapReader, FileName="nowhere/no.vti"), "nowhere/no.vti")
 
-    def test_too_many_voxels(self):
+    def test_too_many_pixels(self):
         chain = Chain()
-        chain.probe.SetScanKind(3)
-        chain.probe.SetElevationLineCount(2)
-        chain.converter.SetPixelMm(0.01)
-        self.expect(chain.converter, "voxelMm", "larger")
+        chain.converter.SetPixelMm(0.001)
+        self.expect(chain.converter, "pixelMm", "larger")
 
     def test_label_map_without_labels(self):
         chain = Chain()

@@ -4,6 +4,7 @@ import unittest
 import numpy as np
 from chain import Chain, count_runs, label_image, shown_deeper
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 
 def array(image, name):
@@ -133,6 +134,13 @@ class TestMatrix(unittest.TestCase):
         # 2 x 90 sin 30 = 90 mm and 2 x 90 sin 20 = 61.56 mm wide, 90 mm deep, in steps of 2 mm.
         self.assertEqual(self.image.GetDimensions(), (46, 32, 46))
         self.assertEqual(self.image.GetSpacing(), (2.0, 2.0, 2.0))
+
+    def test_what_is_too_fine_is_as_fine_as_fits(self):
+        self.chain.converter.SetPixelMm(0.1)
+        self.chain.converter.UpdateInformation()
+        low = self.chain.converter.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())[1::2]
+        self.assertLessEqual(np.prod(np.array(low, dtype=float) + 1), 2**25)
+        self.assertGreater(np.prod(np.array(low, dtype=float) + 1), 0.98 * 2**25)
 
     def test_place(self):
         """Axes are lateral, elevation and axial; the face's centre is in the middle of the first slice."""
