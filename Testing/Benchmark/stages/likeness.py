@@ -41,7 +41,10 @@ def main():
         for end in ("Tr", "Ts"):
             for picture in sorted((folder / f"made/images{end}").glob("*_0000.png")):
                 pairs += [str(picture), str(folder / f"made/labels{end}" / picture.name.replace("_0000.png", ".png"))]
-        told = subprocess.run(["python3", str(program), str(PIXEL_MM)] + pairs, capture_output=True, text=True, check=True)
+        # Debian's, whose packages are there; another Python may stand before it.
+        told = subprocess.run(["/usr/bin/python3", str(program), str(PIXEL_MM)] + pairs, capture_output=True, text=True)
+    if told.returncode:
+        sys.exit(f"likeness: '{program}' failed: {told.stderr.strip()}")
     print(told.stdout, file=sys.stderr)
     lines = re.findall(r"^(\S+) .* z ([+-][0-9.]+)$", told.stdout, re.M)
     inside = sum(abs(float(z)) <= 1.0 for _, z in lines)
