@@ -1,5 +1,6 @@
 // Run time against error: paths, samplers, precisions, threads and devices on five scenes, and what else errs: voxels,
 // surfaces, radial bins.
+#include "BeamScenes.h"
 #include "ErrorCurves.h"
 #include "RegionSwitches.h"
 #include "SamplingName.h"
@@ -9,7 +10,9 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstdio>
+#include <numeric>
 #include <thread>
 
 namespace sono::study {
@@ -208,6 +211,79 @@ void measureVoxels(const std::string& name, double finestMm, const std::vector<d
   }
 }
 
+/// Every so many samples of each line.
+BenchImage decimated(const BenchImage& fine, int every)
+{
+  BenchImage out = fine;
+  out.iq.clear();
+  const std::size_t samples = fine.iq.size() / std::size_t(fine.lineCount);
+  for (std::size_t line = 0; line < std::size_t(fine.lineCount); ++line)
+  {
+    for (std::size_t s = 0; s < samples; s += std::size_t(every))
+    {
+      out.iq.push_back(fine.iq[line * samples + s]);
+    }
+  }
+  return out;
+}
+
+/// As loud as another, since a gain is free.
+BenchImage levelled(BenchImage image, const BenchImage& other)
+{
+  const auto energy = [](const BenchImage& of) {
+    return std::accumulate(of.iq.begin(), of.iq.end(), 0.0,
+                           [](double sum, const std::complex<double>& v) { return sum + std::norm(v); });
+  };
+  const double factor = std::sqrt(energy(other) / energy(image));
+  for (std::complex<double>& v : image.iq)
+  {
+    v *= factor;
+  }
+  return image;
+}
+
+/// What forming echoes errs by, with the same paths: samples of RF, the beam's Gaussians instead of the computed field,
+/// a pulse whose band is a tenth wider, and, as the measure of what only changes the speckle, other scatterers.
+void measureEcho(int paths, Rows& rows)
+{
+  BenchScene bench = makeBenchScene("a4c");
+  bench.echo = test::echoOf(test::p42(), bench.tracing.depthMm);
+  bench.tracing.frequencyMHz = bench.echo.centreFrequencyMHz;
+  bench.tracing.aperture = bench.echo.aperture;
+  warmUp(bench, bench.tracing);
+  const auto imageOf = [&](const EchoSettings& echo) {
+    BenchScene formed = bench;
+    formed.echo = echo;
+    TraceSettings tracing = otherSettings(bench, paths);
+    tracing.echoSampleMm = echo.sampleMm();
+    return makeBenchImage(formed, tracing, otherWay.precision);
+  };
+  const auto add = [&](const std::string& what, const BenchImage& image, const BenchImage& reference) {
+    rows.push_back(row(what, otherWay, paths, image.traceSeconds, imageError(image, reference)));
+  };
+  EchoSettings echo = bench.echo;
+  const BenchImage usual = imageOf(echo);
+  {
+    EchoSettings fine = echo;
+    fine.samplingMHz = 4.0 * echo.samplingMHz;
+    const BenchImage reference = imageOf(fine);
+    add("rf_" + number(echo.samplingMHz) + "_MHz", usual, decimated(reference, 4));
+    EchoSettings coarse = echo;
+    coarse.samplingMHz = 0.4 * echo.samplingMHz;
+    add("rf_" + number(coarse.samplingMHz) + "_MHz", imageOf(coarse), decimated(reference, 10));
+  }
+  EchoSettings other = echo;
+  other.beam = BeamForm::Computed;
+  const BenchImage computed = imageOf(other);
+  add("beam_gaussians", levelled(usual, computed), computed);
+  other = echo;
+  other.fractionalBandwidth *= 1.1;
+  add("pulse_band_a_tenth_wider", imageOf(other), usual);
+  other = echo;
+  ++other.seed;
+  add("other_scatterers", imageOf(other), usual);
+}
+
 /// Squared error times paths of independent sampling over that of low discrepancy, 1000 paths a line, several seeds,
 /// for half of the image's lines.
 void measureRatio(Output& output)
@@ -238,6 +314,10 @@ void measureOtherErrors(const std::string& name, Output& output, Rows& rows)
 {
   const int paths = output.quick() ? 100 : 4000;
   measureBins(makeBenchScene(name), paths, rows);
+  if (name == "a4c")
+  {
+    measureEcho(paths, rows);
+  }
   if (output.quick())
   {
     measureVoxels(name, 2.0, { 4.0 }, paths, rows);
