@@ -1,6 +1,7 @@
 #include "SonoOutputs.h"
 
 #include "SonoImagePlacement.h"
+#include "SonoLabelImage.h"
 #include "SonoLineImage.h"
 #include "SonoSharedArray.h"
 #include "vtkSonoResultHandle.h"
@@ -10,9 +11,6 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
-#include "vtkInformationInformationVectorKey.h"
-#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -76,7 +74,14 @@ void addTraced(const TracedResult& traced, vtkImageData* lines)
 void addRf(const RfResult& rf, vtkImageData* image)
 {
   const RfLines& lines = rf.host();
-  image->GetPointData()->SetScalars(lineArray("Envelope", lines.envelope()));
+  const std::vector<float> envelope = lines.envelope();
+  const auto array = lineArray("Envelope", envelope);
+  if (!envelope.empty())
+  {
+    const auto [low, high] = std::minmax_element(envelope.begin(), envelope.end());
+    tellRange(*low, *high, array); // an A-line asks for it with each picture
+  }
+  image->GetPointData()->SetScalars(array);
   image->GetPointData()->AddArray(lineArray("RF", lines.rf()));
   image->GetPointData()->AddArray(lineArray("IQ", lines.iq));
 }
@@ -267,15 +272,7 @@ vtkSmartPointer<Array> rangedArray(const char* name, const SharedSpan<T>& values
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  double range[2] = { double(low), double(high) };
-  for (vtkInformationInformationVectorKey* key :
-       { vtkAbstractArray::PER_COMPONENT(), vtkAbstractArray::PER_FINITE_COMPONENT() })
-  {
-    vtkNew<vtkInformationVector> components;
-    components->SetNumberOfInformationObjects(1);
-    components->GetInformationObject(0)->Set(vtkDataArray::COMPONENT_RANGE(), range, 2);
-    array->GetInformation()->Set(key, components);
-  }
+  tellRange(double(low), double(high), array);
   return array;
 }
 

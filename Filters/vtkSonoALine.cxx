@@ -10,7 +10,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -22,7 +21,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -59,35 +57,6 @@ sono::Vec3d drawnFlat(const sono::Vec3d& worldMm, const sono::ProbeField& probe)
 {
   const sono::Vec3d flat = sono::flatFromWorld(worldMm, probe.pose);
   return { flat.x, flat.y, sono::flatDrawingMm };
-}
-
-/// VTK's range of an array takes as long as all else of an A-line in a picture of a moving probe.
-double largestOf(vtkDataArray* envelope)
-{
-  auto* floats = vtkFloatArray::SafeDownCast(envelope);
-  if (!floats)
-  {
-    return envelope->GetRange()[1];
-  }
-  // Several side by side, so that no one waits for the one before.
-  constexpr vtkIdType lanes = 16;
-  const float* values = floats->GetPointer(0);
-  const vtkIdType count = floats->GetNumberOfValues();
-  std::array<float, lanes> largest{};
-  vtkIdType i = 0;
-  for (; i + lanes <= count; i += lanes)
-  {
-    for (vtkIdType lane = 0; lane < lanes; ++lane)
-    {
-      largest[lane] = values[i + lane] > largest[lane] ? values[i + lane] : largest[lane];
-    }
-  }
-  float all = *std::max_element(largest.begin(), largest.end());
-  for (; i < count; ++i)
-  {
-    all = std::max(all, values[i]);
-  }
-  return double(all);
 }
 
 } // namespace
@@ -171,7 +140,7 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     }
     if (vtkDataArray* envelope = arrays->GetArray("Envelope"))
     {
-      const double largest = largestOf(envelope);
+      const double largest = envelope->GetRange()[1];
       addColumn(
         "Envelope (dB)", rows,
         [&](int row) {
