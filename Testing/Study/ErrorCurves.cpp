@@ -1,9 +1,12 @@
 #include "ErrorCurves.h"
 
+#include "Study.h"
+
 #include "Core/ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace sono::study {
@@ -42,6 +45,19 @@ Slope convergenceSlope(const std::vector<ErrorPoint>& curve, double floor)
     }
   }
   return slope;
+}
+
+std::string slopeText(const std::vector<ErrorPoint>& curve, double floor)
+{
+  const Slope of = convergenceSlope(curve, floor);
+  char text[32];
+  std::snprintf(text, sizeof text, std::isfinite(of.error) ? "%.2f +- %.2f" : "%.2f", of.value, of.error);
+  return std::isfinite(of.value) ? std::string(text) : "-";
+}
+
+std::string reachedText(double seconds)
+{
+  return std::isfinite(seconds) ? number(seconds) : "not reached";
 }
 
 double secondsToReach(const std::vector<ErrorPoint>& curve, double target)

@@ -2,6 +2,7 @@
 
 #include "BenchImage.h"
 
+#include <string>
 #include <vector>
 
 namespace sono::study {
@@ -26,9 +27,15 @@ struct Slope
 /// fewer than three are.
 Slope convergenceSlope(const std::vector<ErrorPoint>& curve, double floor);
 
+/// Exponent and error as tables hold them; "-" where there is none.
+std::string slopeText(const std::vector<ErrorPoint>& curve, double floor);
+
 /// Seconds until the error stays at `target` or below, between two points by a power law; those of the first point when
 /// it is there already, infinity when the last is not.
 double secondsToReach(const std::vector<ErrorPoint>& curve, double target);
+
+/// The same as tables hold it.
+std::string reachedText(double seconds);
 
 /// What images are compared with, and how far off it is itself.
 struct BenchReference

@@ -81,23 +81,16 @@ const std::vector<std::string> summaryHeader = { "scene",
 std::vector<std::string> summaryRow(const std::string& scene, const Way& way,
                                     const std::array<std::vector<ErrorPoint>, 3>& curves, const ImageError& floor)
 {
-  const auto time = [](double seconds) { return std::isfinite(seconds) ? number(seconds) : "not reached"; };
-  const auto slope = [](const std::vector<ErrorPoint>& curve, double own) {
-    const Slope of = convergenceSlope(curve, own);
-    char text[32];
-    std::snprintf(text, sizeof text, std::isfinite(of.error) ? "%.2f +- %.2f" : "%.2f", of.value, of.error);
-    return std::isfinite(of.value) ? std::string(text) : "-";
-  };
   return { scene,
            way.sampler(),
            way.precisionName(),
            way.device(),
-           slope(curves[0], floor.intensity),
-           slope(curves[1], floor.rf),
-           slope(curves[2], floor.decibels),
-           time(secondsToReach(curves[0], 0.01)),
-           time(secondsToReach(curves[1], 0.01)),
-           time(secondsToReach(curves[2], 1.0)),
+           slopeText(curves[0], floor.intensity),
+           slopeText(curves[1], floor.rf),
+           slopeText(curves[2], floor.decibels),
+           reachedText(secondsToReach(curves[0], 0.01)),
+           reachedText(secondsToReach(curves[1], 0.01)),
+           reachedText(secondsToReach(curves[2], 1.0)),
            number(curves[0].back().paths),
            number(curves[0].back().error),
            number(curves[1].back().error),

@@ -8,7 +8,6 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <cstdio>
 
 namespace sono::study {
 namespace {
@@ -34,14 +33,6 @@ const std::vector<std::string> header = {
 const std::vector<std::string> summaryHeader = { "scene",         "model",          "device",    "slope, RF",
                                                  "slope, dB",     "s to 1 % of RF", "s to 1 dB", "s to 0.5 dB",
                                                  "paths to 1 dB", "paths to 0.5 dB" };
-
-TraceSettings settingsOf(const BenchScene& bench, Device device)
-{
-  TraceSettings tracing = bench.tracing;
-  tracing.reverberation = tracing.model == InterfaceModel::Acoustic;
-  tracing.device = device;
-  return tracing;
-}
 
 struct Curves
 {
@@ -76,19 +67,6 @@ Curves measured(const BenchScene& bench, const TraceSettings& given, const Bench
   return curves;
 }
 
-std::string reached(double value)
-{
-  return std::isfinite(value) ? number(value) : "not reached";
-}
-
-std::string slopeOf(const std::vector<ErrorPoint>& curve, double floor)
-{
-  const Slope slope = convergenceSlope(curve, floor);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f +- %.2f", slope.value, slope.error);
-  return std::isfinite(slope.error) ? std::string(text) : "-";
-}
-
 /// With paths in the place of seconds.
 double pathsToReach(std::vector<ErrorPoint> curve, double target)
 {
@@ -103,7 +81,8 @@ void measureScene(const std::string& name, const Model& model, bool hasGpu, Outp
 {
   BenchScene bench = makeBenchScene(name, 0.0, modelLines);
   bench.tracing.model = model.model;
-  bench.tracing = settingsOf(bench, Device::Cpu);
+  bench.tracing.reverberation = model.model == InterfaceModel::Acoustic;
+  bench.tracing.device = Device::Cpu;
   warmUp(bench, bench.tracing);
   const BenchReference reference = meanReference(bench, output.quick() ? 800 : 400000);
   rows.push_back({ std::string("reference of ") + model.name, "", "1", "", number(reference.floor.intensity),
@@ -116,7 +95,8 @@ void measureScene(const std::string& name, const Model& model, bool hasGpu, Outp
     }
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     const std::string where = device == Device::Cpu ? "CPU, 2 threads" : "GPU";
-    const TraceSettings tracing = settingsOf(bench, device);
+    TraceSettings tracing = bench.tracing;
+    tracing.device = device;
     measured(bench, tracing, reference, 10); // what a first call sets up
     const Curves curves = measured(bench, tracing, reference, output.quick() ? 100 : 31623);
     for (std::size_t i = 0; i < curves.rf.size(); ++i)
@@ -125,10 +105,11 @@ void measureScene(const std::string& name, const Model& model, bool hasGpu, Outp
                        number(curves.intensity[i].error), number(curves.rf[i].error),
                        number(curves.decibels[i].error) });
     }
-    summary.push_back({ name, model.name, where, slopeOf(curves.rf, reference.floor.rf),
-                        slopeOf(curves.decibels, reference.floor.decibels), reached(secondsToReach(curves.rf, 0.01)),
-                        reached(secondsToReach(curves.decibels, 1.0)), reached(secondsToReach(curves.decibels, 0.5)),
-                        reached(pathsToReach(curves.decibels, 1.0)), reached(pathsToReach(curves.decibels, 0.5)) });
+    summary.push_back(
+      { name, model.name, where, slopeText(curves.rf, reference.floor.rf),
+        slopeText(curves.decibels, reference.floor.decibels), reachedText(secondsToReach(curves.rf, 0.01)),
+        reachedText(secondsToReach(curves.decibels, 1.0)), reachedText(secondsToReach(curves.decibels, 0.5)),
+        reachedText(pathsToReach(curves.decibels, 1.0)), reachedText(pathsToReach(curves.decibels, 0.5)) });
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 
 namespace {
@@ -234,9 +235,9 @@ TEST(PhantomStudy, EchoWidthIsThatOfPulseAndAperture)
   EXPECT_NEAR(width.lateralMm, 0.886 * 1.54 / 3.6 * 50.0 / 20.455, 0.15);
 }
 
-TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
+/// Of 46 x 58 mm, with a level in dB at each lateral place and depth.
+PlaneImage imageOf(const std::function<double(double, double)>& decibelsAt)
 {
-  // An echo 0.03 mm above the line that should hold it, slanted as beside a sector's middle.
   PlaneImage image;
   image.width = 801;
   image.height = 1001;
@@ -246,13 +247,22 @@ TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
   {
     for (int i = 0; i < image.width; ++i)
     {
-      const double x = image.lateralMinMm + i * image.pixelMm - 10.07;
-      const double z = j * image.pixelMm - 44.97;
-      const double across = (0.98 * x - 0.2 * z) / 0.8;
-      const double along = (0.2 * x + 0.98 * z) / 0.13;
-      image.value.push_back(float(-4.34 * (across * across + along * along)));
+      image.value.push_back(float(decibelsAt(image.lateralMinMm + i * image.pixelMm, j * image.pixelMm)));
     }
   }
+  return image;
+}
+
+TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
+{
+  // An echo 0.03 mm above the line that should hold it, slanted as beside a sector's middle.
+  const PlaneImage image = imageOf([](double lateralMm, double depthMm) {
+    const double x = lateralMm - 10.07;
+    const double z = depthMm - 44.97;
+    const double across = (0.98 * x - 0.2 * z) / 0.8;
+    const double along = (0.2 * x + 0.98 * z) / 0.13;
+    return -4.34 * (across * across + along * along);
+  });
   const WirePlace place = locateWire(image, { PhantomTargetKind::Wire, 1, "near", 10.0, 45.0, 0.1, "phantom_nylon" });
   EXPECT_TRUE(place.found);
   EXPECT_NEAR(place.fittedMm, 10.07, 0.01);
@@ -263,20 +273,10 @@ TEST(PhantomStudy, AWireIsLocatedBetweenPixels)
 TEST(PhantomStudy, AnEchoThatIsNoParaboloidLiesAtItsBrightestPixel)
 {
   // It rises to its lower rim, where it ends: the paraboloid of its shape has its vertex 4 mm further down.
-  PlaneImage image;
-  image.width = 401;
-  image.height = 1001;
-  image.pixelMm = 0.05;
-  image.lateralMinMm = -10.0;
-  for (int j = 0; j < image.height; ++j)
-  {
-    for (int i = 0; i < image.width; ++i)
-    {
-      const double x = image.lateralMinMm + i * image.pixelMm;
-      const double z = j * image.pixelMm - 45.0;
-      image.value.push_back(z < 0.01 ? float(-x * x - 0.5 * (z - 4.0) * (z - 4.0)) : -60.0f);
-    }
-  }
+  const PlaneImage image = imageOf([](double lateralMm, double depthMm) {
+    const double z = depthMm - 45.0;
+    return z < 0.01 ? -lateralMm * lateralMm - 0.5 * (z - 4.0) * (z - 4.0) : -60.0;
+  });
   const WirePlace place =
     locateWire(image, { PhantomTargetKind::Wire, 1, "vertical", 0.0, 45.0, 0.1, "phantom_nylon" });
   EXPECT_NEAR(place.pixelMm, 45.0, 0.06);
