@@ -2,6 +2,7 @@
 
 #include "Core/FileContent.h"
 #include "DataSets/DataSetImager.h"
+#include "DataSets/ImageStream.h"
 #include "DataSets/WriteDataSet.h"
 #include "Image/ScanConvert.h"
 #include "SonoDataFile.h"
@@ -98,6 +99,7 @@ std::shared_ptr<const sono::DataSetPlan> vtkSonoDataSet::ReadPlan()
   if (!this->Plan || stamp != this->Stamp)
   {
     const std::string dataFolder = std::filesystem::path(sono::dataFile("tissues.csv")).parent_path().string();
+    this->EndStream();
     this->Imager = nullptr;
     this->Plan = nullptr;
     this->Plan = std::make_shared<const sono::DataSetPlan>(sono::readDataSet(path, dataFolder));
@@ -150,6 +152,49 @@ std::string vtkSonoDataSet::GetSplit(vtkIdType image)
   return split;
 }
 
+bool vtkSonoDataSet::BeginStream(const std::string& split)
+{
+  return sono::runWork(this, [&] {
+    const auto plan = this->ReadPlan();
+    this->EndStream();
+    const sono::ImageStream::Wanted isOfSplit = [plan, split](std::int64_t image) {
+      return split == sono::nameOf(plan->splitOf(image));
+    };
+    this->Stream = std::make_unique<sono::ImageStream>(*this->Imager, this->GetShare(),
+                                                       split.empty() ? sono::ImageStream::Wanted() : isOfSplit);
+  });
+}
+
+int vtkSonoDataSet::TakeImage()
+{
+  int found = NO_IMAGE_LEFT;
+  sono::runWork(this, [&] {
+    this->ReadPlan();
+    if (!this->Stream)
+    {
+      return;
+    }
+    std::optional<sono::StreamedImage> taken = this->Stream->takeMade();
+    if (!taken)
+    {
+      found = this->Stream->hasEnded() ? NO_IMAGE_LEFT : IMAGE_AWAITED;
+      return;
+    }
+    this->Taken = std::make_unique<sono::DataSetImage>(std::move(taken->image));
+    this->TakenNumber = int(taken->index);
+    this->ImageNumber = this->TakenNumber;
+    this->Modified();
+    found = IMAGE_TAKEN;
+  });
+  return found;
+}
+
+void vtkSonoDataSet::EndStream()
+{
+  this->Stream = nullptr;
+  this->Taken = nullptr;
+}
+
 int vtkSonoDataSet::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
@@ -186,7 +231,10 @@ void vtkSonoDataSet::WriteFolder()
 
 void vtkSonoDataSet::GiveImage(vtkImageData* image)
 {
-  const sono::DataSetImage made = this->Imager->make(this->ImageNumber, sono::progressOf(this));
+  const bool isTaken = this->Taken && this->TakenNumber == this->ImageNumber;
+  const sono::DataSetImage made =
+    isTaken ? std::move(*this->Taken) : this->Imager->make(this->ImageNumber, sono::progressOf(this));
+  this->Taken = nullptr;
   image->Initialize();
   image->SetDimensions(made.width, made.height, 1);
   image->SetOrigin(made.lateralMinMm, made.axialMinMm, 0.0);

@@ -10,6 +10,8 @@
 namespace sono {
 class DataSetImager;
 class DataSetPlan;
+class ImageStream;
+struct DataSetImage;
 struct DataSetShare;
 }
 
@@ -83,6 +85,25 @@ public:
 
   ///@{
   /**
+   * This part's images one after the other, those of a split or, where it is empty, all: threads make them ahead while
+   * the caller does something else, on a GPU several of many bodies at once (see sono::ImageStream). TakeImage, which
+   * does not wait, returns IMAGE_TAKEN and has set ImageNumber to one that the next update gives without making it;
+   * IMAGE_AWAITED, while none is made; NO_IMAGE_LEFT at the end and after an error. The stream also ends with
+   * EndStream, with another BeginStream, and when the file has changed. False after an error.
+   */
+  enum
+  {
+    IMAGE_TAKEN,
+    IMAGE_AWAITED,
+    NO_IMAGE_LEFT
+  };
+  bool BeginStream(const std::string& split);
+  int TakeImage();
+  void EndStream();
+  ///@}
+
+  ///@{
+  /**
    * Of the last update with a folder: images that were written and how many a second.
    */
   vtkGetMacro(WrittenImages, vtkIdType);
@@ -115,6 +136,9 @@ private:
   std::string Stamp; // of the file that was read last
   std::shared_ptr<const sono::DataSetPlan> Plan;
   std::unique_ptr<sono::DataSetImager> Imager; // keeps the anatomy from image to image
+  std::unique_ptr<sono::ImageStream> Stream;
+  std::unique_ptr<sono::DataSetImage> Taken; // of the stream
+  int TakenNumber = 0;
 };
 
 #endif

@@ -4,7 +4,7 @@
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
 #   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
-#   run-gpu.sh dataset FILE FOLDER [PART PARTS]  there: writes a data set (the same pack)
+#   run-gpu.sh dataset FILE [FOLDER [PART PARTS]]  there: writes a data set (the same pack), or takes it image by image
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh peers [FOLDER]  there: programs of others on the same scenes, tables and report in the folder (build-gpu/peers);
 #                          `pack peers` packs them for Python 3.12 with JAX, CuPy, SciPy, scikit-learn, OpenCV and h5py

@@ -45,7 +45,20 @@ struct LoopOrder
 #endif
 };
 
+thread_local LoopCores loopCores = LoopCores::All;
+
 } // namespace
+
+LoopsOn::LoopsOn(LoopCores cores)
+  : before_(loopCores)
+{
+  loopCores = cores;
+}
+
+LoopsOn::~LoopsOn()
+{
+  loopCores = before_;
+}
 
 void parallelFor(int count, const Progress& progress, const std::function<void(int, const YieldPoint&)>& body)
 {
@@ -67,8 +80,7 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
     }
   };
   LoopOrder order;
-  order.begin();
-  tbb::parallel_for(0, count, [&](int i) {
+  const auto run = [&](int i) {
     order.beginTask();
     if (!stop)
     {
@@ -77,7 +89,19 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
       reportDone();
     }
     order.endTask();
-  });
+  };
+  order.begin();
+  if (loopCores == LoopCores::All)
+  {
+    tbb::parallel_for(0, count, run);
+  }
+  else
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      run(i);
+    }
+  }
   order.end();
   if (stop)
   {

@@ -18,4 +18,24 @@ using YieldPoint = std::function<void()>;
 /// The same for bodies that take long.
 void parallelFor(int count, const Progress& progress, const std::function<void(int, const YieldPoint&)>& body);
 
+/// Which cores the loops of a thread run on.
+enum class LoopCores
+{
+  All,
+  Own ///< the thread's alone: cores that wait for shares of short loops do so busily
+};
+
+/// What holds for the thread that makes it, until it goes. All is what holds otherwise.
+class LoopsOn
+{
+public:
+  explicit LoopsOn(LoopCores cores);
+  ~LoopsOn();
+  LoopsOn(const LoopsOn&) = delete;
+  LoopsOn& operator=(const LoopsOn&) = delete;
+
+private:
+  LoopCores before_;
+};
+
 } // namespace sono

@@ -2,6 +2,7 @@
 
 #include "Core/Entrance.h"
 #include "Core/MadeOnce.h"
+#include "Core/ParallelFor.h"
 #include "Cuda/RunOnDevice.h"
 #include "DataSets/BodyRegion.h"
 #include "DataSets/DataSetInfo.h"
@@ -237,6 +238,7 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   const Patient::Key key = Patient::keyOf(planned);
   body_ = nullptr; // before the next one takes as much memory
   const Entrance::Stay stay(shared_->preparing);
+  const LoopsOn allCores(LoopCores::All); // others wait for a body, too
   report(progress, 0.0);
   if (!patient_ || patient_->key != key)
   {

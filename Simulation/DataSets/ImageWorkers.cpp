@@ -1,5 +1,6 @@
 #include "DataSets/ImageWorkers.h"
 
+#include "Core/ParallelFor.h"
 #include "Cuda/DeviceImager.h"
 #include "Cuda/OwnImager.h"
 
@@ -104,6 +105,7 @@ void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int
     try
     {
       const OwnImager onDevice(number);
+      const LoopsOn ownCore(LoopCores::Own);
       DataSetImager own = imager.another();
       for (std::size_t unit = shared.nextUnit++; unit < units.size(); unit = shared.nextUnit++)
       {

@@ -82,6 +82,36 @@ class TestDataSet(unittest.TestCase):
         self.assertEqual(validation[0][2]["split"], "validation")
         self.assertEqual(len(list(zip(range(2), validation))), 2)
 
+    def test_a_loop_gives_what_indices_give(self):
+        images = sonovdb.Dataset(small(self.folder))
+        alone = sonovdb.Dataset(small(self.folder))
+        count = 0
+        for index, (image, mask, info) in enumerate(images):  # on a CPU in order
+            expected = alone[index]
+            np.testing.assert_array_equal(np.from_dlpack(image), expected[0])
+            np.testing.assert_array_equal(mask, expected[1])
+            self.assertEqual(info, expected[2])
+            count += 1
+        self.assertEqual(count, 6)
+        self.assertEqual([info["index"] for *_, info in images], list(range(6)))  # an epoch later
+        test = sonovdb.Dataset(small(self.folder), "test")
+        self.assertEqual([info["split"] for *_, info in test], ["test"] * len(test))
+
+    def test_a_loop_may_be_left(self):
+        images = sonovdb.Dataset(small(self.folder, exams=1000))
+        first = next(iter(images))
+        np.testing.assert_array_equal(images[0][0], first[0])
+        loop = iter(images)
+        next(loop)
+        np.testing.assert_array_equal(images[1][0], next(loop)[0])  # asked for in between
+        again = iter(images)
+        next(again)
+        with self.assertRaisesRegex(ValueError, "another loop"):
+            next(loop)
+        self.assertEqual(next(again)[2]["index"], 1)
+        images._filter.EndStream()
+        self.assertEqual(list(again), [])
+
     def test_shards_hold_the_folder(self):
         for form in ("nnU-Net", "MONAI"):
             with self.subTest(format=form):
@@ -202,6 +232,8 @@ class TestDataSet(unittest.TestCase):
             sonovdb.Dataset(small(self.folder), part=3, parts=2)
         with self.assertRaisesRegex(ValueError, "none of 32 poses drawn for view 'A4C' stands on the skin"):
             sonovdb.Dataset(small(self.folder, jitter={"slideElevationMm": 90, "slideLateralMm": 90, "tiltDeg": 80}))[0]
+        with self.assertRaisesRegex(ValueError, "none of 32 poses drawn"):
+            list(sonovdb.Dataset(small(self.folder, jitter={"slideElevationMm": 90, "slideLateralMm": 90, "tiltDeg": 80})))
         writer = vtkSonoDataSet()
         heard = listen(writer)
         writer.SetFileName(small(self.folder))

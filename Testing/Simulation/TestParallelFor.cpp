@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <numeric>
+#include <set>
+#include <thread>
 #include <vector>
 
 namespace sono {
@@ -31,6 +34,35 @@ TEST(ParallelFor, NestedLoopsSeeWhatTheOuterTaskWrote)
   {
     EXPECT_EQ(std::accumulate(values[std::size_t(i)].begin(), values[std::size_t(i)].end(), 0), 64 * i + 63 * 32);
   }
+}
+
+/// In order, on the thread that asks, until it says otherwise.
+TEST(ParallelFor, RunsOnTheThreadsOwnCore)
+{
+  const auto threadsOf = [](int count) {
+    std::vector<std::thread::id> threads;
+    threads.resize(std::size_t(count));
+    parallelFor(count, {}, [&](int i) {
+      threads[std::size_t(i)] = std::this_thread::get_id();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+    return std::set<std::thread::id>(threads.begin(), threads.end());
+  };
+  const LoopsOn own(LoopCores::Own);
+  EXPECT_EQ(threadsOf(100), std::set<std::thread::id>{ std::this_thread::get_id() });
+  {
+    const LoopsOn all(LoopCores::All);
+    if (std::thread::hardware_concurrency() > 1)
+    {
+      EXPECT_GT(threadsOf(100).size(), 1u);
+    }
+  }
+  std::vector<int> order;
+  parallelFor(5, {}, [&](int i) { order.push_back(i); });
+  EXPECT_EQ(order, (std::vector<int>{ 0, 1, 2, 3, 4 }));
+  EXPECT_THROW(parallelFor(
+                 3, [](double) { return false; }, [](int) {}),
+               Aborted);
 }
 
 TEST(ParallelFor, ProgressStopsIt)

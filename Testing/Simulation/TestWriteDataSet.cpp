@@ -1,10 +1,9 @@
 // What a data set's folder holds, and what becomes of it when its writing was cut off.
+#include "BallDataSet.h"
 #include "ErrorText.h"
-#include "TemporaryFolder.h"
 
 #include "DataSets/ImageWorkers.h"
 #include "DataSets/WriteDataSet.h"
-#include "Labels/ReadLabelMap.h"
 #include "Trace/ProbeContact.h"
 
 #include <nlohmann/json.hpp>
@@ -21,6 +20,7 @@
 #include <set>
 
 using namespace sono;
+using sono::testing::ballInSkin;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 namespace fs = std::filesystem;
@@ -52,53 +52,9 @@ const std::vector<float>& channel(const ChannelImage& image, const std::string& 
   return image.values[std::size_t(at - image.names.begin())];
 }
 
-/// A head of skin around a ball of blood, in air, 40 voxels of 2.5 mm, turned against the world.
-LabelVolume ball()
-{
-  LabelVolume volume;
-  volume.placement.size = Vec3i(40);
-  volume.placement.spacingMm = Vec3d(2.5);
-  volume.placement.direction = { { 0.0, 1.0, 0.0 }, { -1.0, 0.0, 0.0 }, { 0.0, 0.0, 1.0 } };
-  volume.placement.originMm = volume.placement.direction * Vec3d(-48.75);
-  volume.voxels.resize(volume.placement.voxelCount());
-  for (std::size_t i = 0; i < volume.voxels.size(); ++i)
-  {
-    const double r = glm::length(2.5 * (Vec3d(double(i % 40), double(i / 40 % 40), double(i / 1600)) - 19.5));
-    volume.voxels[i] = r < 20.0 ? 7 : r < 40.0 ? 9 : 0;
-  }
-  volume.collectLabels();
-  for (LabelInfo& label : volume.labels)
-  {
-    label.name = label.id == 7 ? "left_ventricle_blood" : label.id == 9 ? "skin" : "background";
-  }
-  return volume;
-}
-
-class DataSetFolder : public ::testing::Test
+class DataSetFolder : public sono::testing::BallDataSet
 {
 protected:
-  void SetUp() override
-  {
-    writeLabelMap((root_ / "ball.nii.gz").string(), ball());
-    json_ = Json::parse(R"({
-      "name": "ball", "seed": 5, "exams": 6, "imagesPerExam": 2, "pixelMm": 2, "format": "nnU-Net",
-      "patients": [{"id": "ball", "labels": "ball.nii.gz", "licence": "CC0-1.0", "provenance": "a test",
-                    "views": [{"name": "top", "pose": {"positionMm": [0, -60, 0], "axial": [0, 1, 0], "lateral": [1, 0, 0]}}]}],
-      "probe": {"preset": "phased_p4-2", "lineCount": 12, "depthMm": 70, "sectorDeg": 60},
-      "tracing": {"pathsPerLine": 8}, "echo": {"samplingMHz": 10},
-      "display": {"gainDb": {"from": -3, "to": 3}},
-      "masks": [{"name": "none", "labels": ["liver"]}, {"name": "cavity", "labels": ["ventricle left"]}]})");
-    json_["patients"].push_back(json_["patients"][0]);
-    json_["patients"][1]["id"] = "other";
-    json_["patients"][1]["split"] = "test";
-    json_["patients"][0]["split"] = "train";
-  }
-
-  std::shared_ptr<const DataSetPlan> plan()
-  {
-    std::ofstream(root_ / "set.json") << json_.dump();
-    return std::make_shared<const DataSetPlan>(readDataSet((root_ / "set.json").string(), SONOVDB_DATA_DIR));
-  }
   DataSetTally write(const std::string& folder, const DataSetShare& share = {}, const Progress& progress = {})
   {
     DataSetImager imager(plan(), Device::Cpu);
@@ -117,10 +73,6 @@ protected:
     }
     return files;
   }
-
-  const sono::testing::TemporaryFolder folder_;
-  const fs::path root_ = folder_.path();
-  Json json_;
 };
 
 } // namespace
@@ -402,7 +354,7 @@ TEST_F(DataSetFolder, SaysWhichImageCannotBeMade)
 /// without the demand from anywhere.
 TEST_F(DataSetFolder, HoldsTheProbeWhereItSeesWhatIsAskedFor)
 {
-  LabelVolume volume = ball();
+  LabelVolume volume = ballInSkin();
   for (std::size_t i = 0; i < volume.voxels.size(); ++i)
   {
     const Vec3i v(int(i % 40), int(i / 40 % 40), int(i / 1600));
@@ -483,7 +435,7 @@ TEST_F(DataSetFolder, LooksForViewsByNameAndForWindows)
 TEST(PoseOnSkin, FindsTheSurfaceFromBothSides)
 {
   TissueTable table = TissueTable::read(std::string(SONOVDB_DATA_DIR) + "/tissues.csv");
-  LabelVolume volume = ball();
+  LabelVolume volume = ballInSkin();
   for (LabelInfo& label : volume.labels)
   {
     label.tissue = label.id == 7 ? "blood" : label.id == 9 ? "skin" : "air";

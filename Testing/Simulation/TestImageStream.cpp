@@ -1,0 +1,143 @@
+// Images of a data set one after the other, against those that are asked for by their numbers.
+#include "BallDataSet.h"
+#include "ErrorText.h"
+
+#include "DataSets/ImageStream.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+using namespace sono;
+using sono::testing::errorOf;
+using sono::testing::expectContains;
+
+namespace {
+
+class AStream : public sono::testing::BallDataSet
+{
+protected:
+  std::vector<std::int64_t> expectWhole(ImageStream& stream)
+  {
+    DataSetImager alone(plan(), Device::Cpu);
+    std::vector<std::int64_t> order;
+    while (const auto next = stream.next())
+    {
+      order.push_back(next->index);
+      const DataSetImage made = alone.make(next->index);
+      EXPECT_EQ(next->image.grey, made.grey) << next->index;
+      EXPECT_EQ(next->image.mask, made.mask) << next->index;
+      EXPECT_EQ(next->image.info, made.info) << next->index;
+    }
+    EXPECT_TRUE(stream.hasEnded());
+    EXPECT_FALSE(stream.next());
+    EXPECT_FALSE(stream.takeMade());
+    return order;
+  }
+};
+
+std::vector<std::int64_t> numbers(std::int64_t first, std::int64_t end)
+{
+  std::vector<std::int64_t> all;
+  for (std::int64_t n = first; n < end; ++n)
+  {
+    all.push_back(n);
+  }
+  return all;
+}
+
+std::vector<std::int64_t> sorted(std::vector<std::int64_t> order)
+{
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+} // namespace
+
+TEST_F(AStream, GivesEachImageOnce)
+{
+  const DataSetImager imager(plan(), Device::Cpu);
+  ImageStream inOrder(imager, {});
+  EXPECT_EQ(expectWhole(inOrder), numbers(0, 12));
+  for (const int workers : { 2, 5 })
+  {
+    ImageStream byMany(imager, {}, {}, workers);
+    EXPECT_EQ(sorted(expectWhole(byMany)), numbers(0, 12));
+  }
+}
+
+TEST_F(AStream, HoldsAShareOrWhatIsWanted)
+{
+  const DataSetImager imager(plan(), Device::Cpu);
+  ImageStream share(imager, { 1, 3 });
+  EXPECT_EQ(expectWhole(share), numbers(4, 8));
+  ImageStream wanted(
+    imager, {}, [&](std::int64_t index) { return imager.plan().splitOf(index) == Split::Test && index != 8; }, 3);
+  EXPECT_EQ(sorted(expectWhole(wanted)), (std::vector<std::int64_t>{ 6, 7, 9, 10, 11 }));
+  ImageStream none(imager, {}, [](std::int64_t) { return false; });
+  EXPECT_EQ(expectWhole(none), numbers(0, 0));
+  expectContains(errorOf([&] { ImageStream(imager, { 3, 3 }); }), "process 3 of 3");
+}
+
+/// It waits for the one who takes the images, and ends at once where nobody does any more.
+TEST_F(AStream, IsAFewImagesAhead)
+{
+  json_["exams"] = 400;
+  const DataSetImager imager(plan(), Device::Cpu);
+  for (const int workers : { 1, 3 })
+  {
+    std::set<std::int64_t> begun;
+    std::mutex mutex;
+    bool hasBegun = false;
+    const auto isBegun = [&](std::int64_t index) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (hasBegun)
+      {
+        begun.insert(index);
+      }
+      return true;
+    };
+    ImageStream stream(imager, {}, isBegun, workers);
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      hasBegun = true;
+    }
+    while (!stream.takeMade()) // which does not wait
+    {
+      EXPECT_FALSE(stream.hasEnded());
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    const std::lock_guard<std::mutex> lock(mutex);
+    EXPECT_GE(int(begun.size()), 4);
+    EXPECT_LE(int(begun.size()), 1 + (4 + 2) * workers); // taken; waiting; of exams that are being made
+  }
+}
+
+/// Those before it come; then what went wrong, once.
+TEST_F(AStream, SaysWhatWentWrong)
+{
+  json_["patients"][1]["views"][0]["pose"]["positionMm"] = { 0, -500, 0 };
+  for (const int workers : { 1, 2 })
+  {
+    const DataSetImager imager(plan(), Device::Cpu);
+    ImageStream stream(imager, {}, {}, workers);
+    int came = 0;
+    const std::string said = errorOf([&] {
+      while (stream.next())
+      {
+        ++came;
+      }
+    });
+    expectContains(said, "of patient 'other': none of 32 poses");
+    EXPECT_TRUE(workers > 1 || came == 6);
+    EXPECT_LE(came, 6);
+    EXPECT_TRUE(stream.hasEnded());
+    EXPECT_FALSE(stream.next());
+  }
+}
