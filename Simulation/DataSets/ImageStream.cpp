@@ -68,7 +68,7 @@ struct ImageStream::Queue
       thrown = std::current_exception();
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    failure = thrown;
+    failure = std::move(thrown);
     ended = true;
     changed.notify_all();
   }

@@ -6,9 +6,7 @@
 #include "Image/ReceiverNoise.h"
 #include "Kernel/GreyLevel.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -82,12 +80,7 @@ private:
   template<class Work>
   void forEachLine(const Work& work) const
   {
-    tbb::parallel_for(tbb::blocked_range<int>(0, lineCount_), [&](const tbb::blocked_range<int>& lines) {
-      for (int l = lines.begin(); l < lines.end(); ++l)
-      {
-        work(envelope_.data() + l * factor_.size());
-      }
-    });
+    parallelFor(lineCount_, {}, [&](int l) { work(envelope_.data() + std::size_t(l) * factor_.size()); });
   }
 
   std::vector<std::uint32_t> collect(std::uint32_t bin) const
@@ -298,14 +291,11 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   const auto rangeDb = static_cast<float>(settings.dynamicRangeDb);
   const auto rejectDb = static_cast<float>(settings.rejectDb);
   const std::vector<float> lineDb = lateralGainDb(settings, lineCount);
-  tbb::parallel_for(tbb::blocked_range<int>(0, lineCount), [&](const tbb::blocked_range<int>& lines) {
-    for (int l = lines.begin(); l < lines.end(); ++l)
+  parallelFor(lineCount, {}, [&](int l) {
+    const std::size_t first = std::size_t(l) * sampleCount;
+    for (std::size_t s = 0; s < offsetDb.size(); ++s)
     {
-      const std::size_t first = std::size_t(l) * sampleCount;
-      for (std::size_t s = 0; s < offsetDb.size(); ++s)
-      {
-        grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s] + lineDb[l], rangeDb, rejectDb);
-      }
+      grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s] + lineDb[l], rangeDb, rejectDb);
     }
   });
   if (smooths && settings.smoothCompressed)

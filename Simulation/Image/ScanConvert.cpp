@@ -1,10 +1,7 @@
 #include "Image/ScanConvert.h"
 
-#include "Core/Progress.h"
+#include "Core/ParallelFor.h"
 #include "Kernel/PlaneScan.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,10 +124,11 @@ PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& v
   {
     lateralMm[i] = scan.lateralMm(i);
   }
-  tbb::parallel_for(tbb::blocked_range<int>(0, image.height, 8), [&](const tbb::blocked_range<int>& rows) {
+  constexpr int rowsTogether = 8; // share their buffers
+  parallelFor((image.height + rowsTogether - 1) / rowsTogether, {}, [&](int part) {
     std::vector<float> line(image.width);
     std::vector<float> depthMm(image.width);
-    for (int j = rows.begin(); j < rows.end(); ++j)
+    for (int j = part * rowsTogether; j < std::min((part + 1) * rowsTogether, image.height); ++j)
     {
       beamsOfRow(scan.beams, scan.axialMm(j), lateralMm, line.data(), depthMm.data());
       float* value = image.value.data() + std::size_t(j) * image.width;

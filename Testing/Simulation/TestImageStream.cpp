@@ -112,10 +112,16 @@ TEST_F(AStream, IsAFewImagesAhead)
       EXPECT_FALSE(stream.hasEnded());
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    const std::lock_guard<std::mutex> lock(mutex);
-    EXPECT_GE(int(begun.size()), 4);
-    EXPECT_LE(int(begun.size()), 1 + (4 + 2) * workers); // taken; waiting; of exams that are being made
+    const auto countBegun = [&] {
+      const std::lock_guard<std::mutex> lock(mutex);
+      return int(begun.size());
+    };
+    while (countBegun() < 4 * workers)
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(300)); // in which many more would be
+    EXPECT_LE(countBegun(), 1 + (4 + 2) * workers); // taken; waiting; of exams that are being made
   }
 }
 
