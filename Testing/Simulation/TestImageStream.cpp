@@ -121,7 +121,7 @@ TEST_F(AStream, IsAFewImagesAhead)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(300)); // in which many more would be
-    EXPECT_LE(countBegun(), 1 + (4 + 2) * workers); // taken; waiting; of exams that are being made
+    EXPECT_LE(countBegun(), 1 + (4 + 2) * workers);              // taken; waiting; of exams that are being made
   }
 }
 
