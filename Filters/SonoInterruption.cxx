@@ -2,6 +2,7 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDataObjectCollection.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -80,6 +81,13 @@ unsigned long stateOf(vtkAlgorithm* filter)
   return state;
 }
 
+/// Of data in blocks the blocks themselves: an anatomy has a hundred, and nothing changes them.
+void share(vtkDataObject* from, vtkDataObject* to)
+{
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(to);
+  blocks ? blocks->CompositeShallowCopy(vtkCompositeDataSet::SafeDownCast(from)) : to->ShallowCopy(from);
+}
+
 void copyKept(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   auto* kept = vtkDataObjectCollection::SafeDownCast(filter->GetInformation()->Get(keptKey()));
@@ -90,7 +98,7 @@ void copyKept(vtkAlgorithm* filter, vtkInformationVector* outputs)
   }
   for (int port = 0; port < kept->GetNumberOfItems(); ++port)
   {
-    vtkDataObject::GetData(outputs, port)->ShallowCopy(kept->GetItem(port));
+    share(kept->GetItem(port), vtkDataObject::GetData(outputs, port));
   }
 }
 
@@ -129,7 +137,7 @@ void keepOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs)
   {
     vtkDataObject* output = vtkDataObject::GetData(outputs, port);
     const auto copy = vtk::TakeSmartPointer(output->NewInstance());
-    copy->ShallowCopy(output);
+    share(output, copy);
     kept->AddItem(copy);
   }
   filter->GetInformation()->Set(keptKey(), kept);

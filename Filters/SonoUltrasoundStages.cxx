@@ -377,7 +377,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   const vtkSmartPointer<vtkMultiBlockDataSet> blocks = anatomy_->blocks(inputs[Filter::LABELS_OR_SCENE]);
   if (port == Filter::ANATOMY)
   {
-    return made->ShallowCopy(blocks);
+    return vtkMultiBlockDataSet::SafeDownCast(made)->CompositeShallowCopy(blocks); // a hundred, which nothing changes
   }
   if (port == Filter::ERROR_MAP && !owner_->GetErrorMap())
   {
