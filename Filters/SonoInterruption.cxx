@@ -39,6 +39,13 @@ vtkInformationObjectBaseKey* keptKey()
   return key;
 }
 
+/// Of one of these, the output's time when it was copied.
+vtkInformationUnsignedLongKey* keptAtKey()
+{
+  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("KEPT_AT", "SonoVDB");
+  return key;
+}
+
 /// The state of the pipeline (see stateOf) in which the filter was suspended: stopped, or failed.
 vtkInformationUnsignedLongKey* suspendedAtKey()
 {
@@ -132,12 +139,21 @@ void keepOutputs(vtkAlgorithm* filter, vtkInformationVector* outputs)
   {
     return;
   }
+  auto* before = vtkDataObjectCollection::SafeDownCast(filter->GetInformation()->Get(keptKey()));
   vtkNew<vtkDataObjectCollection> kept;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* output = vtkDataObject::GetData(outputs, port);
+    const unsigned long time = output->GetMTime();
+    vtkDataObject* last = before ? before->GetItem(port) : nullptr;
+    if (last && last->GetInformation()->Get(keptAtKey()) == time)
+    {
+      kept->AddItem(last); // a run makes some of the outputs and leaves the others
+      continue;
+    }
     const auto copy = vtk::TakeSmartPointer(output->NewInstance());
     share(output, copy);
+    copy->GetInformation()->Set(keptAtKey(), time);
     kept->AddItem(copy);
   }
   filter->GetInformation()->Set(keptKey(), kept);
