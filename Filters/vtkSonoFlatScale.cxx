@@ -1,5 +1,6 @@
 #include "vtkSonoFlatScale.h"
 
+#include "SameSettings.h"
 #include "SonoFlatDrawing.h"
 #include "SonoProbeField.h"
 #include "SonoStage.h"
@@ -8,6 +9,7 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -178,6 +180,15 @@ void draw(const sono::ScanGeometry& geometry, double rangeDb, FlatDrawing& drawi
 
 } // namespace
 
+/// What was drawn last, and of what: pictures of a moving probe differ in other things, and what stays the same is not
+/// uploaded anew by who shows it.
+struct vtkSonoFlatScale::Drawn
+{
+  sono::ScanGeometry geometry;
+  double rangeDb = 0.0;
+  vtkNew<vtkPolyData> drawing;
+};
+
 vtkSonoFlatScale::vtkSonoFlatScale() = default;
 vtkSonoFlatScale::~vtkSonoFlatScale() = default;
 
@@ -198,8 +209,18 @@ int vtkSonoFlatScale::RequestData(vtkInformation*, vtkInformationVector** input,
     vtkFieldData* fields = vtkDataSet::GetData(input[0])->GetFieldData();
     sono::ScanGeometry geometry = sono::readProbe(fields).geometry;
     geometry.elevationLineCount = 1; // of a volume the flat image shows the plane in the middle
-    FlatDrawing drawing;
-    draw(geometry, fields->HasArray("DynamicRangeDb") ? sono::readNumber("DynamicRangeDb", fields) : 0.0, drawing);
-    drawing.finish(vtkPolyData::GetData(output));
+    const double rangeDb = fields->HasArray("DynamicRangeDb") ? sono::readNumber("DynamicRangeDb", fields) : 0.0;
+    if (!this->Last || this->Last->rangeDb != rangeDb || !sono::same(this->Last->geometry, geometry))
+    {
+      this->Last = nullptr;
+      auto drawn = std::make_unique<Drawn>();
+      drawn->geometry = geometry;
+      drawn->rangeDb = rangeDb;
+      FlatDrawing drawing;
+      draw(geometry, rangeDb, drawing);
+      drawing.finish(drawn->drawing);
+      this->Last = std::move(drawn);
+    }
+    vtkPolyData::GetData(output)->ShallowCopy(this->Last->drawing); // without the input's fields, which VTK passes on
   });
 }

@@ -4,6 +4,8 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
+#include <memory>
+
 /**
  * @class vtkSonoFlatScale
  * @brief What a scanner draws beside its image: rulers, a grey bar and the probe's marker
@@ -14,8 +16,9 @@
  * with its number each five (each centimetre where there are fewer than eight); below the area the same across, from
  * its middle; right of its lower part a bar of the greys from black to white, with the dB of its ends where the input
  * says its dynamic range; right of the face, clear of the fan, a dot on the side of the probe's marker, to which the
- * lateral direction points. The cell array "Part" is 0 on the ruler, 1 on the marker, 2 on the lateral ruler and 3 on
- * the grey bar; "Color" is RGB. Of a matrix's volume it is that of the plane in the middle.
+ * lateral direction points. The same probe's is drawn once; it has no field data. The cell array "Part" is 0 on the
+ * ruler, 1 on the marker, 2 on the lateral ruler and 3 on the grey bar; "Color" is RGB. Of a matrix's volume it is that
+ * of the plane in the middle.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoFlatScale : public vtkPolyDataAlgorithm
 {
@@ -34,6 +37,9 @@ protected:
 private:
   vtkSonoFlatScale(const vtkSonoFlatScale&) = delete;
   void operator=(const vtkSonoFlatScale&) = delete;
+
+  struct Drawn;
+  std::unique_ptr<Drawn> Last;
 };
 
 #endif

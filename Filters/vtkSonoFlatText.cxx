@@ -119,6 +119,8 @@ int vtkSonoFlatText::RequestData(vtkInformation*, vtkInformationVector** input, 
     vtkNew<vtkStringArray> text;
     text->SetName("Text");
     text->InsertNextValue(textOf(vtkImageData::GetData(input[0])->GetFieldData()));
-    vtkTable::GetData(output)->AddColumn(text);
+    vtkTable* table = vtkTable::GetData(output);
+    table->AddColumn(text);
+    table->GetFieldData()->Initialize(); // of the input's, which VTK passes on, nothing that shows a text has a use
   });
 }
