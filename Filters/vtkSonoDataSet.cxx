@@ -169,7 +169,6 @@ int vtkSonoDataSet::TakeImage()
 {
   int found = NO_IMAGE_LEFT;
   sono::runWork(this, [&] {
-    this->ReadPlan();
     if (!this->Stream)
     {
       return;
@@ -180,9 +179,13 @@ int vtkSonoDataSet::TakeImage()
       found = this->Stream->hasEnded() ? NO_IMAGE_LEFT : IMAGE_AWAITED;
       return;
     }
-    this->Taken = std::make_unique<sono::DataSetImage>(std::move(taken->image));
-    this->TakenNumber = int(taken->index);
-    this->ImageNumber = this->TakenNumber;
+    this->ReadPlan(); // not each time that somebody asks in vain; it ends the stream where the file has changed
+    if (!this->Stream)
+    {
+      return;
+    }
+    this->ImageNumber = int(taken->index);
+    this->Taken = std::make_unique<sono::StreamedImage>(std::move(*taken));
     this->Modified();
     found = IMAGE_TAKEN;
   });
@@ -231,9 +234,9 @@ void vtkSonoDataSet::WriteFolder()
 
 void vtkSonoDataSet::GiveImage(vtkImageData* image)
 {
-  const bool isTaken = this->Taken && this->TakenNumber == this->ImageNumber;
+  const bool isTaken = this->Taken && this->Taken->index == this->ImageNumber;
   const sono::DataSetImage made =
-    isTaken ? std::move(*this->Taken) : this->Imager->make(this->ImageNumber, sono::progressOf(this));
+    isTaken ? std::move(this->Taken->image) : this->Imager->make(this->ImageNumber, sono::progressOf(this));
   this->Taken = nullptr;
   image->Initialize();
   image->SetDimensions(made.width, made.height, 1);

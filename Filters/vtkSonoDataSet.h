@@ -11,8 +11,8 @@ namespace sono {
 class DataSetImager;
 class DataSetPlan;
 class ImageStream;
-struct DataSetImage;
 struct DataSetShare;
+struct StreamedImage;
 }
 
 /**
@@ -137,8 +137,7 @@ private:
   std::shared_ptr<const sono::DataSetPlan> Plan;
   std::unique_ptr<sono::DataSetImager> Imager; // keeps the anatomy from image to image
   std::unique_ptr<sono::ImageStream> Stream;
-  std::unique_ptr<sono::DataSetImage> Taken; // of the stream
-  int TakenNumber = 0;
+  std::unique_ptr<sono::StreamedImage> Taken; // of the stream, until an update has given it
 };
 
 #endif

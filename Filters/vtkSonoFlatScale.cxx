@@ -212,7 +212,6 @@ int vtkSonoFlatScale::RequestData(vtkInformation*, vtkInformationVector** input,
     const double rangeDb = fields->HasArray("DynamicRangeDb") ? sono::readNumber("DynamicRangeDb", fields) : 0.0;
     if (!this->Last || this->Last->rangeDb != rangeDb || !sono::same(this->Last->geometry, geometry))
     {
-      this->Last = nullptr;
       auto drawn = std::make_unique<Drawn>();
       drawn->geometry = geometry;
       drawn->rangeDb = rangeDb;

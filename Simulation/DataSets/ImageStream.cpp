@@ -2,7 +2,6 @@
 
 #include "DataSets/ImageWorkers.h"
 
-#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -77,22 +76,6 @@ struct ImageStream::Queue
     const std::lock_guard<std::mutex> lock(mutex);
     return stop;
   }
-  /// While the mutex is held.
-  std::optional<StreamedImage> take()
-  {
-    if (made.empty())
-    {
-      if (failure)
-      {
-        std::rethrow_exception(std::exchange(failure, nullptr));
-      }
-      return std::nullopt;
-    }
-    StreamedImage first = std::move(made.front());
-    made.pop_front();
-    changed.notify_all();
-    return first;
-  }
 
   DataSetImager own;
   std::mutex mutex;
@@ -108,24 +91,8 @@ struct ImageStream::Queue
 ImageStream::ImageStream(const DataSetImager& imager, const DataSetShare& share, const Wanted& wanted, int workers)
   : queue_(std::make_unique<Queue>(imager))
 {
-  const DataSetPlan& plan = imager.plan();
   const int threads = workers > 0 ? workers : imageWorkers(imager);
-  const std::int64_t perExam = plan.set().imagesPerExam;
-  std::vector<PlannedRange> units = workUnits(plan, plan.imagesOf(share), threads);
-  const auto isUnwanted = [&](const PlannedRange& unit) {
-    for (std::int64_t image = unit.first; image < unit.end; image += perExam)
-    {
-      for (std::int64_t index = image; index < image + perExam; ++index)
-      {
-        if (!wanted || wanted(index))
-        {
-          return false;
-        }
-      }
-    }
-    return true;
-  };
-  units.erase(std::remove_if(units.begin(), units.end(), isUnwanted), units.end());
+  const std::vector<PlannedRange> units = workUnits(imager.plan(), imager.plan().imagesOf(share), threads);
   queue_->most = std::size_t(threads * aheadOfWorker);
   queue_->thread = std::thread([queue = queue_.get(), units, threads, wanted] { queue->run(units, threads, wanted); });
 }
@@ -148,15 +115,20 @@ bool ImageStream::hasEnded() const
 
 std::optional<StreamedImage> ImageStream::takeMade()
 {
-  const std::lock_guard<std::mutex> lock(queue_->mutex);
-  return queue_->take();
-}
-
-std::optional<StreamedImage> ImageStream::next()
-{
-  std::unique_lock<std::mutex> lock(queue_->mutex);
-  queue_->changed.wait(lock, [&] { return queue_->ended || !queue_->made.empty(); });
-  return queue_->take();
+  Queue& queue = *queue_;
+  const std::lock_guard<std::mutex> lock(queue.mutex);
+  if (queue.made.empty())
+  {
+    if (queue.failure)
+    {
+      std::rethrow_exception(std::exchange(queue.failure, nullptr));
+    }
+    return std::nullopt;
+  }
+  StreamedImage first = std::move(queue.made.front());
+  queue.made.pop_front();
+  queue.changed.notify_all();
+  return first;
 }
 
 } // namespace sono

@@ -40,8 +40,6 @@ public:
   /// One that is made by now, if any. Throws what making it has thrown, once those that were made before are taken:
   /// Error as DataSetImager.
   std::optional<StreamedImage> takeMade();
-  /// The next one, waited for; none at the end. Throws as takeMade().
-  std::optional<StreamedImage> next();
 
 private:
   struct Queue;

@@ -21,8 +21,9 @@ using ExamWork =
   std::function<void(DataSetImager&, const PlannedRange& exam, const std::function<void()>& done, const Progress&)>;
 
 /// Runs the work for each exam of all units, in their order on the calling thread by `imager`, or each unit on one of
-/// several threads by an imager of its own. The calling thread hears of each image that is done, and is asked now and
-/// then whether to go on. Throws what a work throws, the first of several, when all have stopped; Aborted.
+/// several threads by an imager of its own, with loops on that thread's core but for bodies. The calling thread hears
+/// of each image that is done, and is asked now and then whether to go on. Throws what a work throws, the first of
+/// several, when all have stopped; Aborted.
 void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int workers, const ExamWork& work,
               const std::function<void()>& hear, const Progress& keepsOn);
 

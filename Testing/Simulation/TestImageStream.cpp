@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <vector>
@@ -19,6 +20,18 @@ using sono::testing::expectContains;
 
 namespace {
 
+/// Waited for; none at the end.
+std::optional<StreamedImage> next(ImageStream& stream)
+{
+  std::optional<StreamedImage> taken = stream.takeMade();
+  while (!taken && !stream.hasEnded())
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    taken = stream.takeMade();
+  }
+  return taken;
+}
+
 class AStream : public sono::testing::BallDataSet
 {
 protected:
@@ -26,16 +39,16 @@ protected:
   {
     DataSetImager alone(plan(), Device::Cpu);
     std::vector<std::int64_t> order;
-    while (const auto next = stream.next())
+    while (const auto taken = next(stream))
     {
-      order.push_back(next->index);
-      const DataSetImage made = alone.make(next->index);
-      EXPECT_EQ(next->image.grey, made.grey) << next->index;
-      EXPECT_EQ(next->image.mask, made.mask) << next->index;
-      EXPECT_EQ(next->image.info, made.info) << next->index;
+      order.push_back(taken->index);
+      const DataSetImage made = alone.make(taken->index);
+      EXPECT_EQ(taken->image.grey, made.grey) << taken->index;
+      EXPECT_EQ(taken->image.mask, made.mask) << taken->index;
+      EXPECT_EQ(taken->image.info, made.info) << taken->index;
     }
     EXPECT_TRUE(stream.hasEnded());
-    EXPECT_FALSE(stream.next());
+    EXPECT_FALSE(next(stream));
     EXPECT_FALSE(stream.takeMade());
     return order;
   }
@@ -93,20 +106,12 @@ TEST_F(AStream, IsAFewImagesAhead)
   {
     std::set<std::int64_t> begun;
     std::mutex mutex;
-    bool hasBegun = false;
     const auto isBegun = [&](std::int64_t index) {
       const std::lock_guard<std::mutex> lock(mutex);
-      if (hasBegun)
-      {
-        begun.insert(index);
-      }
+      begun.insert(index);
       return true;
     };
     ImageStream stream(imager, {}, isBegun, workers);
-    {
-      const std::lock_guard<std::mutex> lock(mutex);
-      hasBegun = true;
-    }
     while (!stream.takeMade()) // which does not wait
     {
       EXPECT_FALSE(stream.hasEnded());
@@ -135,7 +140,7 @@ TEST_F(AStream, SaysWhatWentWrong)
     ImageStream stream(imager, {}, {}, workers);
     int came = 0;
     const std::string said = errorOf([&] {
-      while (stream.next())
+      while (next(stream))
       {
         ++came;
       }
@@ -144,6 +149,6 @@ TEST_F(AStream, SaysWhatWentWrong)
     EXPECT_TRUE(workers > 1 || came == 6);
     EXPECT_LE(came, 6);
     EXPECT_TRUE(stream.hasEnded());
-    EXPECT_FALSE(stream.next());
+    EXPECT_FALSE(next(stream));
   }
 }
