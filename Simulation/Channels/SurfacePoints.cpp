@@ -47,7 +47,7 @@ public:
     for (std::size_t f = 0; f < faces.size(); ++f)
     {
       const int row = surfaces_.rows().row(faces[f].below, faces[f].above);
-      const Vec3f middle = faceMiddleMm(faces[f], spacing);
+      const Vec3f middle = faceMiddleMm(faces[f].voxel, faces[f].axis, spacing);
       const auto at = table.counts(row) ? placeIn(middle) : std::nullopt;
       if (!at || !(mostWeight(middle, 2.0f * longestMm, beams_[std::size_t(at->nearest())], grid_) > 0.0f))
       {

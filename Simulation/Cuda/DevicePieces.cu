@@ -135,7 +135,7 @@ __global__ void __launch_bounds__(threads)
   {
     return;
   }
-  const Vec3f middle = faceMiddleMm(face, spacingMm);
+  const Vec3f middle = faceMiddleMm(face.voxel, face.axis, spacingMm);
   const auto withTables = [&](Beam& beam) {
     beam.kind = kind;
     beam.field = &tables.field;

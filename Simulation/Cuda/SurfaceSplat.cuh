@@ -5,6 +5,7 @@
 #include "Cuda/SplatChunk.cuh"
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/SurfacePiece.h"
+#include "Scene/SurfaceFace.h"
 
 #include <type_traits>
 
@@ -144,8 +145,16 @@ __global__ void __launch_bounds__(surfaceThreads) splatSurfaceGroups(SurfaceLaun
       const SurfacePiece& item = set.pieces[p];
       const PieceBounds bounds = pieceBounds(item, set.longestStepMm);
       const bool isCoarse = set.nets.isCoarsest(set.nets.coherentCuts(item));
-      return hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse,
-                         surfaceRow(set.media, item.below, item.above), beam, splat.grid, set.table, intensity);
+      const int row = surfaceRow(set.media, item.below, item.above);
+      SurfaceHearing heard = hearSurface(item.positionMm, bounds.normal, bounds.radiusMm, isCoarse, row, beam,
+                                         splat.grid, set.table, intensity);
+      // Also where only other lines, or other images, had the piece fitted.
+      const bool isHeard = (heard.diffuse || heard.coherent) &&
+                           mayHearSurface(faceMiddleMm(item.voxel, item.axis, set.nets.spacingMm), item.roughNormal,
+                                          2.0f * set.longestStepMm, row, beam, splat.grid, set.table);
+      heard.diffuse = heard.diffuse && isHeard;
+      heard.coherent = heard.coherent && isHeard;
+      return heard;
     }
     else
     {

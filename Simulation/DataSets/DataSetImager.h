@@ -39,8 +39,8 @@ struct DataSetImage
 using DataSetSink = std::function<void(std::int64_t index, DataSetImage image)>;
 
 /// Makes the images of a plan, whichever are asked for. Keeps the last patient's labels and the last body's scene, so
-/// that images of one body are quick one after the other. An image does not depend on those before it, on a CPU to the
-/// bit, on a GPU but for what few surfaces echo (Data/docs/datasets.md). Not for several threads at a time.
+/// that images of one body are quick one after the other. An image does not depend on those before it, to the bit. Not
+/// for several threads at a time.
 ///
 /// A patient's views are looked for once, with the file's probe and the table's tissues. One that is not obtainable is
 /// replaced by the next in the patient's list that is.

@@ -20,7 +20,7 @@ struct DataSetTally
 /// Writes a process's share of a data set into a folder, those images that are not there yet. Each file is written
 /// whole or not at all, the JSON file of an image after its picture and its mask; an image is there where its JSON file
 /// is. So a process that was killed, however, is started again with the same arguments, and goes on; the folder is then
-/// the same as if it had not been, on a CPU to the byte. So it is however many processes share the work.
+/// the same, to the byte, as if it had not been. So it is however many processes share the work.
 ///
 /// A folder that nnU-Net takes: imagesTr and imagesTs with CASE_0000.png, labelsTr and labelsTs with CASE.png, info
 /// with CASE.json, dataset.json and splits_final.json. One that MONAI takes: images, labels and info, and the data list

@@ -71,18 +71,20 @@ struct SurfaceEchoes::Room
 {
   FaceList faces;
   std::vector<std::size_t> taken;       ///< of the brick's faces, those in the list
-  std::vector<std::int32_t> mayBeHeard; ///< by face of the list
+  std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
   PieceList pieces;
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
   std::vector<HeardList> heard;             ///< by line
   PointList diffuse, coherent;
 
-  void hear(const std::vector<std::size_t>& seeing, const Group& group)
+  /// Pieces of faces, or targets, which have none.
+  void hear(const std::vector<std::size_t>& seeing, bool haveFaces, const Group& group)
   {
     heard.resize(group.beams.size());
     for (const std::size_t i : seeing)
     {
-      hearPieces(pieces, group.beams[i].beam, group.grids[i], group.table, group.intensities[i], heard[i]);
+      hearPieces(pieces, haveFaces ? mayHear[i].data() : nullptr, group.beams[i].beam, group.grids[i], group.table,
+                 group.intensities[i], heard[i]);
     }
   }
   /// Whether any line hears a piece, by one of its two echoes.
@@ -165,14 +167,15 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
     if (isTaken(face))
     {
       const int row = rows_->row(face.below, face.above);
-      room.faces.push(faceMiddleMm(face, pieces_.spacingMm()), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
+      room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
       room.taken.push_back(f);
     }
   }
-  room.mayBeHeard.assign(room.taken.size(), 0);
+  room.mayHear.resize(group.beams.size());
   for (const std::size_t i : seeing)
   {
-    markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayBeHeard.data());
+    room.mayHear[i].resize(room.taken.size());
+    markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayHear[i].data());
   }
   room.pieces.clear();
   room.pieceOf.clear();
@@ -180,9 +183,16 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
   {
     const std::size_t f = room.taken[n];
     const int row = rows_->row(faces[f].below, faces[f].above);
-    const SurfacePiece* piece = room.mayBeHeard[n] && group.table.counts(row) ? pieces_.piece(brick, f) : nullptr;
+    const bool isHeard =
+      group.table.counts(row) &&
+      std::any_of(seeing.begin(), seeing.end(), [&](std::size_t i) { return room.mayHear[i][n] != 0; });
+    const SurfacePiece* piece = isHeard ? pieces_.piece(brick, f) : nullptr;
     if (piece)
     {
+      for (const std::size_t i : seeing)
+      {
+        room.mayHear[i][room.pieceOf.size()] = room.mayHear[i][n]; // none overtakes its face
+      }
       const PieceBounds bounds = pieceBounds(*piece, longestMm);
       room.pieces.push(piece->positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(*piece)),
                        row);
@@ -267,7 +277,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
         room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
       }
       room.coherent = room.diffuse;
-      room.hear(seeing, group);
+      room.hear(seeing, false, group);
       room.addTo(seeing, group);
     });
   }
@@ -278,7 +288,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
     findPieces(brick, seeing, group, room);
     if (room.pieces.count > 0)
     {
-      room.hear(seeing, group);
+      room.hear(seeing, true, group);
       expand(seeing, room);
       room.addTo(seeing, group);
     }

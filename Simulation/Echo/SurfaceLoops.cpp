@@ -471,14 +471,14 @@ void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid
   for (std::size_t n = 0; n < std::size_t(faces.count); ++n)
   {
     const bool sees =
-      !heard[n] && faces.seen[n] != 0.0f &&
+      faces.seen[n] != 0.0f &&
       (isGaussian(beam) || mostWeight({ faces.x[n], faces.y[n], faces.z[n] }, radiusMm, beam, grid) > 0.0f);
-    heard[n] |= sees ? 1 : 0;
+    heard[n] = sees ? 1 : 0;
   }
 }
 
-void hearPieces(const PieceList& pieces, const Beam& beam, const LineGrid& grid, const SurfaceTable& table,
-                const SurfaceIntensity& intensity, HeardList& heard)
+void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam& beam, const LineGrid& grid,
+                const SurfaceTable& table, const SurfaceIntensity& intensity, HeardList& heard)
 {
   static constexpr float everywhere = 1.0f;
   const SurfaceIntensity known = intensity.bins ? intensity : SurfaceIntensity{ &everywhere, 1, 0.0f };
@@ -502,7 +502,8 @@ void hearPieces(const PieceList& pieces, const Beam& beam, const LineGrid& grid,
     {
       heard.most[at] = mostWeight({ pieces.x[at], pieces.y[at], pieces.z[at] }, pieces.radiusMm[at], beam, grid);
     }
-    const float arrives = shaped > surfaceFaintestLit && heard.most[at] > 0.0f ? shaped : 0.0f;
+    const bool isHeard = shaped > surfaceFaintestLit && heard.most[at] > 0.0f && (!mayHear || mayHear[n]);
+    const float arrives = isHeard ? shaped : 0.0f;
     heard.diffuse[at] = heard.diffuse[at] > 0.0f ? arrives : 0.0f;
     heard.coherent[at] = heard.coherent[at] > 0.0f ? arrives : 0.0f;
     heard.anyDiffuse |= heard.diffuse[at] > 0.0f;

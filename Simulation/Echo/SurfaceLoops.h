@@ -19,12 +19,12 @@ struct HeardList
   bool anyCoherent = false;
 };
 
-/// mayHearSurface of each face: sets `heard`, as long as the list, to 1 where it is so.
+/// mayHearSurface of each face: `heard`, as long as the list, is 1 where it is so, otherwise 0.
 void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard);
 
-/// hearSurface of each piece.
-void hearPieces(const PieceList& pieces, const Beam& beam, const LineGrid& grid, const SurfaceTable& table,
-                const SurfaceIntensity& intensity, HeardList& heard);
+/// hearSurface of each piece whose face the beam may hear; null: of all.
+void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam& beam, const LineGrid& grid,
+                const SurfaceTable& table, const SurfaceIntensity& intensity, HeardList& heard);
 
 /// addDiffuse and addCoherent of each point, to a line's sum.
 void addDiffusePoints(const PointList& points, const HeardList& heard, const Beam& beam, const LineGrid& grid,

@@ -29,6 +29,7 @@ struct SurfacePiece
   std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
   std::uint8_t above;
   Vec3i voxel; ///< the one below
+  Vec3f roughNormal; ///< its face's
 };
 
 /// A component of v along the axis `axis` plus 0, 1 or 2; the other way round, the vector of three such components.

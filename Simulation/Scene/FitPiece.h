@@ -60,6 +60,7 @@ SONO_LANES inline SurfacePiece fitPiece(StepMap& map, const Vec3f& spacing, cons
   piece.below = face.below;
   piece.above = face.above;
   piece.voxel = voxel;
+  piece.roughNormal = face.roughNormal;
   return piece;
 }
 

@@ -1,6 +1,8 @@
 #include "GpuThorax.h"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <memory>
 #include <vector>
 
@@ -82,6 +84,43 @@ TEST(GpuPictures, AProbeThatMovesReverberatesAsOneThatRests)
   Simulator(scene).sweep({ input.pose, moved }, input.settings, false, [&](const SweptPictures& swept) {
     EXPECT_TRUE(std::equal(alone.grey.begin(), alone.grey.end(), swept.grey));
   });
+}
+
+/// Surfaces are fitted where some image may hear them, and stay.
+TEST(GpuPictures, DoNotDependOnSurfacesThatOthersHadFitted)
+{
+  SONO_GPU_OR_SKIP();
+  ImageInput input = exam()[1]; // whose second harmonic hears surfaces up to some slope alone
+  input.settings.echo.centreFrequencyMHz = 1.7;
+  input.settings.matchStages();
+  const ProbePose pose = input.pose;
+  std::vector<ProbePose> poses;
+  for (int i = 0; i < 8; ++i)
+  {
+    const double turn = 0.4 * i;
+    ProbePose turned = pose;
+    turned.lateral = std::cos(turn) * pose.lateral + std::sin(turn) * glm::cross(pose.axial, pose.lateral);
+    turned.axial = pose.axial + 0.5 * std::sin(turn) * pose.lateral;
+    poses.push_back(turned.orthonormalized());
+  }
+  const auto rfOf = [&](const std::vector<ProbePose>& shown) {
+    const std::shared_ptr<Scene> scene = makePhantomScene(makeThoraxPhantom(1.5));
+    scene->shareRegion({ Vec3i(0), scene->placement().size });
+    Simulator simulator(scene);
+    std::vector<std::vector<std::complex<float>>> iq;
+    for (const ProbePose& each : shown)
+    {
+      iq.push_back(simulator.rf({ each, input.settings, {}, nullptr }).host().iq);
+    }
+    return iq;
+  };
+  const auto inOrder = rfOf(poses);
+  std::reverse(poses.begin(), poses.end());
+  const auto inReverse = rfOf(poses);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+  {
+    EXPECT_TRUE(inOrder[i] == inReverse[poses.size() - 1 - i]) << i;
+  }
 }
 
 } // namespace
