@@ -9,6 +9,7 @@
 #include "SonoLabelImage.h"
 #include "SonoPicture.h"
 #include "SonoStage.h"
+#include "vtkSonoGpuImage.h"
 
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
@@ -104,6 +105,10 @@ std::shared_ptr<const sono::DataSetPlan> vtkSonoDataSet::ReadPlan()
     this->Plan = nullptr;
     this->Plan = std::make_shared<const sono::DataSetPlan>(sono::readDataSet(path, dataFolder));
     this->Imager = std::make_unique<sono::DataSetImager>(this->Plan);
+    if (this->KeepsOnGpu)
+    {
+      this->Imager->keepOnGpu();
+    }
     this->Stamp = stamp;
   }
   return this->Plan;
@@ -198,6 +203,20 @@ void vtkSonoDataSet::EndStream()
   this->Taken = nullptr;
 }
 
+bool vtkSonoDataSet::KeepOnGpu()
+{
+  return sono::runWork(this, [&] {
+    this->ReadPlan();
+    this->Imager->keepOnGpu();
+    this->KeepsOnGpu = true;
+  });
+}
+
+vtkSonoGpuImage* vtkSonoDataSet::GetGpuImage()
+{
+  return this->GpuImage;
+}
+
 int vtkSonoDataSet::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   return sono::announceStage(this, [&] {
@@ -238,6 +257,7 @@ void vtkSonoDataSet::GiveImage(vtkImageData* image)
   const sono::DataSetImage made =
     isTaken ? std::move(this->Taken->image) : this->Imager->make(this->ImageNumber, sono::progressOf(this));
   this->Taken = nullptr;
+  this->GpuImage.TakeReference(vtkSonoGpuImage::NewFrom(made));
   image->Initialize();
   image->SetDimensions(made.width, made.height, 1);
   image->SetOrigin(made.lateralMinMm, made.axialMinMm, 0.0);

@@ -2,6 +2,7 @@
 #define vtkSonoDataSet_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkSmartPointer.h"
 #include "vtkSonoFiltersModule.h" // for export macro
 
 #include <memory>
@@ -14,6 +15,8 @@ class ImageStream;
 struct DataSetShare;
 struct StreamedImage;
 }
+
+class vtkSonoGpuImage;
 
 /**
  * @class vtkSonoDataSet
@@ -104,6 +107,15 @@ public:
 
   ///@{
   /**
+   * Images stay on the GPU as well, that of the last update as GetGpuImage says. False after an error, where no GPU makes
+   * them. By default they do not, and that is null.
+   */
+  bool KeepOnGpu();
+  vtkSonoGpuImage* GetGpuImage();
+  ///@}
+
+  ///@{
+  /**
    * Of the last update with a folder: images that were written and how many a second.
    */
   vtkGetMacro(WrittenImages, vtkIdType);
@@ -137,6 +149,8 @@ private:
   std::shared_ptr<const sono::DataSetPlan> Plan;
   std::unique_ptr<sono::DataSetImager> Imager; // keeps the anatomy from image to image
   std::unique_ptr<sono::ImageStream> Stream;
+  bool KeepsOnGpu = false;
+  vtkSmartPointer<vtkSonoGpuImage> GpuImage;
   std::unique_ptr<sono::StreamedImage> Taken; // of the stream, until an update has given it
 };
 

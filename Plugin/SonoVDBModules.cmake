@@ -33,7 +33,7 @@ vtk_module_wrap_python(
   INSTALL_EXPORT SonoVDB)
 
 # Beside them in the same package what is Python itself.
-foreach(file __init__.py datasets.py elastix.py registration.py volume.py)
+foreach(file __init__.py datasets.py dlpack.py elastix.py registration.py volume.py)
   configure_file("${CMAKE_CURRENT_LIST_DIR}/python/${file}" "${CMAKE_BINARY_DIR}/${sono_python_dir}/sonovdb/${file}" COPYONLY)
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/python/${file}" DESTINATION "${sono_python_dir}/sonovdb" COMPONENT python)
 endforeach()

@@ -39,6 +39,8 @@ struct SeenPicture
 {
   ScanPicture picture;
   std::shared_ptr<const TracedLines> arrivals;
+  std::shared_ptr<const DevicePicture> onDevice; ///< null where it was made on the host
+  int numberOnDevice = 0;                        ///< of the images there
 };
 
 /// Composes the stages, each on the CPU or the GPU as its settings want, and keeps the last result of each. Asked again

@@ -96,7 +96,7 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
     arrived->intensity = imageOf(arrivals.intensity, i, group.size());
     arrived->depthOffsetMm = imageOf(arrivals.depthOffsetMm, i, group.size());
     made.push_back(
-      { { imageOf(copy.bytes, i, group.size()), copy.mask, imageOf(copy.labels, i, group.size()) }, arrived });
+      { { imageOf(copy.bytes, i, group.size()), copy.mask, imageOf(copy.labels, i, group.size()) }, arrived, picture, int(i) });
   }
   return made;
 }
@@ -144,7 +144,8 @@ std::vector<SeenPicture> Simulator::pictures(const std::vector<ImageInput>& inpu
     {
       const ImageResult result = image(first, ofGroup);
       const TracedResult lines = traced(first);
-      made[group.front()] = { picture(result, first.settings.geometry, first.pose, lines), arrivals(lines) };
+      made[group.front()] = { picture(result, first.settings.geometry, first.pose, lines), arrivals(lines),
+                              result.plane().onDevice(), 0 };
     }
     left = std::move(others);
   }

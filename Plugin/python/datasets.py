@@ -8,6 +8,7 @@ import uuid
 
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from .dlpack import GpuArray
 from .vtkSonoFilters import vtkSonoDataSet
 
 
@@ -23,6 +24,9 @@ class Dataset:
     mask n for the n-th mask group; and all settings and flags as a dict. Anything wrong is a ValueError with one
     sentence.
 
+    on_gpu  the two arrays are in the memory of the GPU that makes the images, for torch.from_dlpack and whoever else speaks
+            DLPack, without a copy
+
     A loop over it is the quick way: threads make images ahead while the loop learns. On a GPU they come as they are
     made, those of up to sixteen bodies among each other, as quick as they are written into a folder; on a CPU in the
     order of their numbers. One loop at a time: another one ends the one before.
@@ -31,7 +35,7 @@ class Dataset:
     image is then made by itself, when it is asked for.
     """
 
-    def __init__(self, file=None, split=None, part=0, parts=1):
+    def __init__(self, file=None, split=None, part=0, parts=1, on_gpu=False):
         if split not in (None, "train", "validation", "test"):
             raise ValueError(f"split is '{split}': choose train, validation or test, or None for all")
         self._filter = vtkSonoDataSet()
@@ -43,6 +47,9 @@ class Dataset:
         self._filter.SetPart(part)
         self._filter.SetParts(parts)
         first, end = self._filter.GetFirstImage(), self._filter.GetEndImage()
+        self._on_gpu = on_gpu
+        if on_gpu:
+            self._filter.KeepOnGpu()
         self._refuse_errors()
         if split is None:
             self._numbers = range(first, end)
@@ -81,8 +88,11 @@ class Dataset:
         self._refuse_errors()
         made = self._filter.GetOutput()
         width, height, _ = made.GetDimensions()
-        image, mask = (vtk_to_numpy(made.GetPointData().GetArray(name)).reshape(height, width).copy()
-                       for name in ("BMode", "Mask"))
+        if self._on_gpu:
+            image, mask = (GpuArray(self._filter.GetGpuImage(), name) for name in ("BMode", "Mask"))
+        else:
+            image, mask = (vtk_to_numpy(made.GetPointData().GetArray(name)).reshape(height, width).copy()
+                           for name in ("BMode", "Mask"))
         return image, mask, json.loads(made.GetFieldData().GetAbstractArray("Info").GetValue(0))
 
     def _hear(self):

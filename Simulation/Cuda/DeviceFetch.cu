@@ -15,6 +15,13 @@ __global__ void echoesFromSums(const EchoSum* sums, std::size_t count, float per
   }
 }
 
+int currentDevice()
+{
+  int device = 0;
+  check(cudaGetDevice(&device), "asking for its number");
+  return device;
+}
+
 } // namespace
 
 /// Holds what is read until it has been.
@@ -149,6 +156,42 @@ PictureCopy DeviceImager::wait(const std::shared_ptr<Download>& download)
   const cudaError_t error = await(download->done);
   guarded([&](Work&, cudaStream_t) { check(error, "computing"); });
   return download->copy;
+}
+
+DeviceBytes DeviceImager::bytesOf(std::shared_ptr<const DevicePicture> picture, int image)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    check(await(stream), "computing");
+    const std::size_t count = picture->bytes.size() / std::size_t(picture->images);
+    return DeviceBytes{ picture->bytes.data() + std::size_t(image) * count, count, currentDevice(), picture, w.lane };
+  });
+}
+
+DeviceBytes DeviceImager::upload(const std::vector<std::uint8_t>& bytes)
+{
+  return guarded([&](Work& w, cudaStream_t stream) {
+    const auto memory = std::make_shared<DeviceArray<std::uint8_t>>();
+    memory->upload(bytes, stream, w.traffic);
+    check(await(stream), "uploading");
+    return DeviceBytes{ memory->data(), bytes.size(), currentDevice(), memory, w.lane };
+  });
+}
+
+void giveBackAfter(DeviceBytes bytes, std::uintptr_t stream)
+{
+  if (!bytes.memory)
+  {
+    return;
+  }
+  const OnLane lane(bytes.lane);
+  const cudaEvent_t asked = openEvent();
+  // A device that was lost fails here; its memory is gone as well.
+  if (cudaEventRecord(asked, reinterpret_cast<cudaStream_t>(stream)) == cudaSuccess)
+  {
+    cudaStreamWaitEvent(deviceStream(), asked);
+  }
+  cudaEventDestroy(asked);
+  bytes.memory = nullptr; // in the lane's order, if nobody else holds it
 }
 
 } // namespace sono

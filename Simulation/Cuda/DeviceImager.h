@@ -2,6 +2,7 @@
 
 #include "Core/Progress.h"
 #include "Core/SharedSpan.h"
+#include "Cuda/DeviceBytes.h"
 #include "Cuda/ImageJob.h"
 
 #include <complex>
@@ -124,6 +125,11 @@ public:
   std::shared_ptr<Download> beginDownload(std::shared_ptr<const DevicePicture> picture,
                                           std::shared_ptr<const DeviceLabelSlice> labels = nullptr);
   PictureCopy wait(const std::shared_ptr<Download>& download);
+
+  /// The bytes of one of a picture's images, where they are; they are there.
+  DeviceBytes bytesOf(std::shared_ptr<const DevicePicture> picture, int image);
+  /// Bytes that are there when this returns.
+  DeviceBytes upload(const std::vector<std::uint8_t>& bytes);
 
   /// Images of this many bytes (see bytesPerImage) that fit beside each other, at least 1.
   int imagesThatFit(double bytesPerImage);

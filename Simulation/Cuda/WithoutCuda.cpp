@@ -112,6 +112,18 @@ PictureCopy DeviceImager::wait(const std::shared_ptr<Download>&)
   return {};
 }
 
+DeviceBytes DeviceImager::bytesOf(std::shared_ptr<const DevicePicture>, int)
+{
+  return {};
+}
+
+DeviceBytes DeviceImager::upload(const std::vector<std::uint8_t>&)
+{
+  return {};
+}
+
+void giveBackAfter(DeviceBytes, std::uintptr_t) {}
+
 int DeviceImager::imagesThatFit(double)
 {
   return 1;

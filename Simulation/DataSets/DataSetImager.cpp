@@ -3,6 +3,7 @@
 #include "Core/Entrance.h"
 #include "Core/MadeOnce.h"
 #include "Core/ParallelFor.h"
+#include "Cuda/DeviceImager.h"
 #include "Cuda/RunOnDevice.h"
 #include "DataSets/BodyRegion.h"
 #include "DataSets/DataSetInfo.h"
@@ -183,6 +184,7 @@ DataSetImager::DataSetImager(std::shared_ptr<const DataSetPlan> plan, Device dev
 DataSetImager DataSetImager::another() const
 {
   DataSetImager imager(plan_, device_);
+  imager.keepsOnGpu_ = keepsOnGpu_;
   imager.shared_ = shared_;
   return imager;
 }
@@ -194,6 +196,16 @@ DataSetImager::~DataSetImager() = default;
 bool DataSetImager::runsOnGpu() const
 {
   return runsOnDevice(plan_->settings(plan_->image(0)).image(plan_->set().pixelMm, device_).tracing);
+}
+
+void DataSetImager::keepOnGpu()
+{
+  if (!runsOnGpu())
+  {
+    throw Error("the images cannot stay on a GPU, since none makes them: " + cudaStatus().what +
+                "; take them from the host.");
+  }
+  keepsOnGpu_ = true;
 }
 
 std::shared_ptr<const DataSetImager::Patient> DataSetImager::makePatient(const PlannedBody& body,
@@ -441,7 +453,7 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
   DataSetFacts facts = placed.facts;
   const PlaneImage layout = plan_->layout(facts.image);
   DataSetImage made{
-    layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}, {}, {}
+    layout.width, layout.height, layout.pixelMm, layout.lateralMinMm, layout.axialMinMm, {}, {}, {}, {}, {}, {}, {}, {}
   };
   made.grey.assign(seen.picture.grey.begin(), seen.picture.grey.end());
   made.mask.resize(made.grey.size());
@@ -462,6 +474,12 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
   {
     made.channels = pixelChannels(channels, input, body_->simulator, seen.picture, made.mask);
     made.beam = beamChannels(channels, input, body_->simulator);
+  }
+  if (keepsOnGpu_)
+  {
+    DeviceImager& imager = DeviceImager::instance();
+    made.greyOnGpu = std::make_shared<const DeviceBytes>(imager.bytesOf(seen.onDevice, seen.numberOnDevice));
+    made.maskOnGpu = std::make_shared<const DeviceBytes>(imager.upload(made.mask));
   }
   const std::vector<MaskGroup>& groups = plan_->set().masks;
   const std::vector<double> visible = sight.visibleShares(made.mask, groups.size());

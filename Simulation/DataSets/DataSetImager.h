@@ -13,6 +13,7 @@
 
 namespace sono {
 
+struct DeviceBytes;
 struct SeenPicture;
 
 /// A picture of a data set with its mask, rows from the transducer on, lateral fastest.
@@ -34,6 +35,11 @@ struct DataSetImage
   ChannelImage channels;
   ChannelImage beam;
   ///@}
+  ///@{
+  /// The same bytes as `grey` and `mask`, where the imager keeps them on a GPU; else null.
+  std::shared_ptr<const DeviceBytes> greyOnGpu;
+  std::shared_ptr<const DeviceBytes> maskOnGpu;
+  ///@}
 };
 
 using DataSetSink = std::function<void(std::int64_t index, DataSetImage image)>;
@@ -52,6 +58,9 @@ public:
   DataSetImager(const DataSetImager&) = delete;
   DataSetImager& operator=(const DataSetImager&) = delete;
   DataSetImager(DataSetImager&&) noexcept;
+  /// From now on what is shown of images stays on the GPU as well, for those who read it there. Throws Error where none
+  /// makes them.
+  void keepOnGpu();
   /// Of the same plan, for another thread: they share the patients and what was found of bodies, and prepare a few
   /// bodies at a time.
   DataSetImager another() const;
@@ -83,6 +92,7 @@ private:
 
   std::shared_ptr<const DataSetPlan> plan_;
   Device device_;
+  bool keepsOnGpu_ = false;
   std::shared_ptr<Shared> shared_;
   std::shared_ptr<const Patient> patient_;
   std::unique_ptr<Body> body_;

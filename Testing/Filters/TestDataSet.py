@@ -1,8 +1,10 @@
 """A data set's images as arrays, in a folder and in shards; bad input gets a sentence."""
+import ctypes
 import json
 import os
 import pathlib
 import re
+import struct
 import subprocess
 import tarfile
 import tempfile
@@ -11,6 +13,7 @@ import unittest
 import numpy as np
 import sonovdb
 from chain import listen
+from sonovdb import dlpack
 from sonovdb.vtkSonoFilters import vtkSonoDataSet
 from TestPicture import converted, read_png, read_tif
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -111,6 +114,41 @@ class TestDataSet(unittest.TestCase):
         self.assertEqual(next(again)[2]["index"], 1)
         images._filter.EndStream()
         self.assertEqual(list(again), [])
+
+    def test_images_stay_on_the_gpu_where_there_is_one(self):
+        try:
+            image, mask, _ = sonovdb.Dataset(small(self.folder), on_gpu=True)[0]
+        except ValueError as error:
+            self.assertRegex(str(error), "cannot stay on a GPU, since none makes them: .*; take them from the host")
+        else:
+            self.assertEqual(image.__dlpack_device__()[0], 2)
+            self.assertEqual(image.shape, mask.shape)
+
+    def test_a_tensor_goes_by_whoever_has_it(self):
+        bytes_ = (ctypes.c_uint8 * 6)(*range(6))
+        shape = (ctypes.c_int64 * 2)(2, 3)
+        gone = []
+        delete = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(gone.append)
+        # DLManagedTensor: data, device, dimensions and type, shape, strides, offset, context, deleter; on the host
+        tensor = struct.pack("@PiiiBBHPPQPP", ctypes.addressof(bytes_), 1, 0, 2, 1, 8, 1, ctypes.addressof(shape), 0, 0,
+                             0, ctypes.cast(delete, ctypes.c_void_p).value)
+        memory = ctypes.create_string_buffer(tensor)
+        destroy = dlpack.destructor(gone.append)
+
+        class Array:
+            def __dlpack__(self, **_):
+                return dlpack.capsule(ctypes.addressof(memory), destroy)
+
+            def __dlpack_device__(self):
+                return 1, 0
+
+        taken = np.from_dlpack(Array())
+        np.testing.assert_array_equal(taken, [[0, 1, 2], [3, 4, 5]])
+        self.assertEqual(gone, [])
+        del taken
+        self.assertEqual(gone, [ctypes.addressof(memory)])  # by its own deleter
+        Array().__dlpack__()
+        self.assertEqual(gone, 2 * [ctypes.addressof(memory)])  # by the capsule, since nobody took it
 
     def test_shards_hold_the_folder(self):
         for form in ("nnU-Net", "MONAI"):
