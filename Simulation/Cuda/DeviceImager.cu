@@ -27,7 +27,7 @@ IdleByDevice<DeviceImager>& idleImagers()
   return *imagers;
 }
 
-thread_local DeviceImager* own = nullptr;
+thread_local OwnImager* own = nullptr;
 
 } // namespace
 
@@ -48,29 +48,50 @@ DeviceImager& DeviceImager::instance()
   {
     throw Error("the GPU cannot be used: " + status.what + "; choose the CPU");
   }
+  if (own)
+  {
+    return own->imager();
+  }
   // Never destroyed: at the end of a process the driver may go first.
   static auto* const first = new DeviceImager(status.devices.front(), Waiting::Busy);
-  return own ? *own : *first;
+  return *first;
 }
 
 OwnImager::OwnImager(int number)
+  : number_(number)
 {
-  const DeviceStatus& status = cudaStatus();
-  if (!status.usable)
+  own = this;
+}
+
+DeviceImager& OwnImager::imager()
+{
+  if (!imager_)
   {
-    return;
+    const std::vector<int>& devices = cudaStatus().devices;
+    device_ = devices[std::size_t(number_) % devices.size()];
+    imager_ = idleImagers().take(device_);
+    imager_ = imager_ ? imager_ : new DeviceImager(device_, Waiting::Asleep);
   }
-  device_ = status.devices[std::size_t(number) % status.devices.size()];
-  imager_ = idleImagers().take(device_);
-  imager_ = imager_ ? imager_ : new DeviceImager(device_, Waiting::Asleep);
-  own = imager_;
+  return *imager_;
+}
+
+void OwnImager::beginDevices()
+{
+  int before = 0;
+  cudaGetDevice(&before);
+  for (const int device : cudaStatus().devices)
+  {
+    cudaSetDevice(device);
+    cudaFree(nullptr); // what goes wrong is told to whoever asks for something
+  }
+  cudaSetDevice(before);
 }
 
 OwnImager::~OwnImager()
 {
+  own = nullptr;
   if (imager_)
   {
-    own = nullptr;
     imager_->forget();
     idleImagers().give(device_, imager_);
   }

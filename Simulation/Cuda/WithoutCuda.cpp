@@ -26,8 +26,12 @@ DeviceImager& DeviceImager::instance()
   throw Error("the GPU cannot be used: " + cudaStatus().what + "; choose the CPU");
 }
 
-OwnImager::OwnImager(int) {}
+OwnImager::OwnImager(int number)
+  : number_(number)
+{
+}
 OwnImager::~OwnImager() = default;
+void OwnImager::beginDevices() {}
 
 std::shared_ptr<const DeviceTraced> DeviceImager::trace(const std::shared_ptr<const TraceJob>&, LineRange,
                                                         const Progress&)

@@ -117,11 +117,11 @@ FoundLandmarks findLandmarks(const LabelVolume& volume)
   }
 }
 
-/// Bodies that are prepared at a time: a few by all cores, so that a device soon has the first ones, and has some while
+/// Bodies that are prepared at a time: some by all cores, so that a device soon has the first ones, and has some while
 /// others are prepared.
 int preparedTogether()
 {
-  return std::max(1, int(std::thread::hardware_concurrency()) / 3);
+  return std::max(1, int(std::thread::hardware_concurrency()) / 2);
 }
 
 } // namespace

@@ -55,19 +55,36 @@ std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange&
     }
     ofBodies.back().end = image + perExam;
   }
-  // Whole bodies as long as each worker gets as many of them.
-  const std::size_t whole = ofBodies.size() - ofBodies.size() % std::size_t(workers);
+  const auto bodies = std::int64_t(ofBodies.size());
   std::vector<PlannedRange> units;
-  for (std::size_t body = 0; body < ofBodies.size(); ++body)
-  {
-    const PlannedRange& all = ofBodies[body];
-    const std::int64_t exams = (all.end - all.first) / perExam;
-    const std::int64_t parts = body < whole ? 1 : workers / std::int64_t(ofBodies.size() - whole);
-    const std::int64_t count = std::min(parts, exams);
-    for (std::int64_t part = 0; part < count; ++part)
+  // Of a body's exams those from `from` / `parts` of them on.
+  const auto add = [&](const PlannedRange& body, std::int64_t from, std::int64_t to, std::int64_t parts) {
+    const std::int64_t exams = (body.end - body.first) / perExam;
+    const PlannedRange unit{ body.first + exams * from / parts * perExam, body.first + exams * to / parts * perExam };
+    if (unit.first < unit.end)
     {
-      units.push_back({ all.first + exams * part / count * perExam, all.first + exams * (part + 1) / count * perExam });
+      units.push_back(unit);
     }
+  };
+  if (bodies <= workers)
+  {
+    for (const PlannedRange& body : ofBodies)
+    {
+      const std::int64_t parts = workers / bodies;
+      for (std::int64_t part = 0; part < parts; ++part)
+      {
+        add(body, part, part + 1, parts);
+      }
+    }
+    return units;
+  }
+  for (std::int64_t body = 0; body < bodies; ++body)
+  {
+    add(ofBodies[std::size_t(body)], 0, std::min<std::int64_t>(body + 1, workers), workers);
+  }
+  for (std::int64_t body = 0; body + 1 < workers; ++body)
+  {
+    add(ofBodies[std::size_t(body)], body + 1, workers, workers);
   }
   return units;
 }
@@ -94,6 +111,7 @@ void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int
     }
     return;
   }
+  const bool onGpu = imager.runsOnGpu();
   Shared shared;
   const Progress untilStopped = [&shared](double) { return !shared.stop; };
   const auto done = [&shared] {
@@ -128,6 +146,12 @@ void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int
   {
     threads.emplace_back(run, n);
   }
+  std::thread devices([onGpu] {
+    if (onGpu)
+    {
+      OwnImager::beginDevices(); // while bodies are prepared
+    }
+  });
   bool aborted = false;
   std::unique_lock<std::mutex> lock(shared.mutex);
   while (shared.atWork > 0 || shared.made > 0)
@@ -147,6 +171,7 @@ void forExams(DataSetImager& imager, const std::vector<PlannedRange>& units, int
     lock.lock();
   }
   lock.unlock();
+  devices.join();
   for (std::thread& thread : threads)
   {
     thread.join();

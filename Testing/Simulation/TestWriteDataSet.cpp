@@ -201,7 +201,33 @@ TEST_F(DataSetFolder, WorkersShareBodies)
   json_["patients"].push_back(json_["patients"][0]);
   json_["patients"][2]["id"] = "third";
   json_["exams"] = 9;
-  EXPECT_EQ(unitsOf({ 0, 18 }, 2), (Units{ { 0, 6 }, { 6, 12 }, { 12, 14 }, { 14, 18 } }));
+  EXPECT_EQ(unitsOf({ 0, 18 }, 2), (Units{ { 0, 2 }, { 6, 12 }, { 12, 18 }, { 2, 6 } }));
+}
+
+TEST_F(DataSetFolder, WorkersComeToTheirNextBodiesInTurnAndEndTogether)
+{
+  for (int body = 2; body < 11; ++body)
+  {
+    json_["patients"].push_back(json_["patients"][0]);
+    json_["patients"][std::size_t(body)]["id"] = std::to_string(body);
+  }
+  json_["exams"] = 44; // four of each body, two images each
+  std::vector<std::int64_t> free(4, 0); // when a worker is
+  std::multiset<std::int64_t> begun;
+  std::vector<int> made(88, 0);
+  for (const PlannedRange& unit : workUnits(*plan(), { 0, 88 }, 4))
+  {
+    auto& next = *std::min_element(free.begin(), free.end());
+    begun.insert(next);
+    next += unit.end - unit.first;
+    std::for_each(made.begin() + unit.first, made.begin() + unit.end, [](int& count) { ++count; });
+  }
+  EXPECT_EQ(made, std::vector<int>(88, 1));
+  EXPECT_EQ(free, std::vector<std::int64_t>(4, 22));
+  for (const std::int64_t when : begun)
+  {
+    EXPECT_EQ(begun.count(when), when == 0 ? 4u : 1u) << when;
+  }
 }
 
 /// Threads share the images: the folder is the same, an error is that of its image, and a stop leaves no half image.
