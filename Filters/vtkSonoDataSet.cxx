@@ -88,6 +88,7 @@ void vtkSonoDataSet::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ImageNumber: " << this->ImageNumber << endl;
   os << indent << "Part: " << this->Part << endl;
   os << indent << "Parts: " << this->Parts << endl;
+  os << indent << "KeepsOnGpu: " << this->KeepsOnGpu << endl;
   os << indent << "WrittenImages: " << this->WrittenImages << endl;
   os << indent << "ImagesPerSecond: " << this->ImagesPerSecond << endl;
 }
@@ -209,6 +210,7 @@ bool vtkSonoDataSet::KeepOnGpu()
     this->ReadPlan();
     this->Imager->keepOnGpu();
     this->KeepsOnGpu = true;
+    this->Modified();
   });
 }
 

@@ -5,8 +5,6 @@
 
 #include "vtkObjectFactory.h"
 
-#include <dlpack/dlpack.h>
-
 vtkStandardNewMacro(vtkSonoGpuImage);
 
 vtkSonoGpuImage::vtkSonoGpuImage() = default;
@@ -29,8 +27,7 @@ vtkTypeUInt64 vtkSonoGpuImage::NewTensor(const std::string& name, vtkTypeUInt64 
 
 void vtkSonoGpuImage::DeleteTensor(vtkTypeUInt64 address)
 {
-  auto* tensor = reinterpret_cast<DLManagedTensor*>(static_cast<std::uintptr_t>(address));
-  tensor->deleter(tensor);
+  sono::deleteTensor(reinterpret_cast<DLManagedTensor*>(static_cast<std::uintptr_t>(address)));
 }
 
 vtkSonoGpuImage* vtkSonoGpuImage::NewFrom(const sono::DataSetImage& image)

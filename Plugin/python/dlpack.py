@@ -50,4 +50,3 @@ class GpuArray:
     def __dlpack__(self, stream=None, **_):
         """The array is finished, so no stream has to wait for it; its memory goes back behind what the stream does."""
         return capsule(self._image.NewTensor(self._name, stream if stream and stream > 0 else 1), _destroy)
-

@@ -478,7 +478,8 @@ DataSetImage DataSetImager::finish(const PlacedImage& placed, const SeenPicture&
   if (keepsOnGpu_)
   {
     DeviceImager& imager = DeviceImager::instance();
-    made.greyOnGpu = std::make_shared<const DeviceBytes>(imager.bytesOf(seen.onDevice, seen.numberOnDevice));
+    made.greyOnGpu = std::make_shared<const DeviceBytes>(
+      seen.onDevice ? imager.bytesOf(seen.onDevice, seen.numberOnDevice) : imager.upload(made.grey));
     made.maskOnGpu = std::make_shared<const DeviceBytes>(imager.upload(made.mask));
   }
   const std::vector<MaskGroup>& groups = plan_->set().masks;

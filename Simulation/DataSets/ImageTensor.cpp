@@ -41,4 +41,9 @@ DLManagedTensor* newTensor(DeviceBytes bytes, int height, int width, std::uintpt
   return &held->tensor;
 }
 
+void deleteTensor(DLManagedTensor* tensor)
+{
+  tensor->deleter(tensor);
+}
+
 } // namespace sono

@@ -10,5 +10,7 @@ namespace sono {
 /// on a GPU). Whoever takes it calls its deleter, which gives the bytes back after all that `stream` was asked for (see
 /// giveBackAfter).
 DLManagedTensor* newTensor(DeviceBytes bytes, int height, int width, std::uintptr_t stream);
+/// Of one that nobody has taken.
+void deleteTensor(DLManagedTensor* tensor);
 
 } // namespace sono
