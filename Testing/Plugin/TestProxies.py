@@ -12,7 +12,8 @@ from vtkmodules.vtkCommonCore import reference
 simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
 XML_FOLDER = pathlib.Path(os.environ["SONOVDB_DESCRIPTIONS"])
-NO_PROXIES = {"vtkSonoFrameWriter", "vtkSonoPhasesAhead"}  # what others derive from, and what works for a panel
+# What others derive from, what works for a panel, what a loop in Python gets.
+NO_PROXIES = {"vtkSonoFrameWriter", "vtkSonoPhasesAhead", "vtkSonoGpuImage"}
 CLASSES = {name: kind for name, kind in vars(vtkSonoFilters).items() if name.startswith("vtkSono")}
 for name in NO_PROXIES:
     del CLASSES[name]
