@@ -107,8 +107,8 @@ public:
 
   ///@{
   /**
-   * Images stay on the GPU as well, that of the last update as GetGpuImage says. False after an error, where no GPU makes
-   * them. By default they do not, and that is null.
+   * Images stay on the GPU as well, that of the last update as GetGpuImage says. False after an error, where no GPU
+   * makes them. By default they do not, and that is null.
    */
   bool KeepOnGpu();
   vtkSonoGpuImage* GetGpuImage();

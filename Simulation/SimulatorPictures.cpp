@@ -95,8 +95,10 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
     const auto arrived = std::make_shared<TracedLines>(layout);
     arrived->intensity = imageOf(arrivals.intensity, i, group.size());
     arrived->depthOffsetMm = imageOf(arrivals.depthOffsetMm, i, group.size());
-    made.push_back(
-      { { imageOf(copy.bytes, i, group.size()), copy.mask, imageOf(copy.labels, i, group.size()) }, arrived, picture, int(i) });
+    made.push_back({ { imageOf(copy.bytes, i, group.size()), copy.mask, imageOf(copy.labels, i, group.size()) },
+                     arrived,
+                     picture,
+                     int(i) });
   }
   return made;
 }

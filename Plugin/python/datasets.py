@@ -47,7 +47,6 @@ class Dataset:
         self._filter.SetPart(part)
         self._filter.SetParts(parts)
         first, end = self._filter.GetFirstImage(), self._filter.GetEndImage()
-        self._on_gpu = on_gpu
         if on_gpu:
             self._filter.KeepOnGpu()
         self._refuse_errors()
@@ -88,8 +87,9 @@ class Dataset:
         self._refuse_errors()
         made = self._filter.GetOutput()
         width, height, _ = made.GetDimensions()
-        if self._on_gpu:
-            image, mask = (GpuArray(self._filter.GetGpuImage(), name) for name in ("BMode", "Mask"))
+        on_gpu = self._filter.GetGpuImage()  # None unless asked for
+        if on_gpu:
+            image, mask = (GpuArray(on_gpu, name) for name in ("BMode", "Mask"))
         else:
             image, mask = (vtk_to_numpy(made.GetPointData().GetArray(name)).reshape(height, width).copy()
                            for name in ("BMode", "Mask"))

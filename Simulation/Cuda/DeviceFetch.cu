@@ -15,13 +15,6 @@ __global__ void echoesFromSums(const EchoSum* sums, std::size_t count, float per
   }
 }
 
-int currentDevice()
-{
-  int device = 0;
-  check(cudaGetDevice(&device), "asking for its number");
-  return device;
-}
-
 } // namespace
 
 /// Holds what is read until it has been.

@@ -25,6 +25,14 @@ inline void check(cudaError_t error, const char* doing)
   }
 }
 
+/// Number of the thread's device.
+inline int currentDevice()
+{
+  int device = 0;
+  check(cudaGetDevice(&device), "asking for its number");
+  return device;
+}
+
 /// Counts what crosses the bus.
 struct Traffic
 {

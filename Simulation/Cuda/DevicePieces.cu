@@ -239,8 +239,7 @@ public:
   {
     static std::mutex mutex;
     static auto* const known = new std::map<int, DeviceWindows>;
-    int device = 0;
-    check(cudaGetDevice(&device), "asking for its number");
+    const int device = currentDevice();
     const std::lock_guard<std::mutex> lock(mutex);
     DeviceWindows& here = (*known)[device];
     if (!here.isThere_)
@@ -275,8 +274,7 @@ std::shared_ptr<DevicePieces> DevicePieces::of(const SurfacePieces& pieces)
 {
   static std::mutex mutex;
   static auto* const known = new std::map<std::pair<int, std::uint64_t>, std::weak_ptr<DevicePieces>>;
-  int device = 0;
-  check(cudaGetDevice(&device), "asking for its number");
+  const int device = currentDevice();
   const std::lock_guard<std::mutex> lock(mutex);
   for (auto it = known->begin(); it != known->end();)
   {

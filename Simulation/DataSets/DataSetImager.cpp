@@ -6,6 +6,7 @@
 #include "Cuda/DeviceImager.h"
 #include "Cuda/RunOnDevice.h"
 #include "DataSets/BodyRegion.h"
+#include "DataSets/BodyViews.h"
 #include "DataSets/DataSetInfo.h"
 #include "DataSets/HoldProbe.h"
 #include "DataSets/ImageChannels.h"
@@ -14,16 +15,12 @@
 #include "Labels/ReadLabelMap.h"
 #include "Phantoms/DrawThorax.h"
 #include "Phantoms/ThoraxPhantom.h"
-#include "Probe/AcousticWindow.h"
-#include "Probe/StandardViews.h"
 #include "Simulator.h"
 #include "Trace/ProbeContact.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
-#include <set>
 #include <thread>
 #include <utility>
 
@@ -33,70 +30,6 @@ namespace {
 
 constexpr int mostAttempts = 32;
 constexpr const char* fallbackTissue = "soft_tissue";
-
-/// One of a patient's views.
-struct BodyView
-{
-  std::optional<ProbePose> pose;     ///< none: not obtainable
-  std::optional<StandardView> found; ///< how it was found by landmarks; none: it was not looked for
-};
-
-/// The standard view of a name.
-BodyView standardView(const std::vector<StandardView>& views, const std::string& name)
-{
-  std::string names;
-  for (const StandardView& view : views)
-  {
-    if (view.name == name)
-    {
-      return { view.refusal.empty() ? std::optional<ProbePose>(view.pose) : std::nullopt, view };
-    }
-    names += (names.empty() ? "" : ", ") + view.name;
-  }
-  throw Error("'" + name + "' is no standard view; choose one of " + names + ", or give it a 'pose' or a 'window'.");
-}
-
-/// Where the probe stands for each of a patient's views. Throws Error where none is obtainable.
-std::vector<BodyView> findViews(const Scene& scene, const DataSetPatient& patient, const ThoraxParameters& thorax,
-                                const ProbeSettings& probe, const GridPlacement& grid,
-                                const BodyAugmentation& augmentation, const Progress& progress)
-{
-  std::vector<BodyView> views;
-  std::vector<StandardView> standard;
-  for (const DataSetView& view : patient.views)
-  {
-    const bool isBundled = patient.labels.empty() && !patient.isDrawn && view.name == "A4C";
-    if (!view.window.empty())
-    {
-      views.push_back({ findAcousticWindows(scene, windowTarget(scene, view.window), probe, 1).front().pose, {} });
-    }
-    else if (view.pose || isBundled)
-    {
-      views.push_back({ augmented(view.pose ? *view.pose : thoraxPhantomA4C(thorax), grid, augmentation), {} });
-    }
-    else
-    {
-      if (standard.empty())
-      {
-        std::set<std::string> names;
-        std::transform(patient.views.begin(), patient.views.end(), std::inserter(names, names.end()),
-                       [](const DataSetView& wanted) { return wanted.name; });
-        standard = findStandardViews(
-          scene, [&](const std::string&) { return probe; }, progress, names);
-      }
-      views.push_back(standardView(standard, view.name));
-      if (views.back().pose && augmentation.isMirrored)
-      {
-        views.back().pose->lateral = -views.back().pose->lateral; // as `augmented` turns a given one
-      }
-    }
-  }
-  if (std::none_of(views.begin(), views.end(), [](const BodyView& view) { return view.pose.has_value(); }))
-  {
-    throw Error("none of its views is obtainable; give it others. " + views.back().found->refusal);
-  }
-  return views;
-}
 
 /// A body's landmarks, or a sentence why it has none.
 struct FoundLandmarks
@@ -287,8 +220,8 @@ void DataSetImager::prepareBody(int number, const Progress& progress)
   bool isFirst = false;
   body->found = shared_->found.get(number, [&] {
     auto found = std::make_shared<Found>();
-    found->views = findViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
-                             patient_->volume.placement, augmentation, progress);
+    found->views = findBodyViews(*body->scene, plan_->patientOf(number), patient_->thorax, set.probe,
+                                 patient_->volume.placement, augmentation, progress);
     found->landmarks = findLandmarks(body->scene->volume());
     found->region = prepareRegion(found->views, {});
     isFirst = true;

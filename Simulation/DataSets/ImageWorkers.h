@@ -13,10 +13,10 @@ namespace sono {
 int imageWorkers(const DataSetImager& imager);
 
 /// Images that are made one after the other by one worker: those of a body, whose preparation takes as long as hundreds
-/// of its images. Of the first bodies, one for each worker, the first ones get a smaller part at first, and what is left
-/// of them comes last, the largest part first: so workers come to their next bodies one after the other, while others
-/// keep the device busy, and end together. Where there are fewer bodies than workers: equal parts of each. Of `images`,
-/// whole exams.
+/// of its images. Of the first bodies, one for each worker, the first ones get a smaller part at first, and what is
+/// left of them comes last, the largest part first: so workers come to their next bodies one after the other, while
+/// others keep the device busy, and end together. Where there are fewer bodies than workers: equal parts of each. Of
+/// `images`, whole exams.
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers);
 
 /// What is to be done for the images of an exam: calls `done` for each of them.

@@ -70,7 +70,7 @@ struct SurfaceEchoes::Group
 struct SurfaceEchoes::Room
 {
   FaceList faces;
-  std::vector<std::size_t> taken;       ///< of the brick's faces, those in the list
+  std::vector<std::size_t> taken;                 ///< of the brick's faces, those in the list
   std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
   PieceList pieces;
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
@@ -167,7 +167,8 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
     if (isTaken(face))
     {
       const int row = rows_->row(face.below, face.above);
-      room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row), rows_->at(row ^ 1));
+      room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
+                      rows_->at(row ^ 1));
       room.taken.push_back(f);
     }
   }
@@ -183,9 +184,8 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
   {
     const std::size_t f = room.taken[n];
     const int row = rows_->row(faces[f].below, faces[f].above);
-    const bool isHeard =
-      group.table.counts(row) &&
-      std::any_of(seeing.begin(), seeing.end(), [&](std::size_t i) { return room.mayHear[i][n] != 0; });
+    const bool isHeard = group.table.counts(row) && std::any_of(seeing.begin(), seeing.end(),
+                                                                [&](std::size_t i) { return room.mayHear[i][n] != 0; });
     const SurfacePiece* piece = isHeard ? pieces_.piece(brick, f) : nullptr;
     if (piece)
     {

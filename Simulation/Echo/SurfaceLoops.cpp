@@ -470,9 +470,8 @@ void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid
   markFacing(faces, radiusMm, beam, grid);
   for (std::size_t n = 0; n < std::size_t(faces.count); ++n)
   {
-    const bool sees =
-      faces.seen[n] != 0.0f &&
-      (isGaussian(beam) || mostWeight({ faces.x[n], faces.y[n], faces.z[n] }, radiusMm, beam, grid) > 0.0f);
+    const bool sees = faces.seen[n] != 0.0f && (isGaussian(beam) || mostWeight({ faces.x[n], faces.y[n], faces.z[n] },
+                                                                               radiusMm, beam, grid) > 0.0f);
     heard[n] = sees ? 1 : 0;
   }
 }

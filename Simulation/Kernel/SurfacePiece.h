@@ -28,7 +28,7 @@ struct SurfacePiece
   std::uint8_t axis;  ///< 0 to 2
   std::uint8_t below; ///< tissue index of the voxel and of the next one along the axis
   std::uint8_t above;
-  Vec3i voxel; ///< the one below
+  Vec3i voxel;       ///< the one below
   Vec3f roughNormal; ///< its face's
 };
 

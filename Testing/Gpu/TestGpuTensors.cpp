@@ -1,15 +1,14 @@
 // Images of a data set that stay on the GPU, against those that come to the host.
 #include "BallDataSet.h"
 #include "GpuOrSkip.h"
+#include "NextImage.h"
 
-#include "DataSets/ImageStream.h"
 #include "DataSets/ImageTensor.h"
 
 #include <cuda_runtime.h>
 #include <dlpack/dlpack.h>
 
-#include <chrono>
-#include <thread>
+#include <utility>
 #include <vector>
 
 using namespace sono;
@@ -55,13 +54,9 @@ TEST_F(GpuTensors, AreTheImagesOfTheHost)
   expectSameOnGpu(imager.make(0));
   std::vector<DataSetImage> held; // while others are made
   ImageStream stream(imager, {});
-  while (!stream.hasEnded())
+  while (auto taken = sono::testing::next(stream))
   {
-    if (auto taken = stream.takeMade())
-    {
-      held.push_back(std::move(taken->image));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    held.push_back(std::move(taken->image));
   }
   EXPECT_EQ(held.size(), 12u);
   for (const DataSetImage& image : held)

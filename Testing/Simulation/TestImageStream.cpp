@@ -1,15 +1,13 @@
 // Images of a data set one after the other, against those that are asked for by their numbers.
 #include "BallDataSet.h"
 #include "ErrorText.h"
-
-#include "DataSets/ImageStream.h"
+#include "NextImage.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <thread>
 #include <vector>
@@ -17,20 +15,9 @@
 using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
+using sono::testing::next;
 
 namespace {
-
-/// Waited for; none at the end.
-std::optional<StreamedImage> next(ImageStream& stream)
-{
-  std::optional<StreamedImage> taken = stream.takeMade();
-  while (!taken && !stream.hasEnded())
-  {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    taken = stream.takeMade();
-  }
-  return taken;
-}
 
 class AStream : public sono::testing::BallDataSet
 {

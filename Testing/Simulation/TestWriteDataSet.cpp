@@ -211,7 +211,7 @@ TEST_F(DataSetFolder, WorkersComeToTheirNextBodiesInTurnAndEndTogether)
     json_["patients"].push_back(json_["patients"][0]);
     json_["patients"][std::size_t(body)]["id"] = std::to_string(body);
   }
-  json_["exams"] = 44; // four of each body, two images each
+  json_["exams"] = 44;                  // four of each body, two images each
   std::vector<std::int64_t> free(4, 0); // when a worker is
   std::multiset<std::int64_t> begun;
   std::vector<int> made(88, 0);
