@@ -55,19 +55,19 @@ constexpr float aroundRectangle = 1.4143f;
 /// times wider than straight ahead.
 void widenByRange(const BeamReachTable& reach, float brickMm, const Vec2f& widening, BeamPiece& piece)
 {
-  const int last = int(reach.lateralMm.size()) - 1;
-  const int to = std::clamp(int((piece.toMm + brickMm) / reach.stepMm), 0, last);
+  const int last = reach.steps() - 1;
+  const int to = std::clamp(int((piece.toMm + brickMm) / reach.stepMm()), 0, last);
   const float firstMm = piece.fromMm;
   Vec2f widest(0.0f);
   for (int n = to; n >= 0; --n)
   {
-    const Vec2f seen(reach.lateralMm[std::size_t(n)] + brickMm, reach.elevationalMm[std::size_t(n)] + brickMm);
+    const Vec2f seen = reach.step(n) + brickMm;
     // What a brick in this step shows may lie a brick deeper.
-    const float deepestMm = n == last ? piece.toMm : float(n + 1) * reach.stepMm + brickMm;
+    const float deepestMm = n == last ? piece.toMm : float(n + 1) * reach.stepMm() + brickMm;
     if (glm::length(Vec3f(seen * widening, deepestMm)) >= firstMm)
     {
       widest = glm::max(widest, seen);
-      piece.fromMm = std::min(piece.fromMm, float(n) * reach.stepMm - brickMm);
+      piece.fromMm = std::min(piece.fromMm, float(n) * reach.stepMm() - brickMm);
     }
   }
   piece.lateralMm = aroundRectangle * widest.x;

@@ -17,7 +17,7 @@ namespace sono {
 
 namespace {
 
-constexpr int mostWorkersOfDevice = 16;
+constexpr int mostWorkersOfDevice = 24;
 
 /// What the workers share.
 struct Shared
@@ -39,8 +39,8 @@ int imageWorkers(const DataSetImager& imager)
   {
     return 1;
   }
-  const int cores = int(std::thread::hardware_concurrency());
-  return std::clamp(cores, 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
+  const int threads = int(std::thread::hardware_concurrency()) * 3 / 2; // while some wait for the device
+  return std::clamp(threads, 1, mostWorkersOfDevice * int(cudaStatus().devices.size()));
 }
 
 std::vector<PlannedRange> workUnits(const DataSetPlan& plan, const PlannedRange& images, int workers)

@@ -8,8 +8,8 @@
 
 namespace sono {
 
-/// How many images to make side by side: one on a CPU, where an image takes all cores; up to sixteen for each GPU, so
-/// that it works on several while cores prepare and write others.
+/// How many images to make side by side: one on a CPU, where an image takes all cores; half as many again as cores,
+/// up to 24 for each GPU, so that it works on several while cores prepare and write others.
 int imageWorkers(const DataSetImager& imager);
 
 /// Images that are made one after the other by one worker: those of a body, whose preparation takes as long as hundreds

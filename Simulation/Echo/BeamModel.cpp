@@ -132,8 +132,7 @@ double BeamModel::cellAreaMm2(double depthMm) const
 
 void BeamModel::tabulateReach()
 {
-  BeamReachTable table;
-  table.stepMm = reachStepMm;
+  BeamReachTable table(reachStepMm);
   const int steps =
     int(std::ceil(settings_.depthMm * deepestPerRange / double(reachStepMm))) + 8; // half a pulse deeper, and more
   for (int n = 0; n < steps; ++n)
@@ -144,8 +143,7 @@ void BeamModel::tabulateReach()
       const ProfileAt at = profileAt(straight_, (float(n) + float(i) / float(reachSubsteps)) * reachStepMm);
       widest = glm::max(widest, Vec2f(1.0f / std::sqrt(at.perLateral2), 1.0f / std::sqrt(at.perElevational2)));
     }
-    table.lateralMm.push_back(beamCutSigma * widest.x);
-    table.elevationalMm.push_back(beamCutSigma * widest.y);
+    table.add(beamCutSigma * widest);
   }
   reach_ = std::move(table);
 }

@@ -11,24 +11,11 @@ constexpr float stepMm = ArraySightView::stepMm;
 
 } // namespace
 
-Vec2f BeamReachTable::widest(float fromMm, float toMm) const
-{
-  const int last = int(lateralMm.size()) - 1;
-  const int to = std::clamp(int(toMm / stepMm), 0, last);
-  Vec2f most(0.0f);
-  for (int n = std::clamp(int(fromMm / stepMm), 0, last); n <= to; ++n)
-  {
-    most = glm::max(most, Vec2f(lateralMm[std::size_t(n)], elevationalMm[std::size_t(n)]));
-  }
-  return most;
-}
-
 ArraySight::ArraySight(const ArrayBeamView& view, double depthMm)
   : steps_(int(std::ceil(depthMm / double(stepMm))) + 1)
 {
   lateral_ = envelopeOf(view.lateral, view);
   elevational_ = envelopeOf(view.elevational, view);
-  reach_.stepMm = stepMm;
   const auto furthest = [&](const Envelope& envelope, int step) {
     const float* row = envelope.values.data() + std::size_t(step) * std::size_t(envelope.count);
     const auto places =
@@ -37,8 +24,7 @@ ArraySight::ArraySight(const ArrayBeamView& view, double depthMm)
   };
   for (int n = 0; n < steps_; ++n)
   {
-    reach_.lateralMm.push_back(furthest(lateral_, n));
-    reach_.elevationalMm.push_back(furthest(elevational_, n));
+    reach_.add(Vec2f(furthest(lateral_, n), furthest(elevational_, n)));
   }
   for (std::size_t n = 0; n < lateral_.largest.size(); ++n)
   {
@@ -56,8 +42,7 @@ Vec2f ArraySight::furthest(float fromMm, float toMm) const
   Vec2f most(0.0f);
   for (int n = std::clamp(int(fromMm / stepMm), 0, last); n <= last; ++n)
   {
-    most = glm::max(most, Vec2f(reach_.lateralMm[std::size_t(n)] * atEnd(lateral_, n),
-                                reach_.elevationalMm[std::size_t(n)] * atEnd(elevational_, n)));
+    most = glm::max(most, reach_.step(n) * Vec2f(atEnd(lateral_, n), atEnd(elevational_, n)));
   }
   return most;
 }

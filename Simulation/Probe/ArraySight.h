@@ -3,22 +3,11 @@
 #include "Kernel/ArrayBeam.h"
 #include "Kernel/ArraySightView.h"
 #include "Kernel/Vec.h"
+#include "Probe/BeamReachTable.h"
 
 #include <vector>
 
 namespace sono {
-
-/// How far from its axis a beam that widens in depth is seen: the largest distances along the array and across it, mm,
-/// in steps of depth, of a line straight ahead.
-struct BeamReachTable
-{
-  float stepMm = 1.0f;
-  std::vector<float> lateralMm; ///< of depths [n, n + 1) stepMm
-  std::vector<float> elevationalMm;
-
-  /// The largest ones between two depths; those of the first and the last step hold beyond them.
-  Vec2f widest(float fromMm, float toMm) const;
-};
 
 /// Culling map of an array's beam: tells a brick that a line must visit from one where the beam is more than 46 dB
 /// below its strongest value at that range.
@@ -55,7 +44,7 @@ private:
   int steps_;
   Envelope lateral_;
   Envelope elevational_;
-  BeamReachTable reach_;
+  BeamReachTable reach_{ ArraySightView::stepMm };
   float largestWeight_ = 0.0f;
   float largestAreaMm2_ = 0.0f;
 };

@@ -29,7 +29,11 @@ std::vector<std::uint8_t> taken(DLManagedTensor* managed, int height, int width)
   EXPECT_EQ(tensor.dtype.code, kDLUInt);
   EXPECT_EQ(tensor.dtype.bits, 8);
   std::vector<std::uint8_t> bytes(std::size_t(height) * std::size_t(width));
+  int before = 0;
+  cudaGetDevice(&before);
+  cudaSetDevice(tensor.device.device_id); // a pool's memory is read by its own device
   EXPECT_EQ(cudaMemcpy(bytes.data(), tensor.data, bytes.size(), cudaMemcpyDeviceToHost), cudaSuccess);
+  cudaSetDevice(before);
   managed->deleter(managed);
   return bytes;
 }
