@@ -61,6 +61,7 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
     stage->PrintSelf(os, indent.GetNextIndent());
   }
   os << indent << "ErrorMap: " << this->ErrorMap << endl;
+  os << indent << "SharedProbe: " << this->SharedProbe << endl;
   os << indent << "Progressive: " << this->Progressive << endl;
 }
 

@@ -104,6 +104,15 @@ public:
 
   ///@{
   /**
+   * A number, 1 or more, that filters have in common which hold one probe; 0: none. It changes no image: a program that
+   * shows them keeps their probes alike. Default 0.
+   */
+  void SetSharedProbe(int number) { this->SharedProbe = number; }
+  vtkGetMacro(SharedProbe, int);
+  ///@}
+
+  ///@{
+  /**
    * With a target error or a time budget of the tracer, whether a picture of the first round of paths is made at once
    * and the others are traced in the background, until another picture is wanted: HasBetter says whether there is a
    * better one, IsRefining whether one may follow. An Update makes a better one once HasBetter has said so; all outputs
@@ -148,6 +157,7 @@ private:
 
   std::unique_ptr<sono::UltrasoundStages> Inside;
   bool ErrorMap = false;
+  int SharedProbe = 0;
   bool Progressive = false;
 };
 

@@ -3,7 +3,6 @@
 #include "SonoLayout.h"
 
 #include "pqApplicationCore.h"
-#include "pqLinksModel.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
@@ -21,10 +20,14 @@
 #include "vtkSonoProbeSource.h"
 #include "vtkSonoUltrasound.h"
 
+#include <algorithm>
 #include <cstring>
 #include <initializer_list>
+#include <iterator>
+#include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -80,7 +83,7 @@ void scan(int plane, const pqPipelineSource* source)
 }
 
 /// What pqSonoBiplane does, for those who run a trace without it.
-void traceLink(pqPipelineSource* first, pqPipelineSource* second)
+void tracePlanesLink(pqPipelineSource* first, pqPipelineSource* second)
 {
   std::ostringstream text;
   text << "linkedPlanes = servermanager.vtkSMProxyLink()\nlinkedPlanes.AddException('" << sonoMatrixPlane << "')\n"
@@ -93,9 +96,58 @@ void traceLink(pqPipelineSource* first, pqPipelineSource* second)
   SM_SCOPED_TRACE(TraceText).arg(text.str().c_str()).arg("comment", "both planes have all other settings in common");
 }
 
+/// What pqSonoSharedProbe does, as above.
+void traceSharedProbe(pqPipelineSource* first, pqPipelineSource* second)
+{
+  std::ostringstream text;
+  text << "sharedProbe = []\nfor name in (";
+  for (const char* name : sonoProbeProperties)
+  {
+    text << "'" << name << "', ";
+  }
+  text << "):\n    sharedProbe.append(servermanager.vtkSMPropertyLink())\n"
+       << "    for direction in (sharedProbe[-1].INPUT, sharedProbe[-1].OUTPUT):\n";
+  for (pqPipelineSource* each : { first, second })
+  {
+    text << "        sharedProbe[-1].AddLinkedProperty(FindSource('" << each->getSMName().toStdString()
+         << "').SMProxy, name, direction)\n";
+  }
+  SM_SCOPED_TRACE(TraceText).arg(text.str().c_str()).arg("comment", "both have one probe");
+}
+
 vtkSMProxy* inputOf(const pqPipelineSource* source)
 {
   return vtkSMPropertyHelper(source->getProxy(), "Input").GetAsProxy();
+}
+
+int sharedProbeOf(const pqPipelineSource* source)
+{
+  return vtkSMPropertyHelper(source->getProxy(), sonoSharedProbe).GetAsInt();
+}
+
+/// The Simulate Ultrasounds, in the order in which they were made.
+std::vector<pqPipelineSource*> ultrasounds()
+{
+  const auto all = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
+  std::vector<pqPipelineSource*> found;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(found), sonoIsUltrasound);
+  return found;
+}
+
+/// Lets it share its probe with the next one of its settings, if it does not share it yet.
+void shareProbe(const pqPipelineSource* first)
+{
+  if (sharedProbeOf(first) == 0)
+  {
+    int largest = 0;
+    for (const pqPipelineSource* each : ultrasounds())
+    {
+      largest = std::max(largest, sharedProbeOf(each));
+    }
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", first->getProxy());
+    vtkSMPropertyHelper(first->getProxy(), sonoSharedProbe).Set(largest + 1);
+    first->getProxy()->UpdateVTKObjects();
+  }
 }
 
 void destroyWithConsumers(pqPipelineSource* source)
@@ -111,28 +163,45 @@ void destroyWithConsumers(pqPipelineSource* source)
 
 SonoSplit sonoSplitScreen(pqPipelineSource* first)
 {
+  shareProbe(first);
   pqPipelineSource* second = registered(makeSecond(proxyOf(first)));
-  pqLinksModel* links = pqApplicationCore::instance()->getLinksModel();
-  for (const char* name : { "PositionMm", "Axial", "Lateral", "DepthMm", "Preview", "PrepareInteraction" })
-  {
-    links->addPropertyLink(QString("%1 of %2 and %3").arg(name, first->getSMName(), second->getSMName()),
-                           first->getProxy(), name, second->getProxy(), name);
-  }
+  traceSharedProbe(first, second);
   return show("Split Screen", first, second);
 }
 
-bool sonoHasPlanes(const pqPipelineSource* source)
+bool sonoIsUltrasound(const pqPipelineSource* source)
 {
   return std::strcmp(source->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+}
+
+std::vector<std::vector<vtkSMProxy*>> sonoProbeSharers()
+{
+  std::map<std::pair<vtkSMProxy*, int>, std::vector<vtkSMProxy*>> groups;
+  for (const pqPipelineSource* each : ultrasounds())
+  {
+    if (sharedProbeOf(each) > 0)
+    {
+      groups[{ inputOf(each), sharedProbeOf(each) }].push_back(each->getProxy());
+    }
+  }
+  std::vector<std::vector<vtkSMProxy*>> sharers;
+  for (auto& [of, group] : groups)
+  {
+    if (group.size() > 1)
+    {
+      sharers.push_back(std::move(group));
+    }
+  }
+  return sharers;
 }
 
 SonoPlanes sonoPlanesOf(const pqPipelineSource* source)
 {
   SonoPlanes planes;
   bool isIn = false;
-  for (auto* each : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  for (pqPipelineSource* each : ultrasounds())
   {
-    if (sonoHasPlanes(source) && sonoHasPlanes(each) && inputOf(each) == inputOf(source))
+    if (sonoIsUltrasound(source) && inputOf(each) == inputOf(source))
     {
       pqPipelineSource** place = planeOf(each) == vtkSonoProbeSource::FIRST_PLANE    ? &planes.first
                                  : planeOf(each) == vtkSonoProbeSource::SECOND_PLANE ? &planes.second
@@ -153,7 +222,7 @@ SonoSplit sonoShowBiplane(pqPipelineSource* first)
   const auto made = makeSecond(proxyOf(first));
   vtkSMPropertyHelper(made, sonoMatrixPlane).Set(vtkSonoProbeSource::SECOND_PLANE);
   pqPipelineSource* second = registered(made);
-  traceLink(first, second);
+  tracePlanesLink(first, second);
   const SonoSplit split = show("Biplane", first, second);
   sonoShowImageInBody(made, split.body->getViewProxy());
   return split;

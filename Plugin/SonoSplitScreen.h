@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 class pqPipelineSource;
 class pqView;
+class vtkSMProxy;
 
 /// Two of a probe's pictures, side by side.
 struct SonoSplit
@@ -10,10 +13,21 @@ struct SonoSplit
   pqView* body = nullptr; ///< in which the probe stands
 };
 
+bool sonoIsUltrasound(const pqPipelineSource* source);
+
 /// Makes a second Simulate Ultrasound of the same input, with the settings of the first, and shows the flat images of
-/// both side by side. Where the probe stands, how deep it looks and whether it is being moved are linked, in Tools >
-/// Manage Links; all else is each one's own.
+/// both side by side. Both share a probe; all else is each one's own.
 SonoSplit sonoSplitScreen(pqPipelineSource* first);
+
+/// The property whose number, when it is not 0, those of an input have in common who share a probe; see
+/// vtkSonoUltrasound::SetSharedProbe.
+constexpr const char* sonoSharedProbe = "SharedProbe";
+/// What they have alike while there is a pqSonoSharedProbe: where the probe stands, how deep it looks and whether it is
+/// being moved.
+constexpr const char* sonoProbeProperties[] = { "PositionMm", "Axial",   "Lateral",
+                                                "DepthMm",    "Preview", "PrepareInteraction" };
+/// Each group of two or more who share a probe, in the order in which they were made.
+std::vector<std::vector<vtkSMProxy*>> sonoProbeSharers();
 
 /// The two of a matrix probe's planes, each one's own Simulate Ultrasound of the same input.
 struct SonoPlanes
@@ -24,8 +38,6 @@ struct SonoPlanes
 
 /// Their property that names the plane; see vtkSonoProbeSource::SetMatrixPlane.
 constexpr const char* sonoMatrixPlane = "MatrixPlane";
-/// Whether it is a Simulate Ultrasound.
-bool sonoHasPlanes(const pqPipelineSource* source);
 /// The pair that this one is of, also of a state's.
 SonoPlanes sonoPlanesOf(const pqPipelineSource* source);
 /// As sonoSplitScreen, but the first one scans the first plane from now on, and the second one, which has all other

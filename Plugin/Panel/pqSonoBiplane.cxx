@@ -30,7 +30,7 @@ pqSonoBiplane::~pqSonoBiplane() = default;
 
 void pqSonoBiplane::watch(pqPipelineSource* source)
 {
-  if (sonoHasPlanes(source))
+  if (sonoIsUltrasound(source))
   {
     for (const char* name : { sonoMatrixPlane, "Input" })
     {

@@ -8,7 +8,25 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
+from events import MAIN, PROBE, click, event, menu, pause, save_state, select, undo, write
 from guicase import PLAYBACKS, GuiCase, bytes_of
+
+ACCEPT = f"{MAIN}/propertiesDock/propertiesPanel/Accept"
+SPLIT = event(f"{MAIN}/SonoToolBar/SonoFlatButton/SonoFlatMenu", "activate", "actionSonoSplit")
+REDO = menu("menu_Edit", "actionEditRedo")
+TRACE = menu("menuTools", "actionToolsStartStopTrace")
+EDITOR = f"{MAIN}/0pqPythonScriptEditor0"
+
+# What a trace of a split screen began with, the trace, and the depths that both have after one got another.
+AGAIN = """
+import json
+Show(OpenDataFile(sys.argv[1], registrationName="thorax.vti"), CreateView("RenderView"))
+exec(open(sys.argv[2], encoding="utf-8").read(), globals())
+both = [source for source in GetSources().values() if source.GetXMLName() == "SonoUltrasound"]
+both[0].DepthMm = 130
+with open(sys.argv[3], "w", encoding="utf-8") as file:
+    json.dump([source.DepthMm for source in both], file)
+"""
 
 # What a state's filters say, what its flat image has at a place, and its flat view as a picture.
 ASK = """
@@ -147,14 +165,42 @@ class TestGuiFlat(GuiCase):
             state = pathlib.Path(folder, "split.pvsm")
             both = proxies(state, "SonoUltrasound")
             views = [view for view in proxies(state, "RenderView") if numbers(view, "InteractionMode") == [1]]
-            links = list(ElementTree.parse(state).iter("PropertyLink"))
         self.assertEqual(len(both), 2)
         for name in ("PositionMm", "Axial", "Lateral", "DepthMm"):
             self.assertEqual(numbers(both[0], name), numbers(both[1], name))
         self.assertEqual(numbers(both[0], "DepthMm"), [120])
         self.assertEqual(sorted(numbers(one, "GainDb")[0] for one in both), [0, 12])
         self.assertEqual(len(views), 3)  # that of the layout, and two
-        self.assertEqual(len(links), 6)
+
+    def test_a_split_screen_is_undone_and_loaded(self):
+        """With the steps before it, and what is made again or loaded shares the probe again; a trace's, too."""
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            data = f"--data={self.label_map(folder)}"
+
+            def typed(depth, name):
+                return "\n".join((event(f"{PROBE}/DepthMm", "set_string", depth), click(ACCEPT), pause(2000), save_state(name)))
+
+            made = write(folder / "made.xml", click(ACCEPT), pause(500), TRACE, click("TraceOptionsDialog/widget/OKButton"),
+                         click(f"{MAIN}/SonoToolBar/actionSonoSimulate"), pause(1000), save_state("first"),
+                         typed(140, "before"), SPLIT, pause(2000), TRACE, pause(500),
+                         event(f"{EDITOR}/PythonScriptEditorMenuBar/File", "activate", "Save &As..."),
+                         event(f"{EDITOR}/FileOpenDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/trace.py"),
+                         save_state("split"), undo(), pause(2000), save_state("undone"), undo(), pause(2000),
+                         save_state("earlier"), REDO, REDO, pause(2000), select(0, 0), pause(500), typed(100, "redone"))
+            self.assertEqual(self.play(made, folder, data), [])
+            load = write(folder / "load.xml", menu("menu_File", "actionFileLoadServerState"),
+                         event(f"{MAIN}/FileLoadServerStateDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/redone.pvsm"),
+                         click("LoadStateOptionsDialog/widget/OKButton"), pause(3000), select(0, 0), pause(500),
+                         typed(110, "loaded"))
+            self.assertEqual(self.play(load, folder), [])
+            depths = {name: [numbers(one, "DepthMm")[0] for one in proxies(folder / f"{name}.pvsm", "SonoUltrasound")]
+                      for name in ("first", "before", "split", "undone", "earlier", "redone", "loaded")}
+            self.run_script(AGAIN, folder, data.partition("=")[2], folder / "trace.py", folder / "again.json")
+            again = json.loads((folder / "again.json").read_text())
+        self.assertEqual(depths, {"first": depths["first"], "before": [140], "split": [140, 140], "undone": [140],
+                                  "earlier": depths["first"], "redone": [100, 100], "loaded": [110, 110]})
+        self.assertEqual(again, [130, 130])
 
 
 if __name__ == "__main__":
