@@ -82,7 +82,7 @@ void scan(int plane, const pqPipelineSource* source)
   source->getProxy()->UpdateVTKObjects();
 }
 
-/// What pqSonoBiplane does, for those who run a trace without it.
+/// What pqSonoKeptAlike does, for those who run a trace without it.
 void tracePlanesLink(pqPipelineSource* first, pqPipelineSource* second)
 {
   std::ostringstream text;
@@ -96,7 +96,7 @@ void tracePlanesLink(pqPipelineSource* first, pqPipelineSource* second)
   SM_SCOPED_TRACE(TraceText).arg(text.str().c_str()).arg("comment", "both planes have all other settings in common");
 }
 
-/// What pqSonoSharedProbe does, as above.
+/// What pqSonoKeptAlike does, as above.
 void traceSharedProbe(pqPipelineSource* first, pqPipelineSource* second)
 {
   std::ostringstream text;
@@ -214,6 +214,20 @@ SonoPlanes sonoPlanesOf(const pqPipelineSource* source)
     }
   }
   return isIn && planes.first && planes.second ? planes : SonoPlanes();
+}
+
+std::vector<std::vector<vtkSMProxy*>> sonoPlanePairs()
+{
+  std::vector<std::vector<vtkSMProxy*>> pairs;
+  for (const pqPipelineSource* each : ultrasounds())
+  {
+    const SonoPlanes planes = sonoPlanesOf(each);
+    if (planes.first && planes.second == each)
+    {
+      pairs.push_back({ planes.first->getProxy(), planes.second->getProxy() });
+    }
+  }
+  return pairs;
 }
 
 SonoSplit sonoShowBiplane(pqPipelineSource* first)

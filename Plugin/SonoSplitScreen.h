@@ -22,7 +22,7 @@ SonoSplit sonoSplitScreen(pqPipelineSource* first);
 /// The property whose number, when it is not 0, those of an input have in common who share a probe; see
 /// vtkSonoUltrasound::SetSharedProbe.
 constexpr const char* sonoSharedProbe = "SharedProbe";
-/// What they have alike while there is a pqSonoSharedProbe: where the probe stands, how deep it looks and whether it is
+/// What they have alike while there is a pqSonoKeptAlike: where the probe stands, how deep it looks and whether it is
 /// being moved.
 constexpr const char* sonoProbeProperties[] = { "PositionMm", "Axial",   "Lateral",
                                                 "DepthMm",    "Preview", "PrepareInteraction" };
@@ -40,8 +40,10 @@ struct SonoPlanes
 constexpr const char* sonoMatrixPlane = "MatrixPlane";
 /// The pair that this one is of, also of a state's.
 SonoPlanes sonoPlanesOf(const pqPipelineSource* source);
+/// All such pairs: each its first plane and its second.
+std::vector<std::vector<vtkSMProxy*>> sonoPlanePairs();
 /// As sonoSplitScreen, but the first one scans the first plane from now on, and the second one, which has all other
-/// settings in common with it while there is a pqSonoBiplane, the second plane. The body shows both.
+/// settings in common with it while there is a pqSonoKeptAlike, the second plane. The body shows both.
 SonoSplit sonoShowBiplane(pqPipelineSource* first);
 /// The second one goes, with what was made of it and the layout that shows both; the first one scans the volume again.
 void sonoEndBiplane(const SonoPlanes& planes);

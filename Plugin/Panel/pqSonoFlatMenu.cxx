@@ -5,7 +5,7 @@
 #include "SonoOutputFilter.h"
 #include "SonoSplitScreen.h"
 #include "pqSonoCaliperFollow.h"
-#include "pqSonoSharedProbe.h"
+#include "pqSonoKeptAlike.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -101,7 +101,7 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
   this->setToolTip(tr("Text, labels, calipers and split screen of the flat view"));
   this->setPopupMode(QToolButton::InstantPopup);
   new pqSonoCaliperFollow(this);
-  new pqSonoSharedProbe(this);
+  pqSonoKeptAlike::sharedProbe(this);
   auto* menu = new QMenu(this);
   menu->setObjectName("SonoFlatMenu");
   this->setMenu(menu);

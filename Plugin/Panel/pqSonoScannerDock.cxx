@@ -5,8 +5,8 @@
 #include "SonoSplitScreen.h"
 #include "SonoStore.h"
 #include "pqSonoBeat.h"
-#include "pqSonoBiplane.h"
 #include "pqSonoCine.h"
+#include "pqSonoKeptAlike.h"
 #include "pqSonoPath.h"
 #include "pqSonoProbeWidget.h"
 
@@ -162,7 +162,7 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
                        fill();
                      }
                    });
-  QObject::connect(new pqSonoBiplane(this), &pqSonoBiplane::changed, this, [this] { showPlane(); });
+  QObject::connect(pqSonoKeptAlike::biplane(this), &pqSonoKeptAlike::changed, this, [this] { showPlane(); });
   QObject::connect(this, &QDockWidget::visibilityChanged, this, [this] { enable(); });
   this->toggleViewAction()->setObjectName("actionSonoScanner");
   this->toggleViewAction()->setIcon(QIcon(":/sono/scanner.svg"));
