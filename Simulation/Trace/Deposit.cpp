@@ -212,6 +212,20 @@ SONO_SIMD_CLONES void LineTally::segment(const PathSegment& s)
   }
 }
 
+void LineTally::sharedSegments(const std::vector<PathSegment>& segments, int paths)
+{
+  if (paths == 0)
+  {
+    return;
+  }
+  for (PathSegment s : segments)
+  {
+    s.intensity *= float(paths);
+    segment(s);
+  }
+  segments_ += std::uint64_t(paths - 1) * segments.size();
+}
+
 template<class Add>
 inline void LineTally::addToTissueBins(const TissueEcho& echo, const DepthSpan& span, const Add& add)
 {

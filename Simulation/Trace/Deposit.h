@@ -39,6 +39,8 @@ public:
   void setEchoWeight(float weight) { echoWeight_ = weight; }
 
   void segment(const PathSegment& s);
+  /// The same of so many paths that follow one way, none of which has been reflected.
+  void sharedSegments(const std::vector<PathSegment>& segments, int paths);
   void echo(const Vec3f& point, float amplitude);
   void arrives(const PathState& path, const PathBoundary& boundary);
   std::uint64_t segments() const { return segments_; }

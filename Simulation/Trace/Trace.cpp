@@ -7,6 +7,7 @@
 #include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
 #include "Trace/Deposit.h"
+#include "Trace/SharedWay.h"
 #include "Trace/TraceSetup.h"
 #include "Trace/TracedBin.h"
 
@@ -242,13 +243,13 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
                    [&](const std::complex<float>& echo) { return echo * shareBefore; });
   }
   tally.setEchoWeight(1.0f - shareBefore);
-  LineStart start;
+  std::vector<SharedStretch> sharedStretches;
   std::vector<BinSums<double>> shared(std::size_t(out.binCount), BinSums<double>{});
   LineMeans own;
   LineMeans& means = earlier ? *earlier : own;
   if (!view.startsApart)
   {
-    start = startLine(view, space, line, tally);
+    const LineStart start = startLine(view, space, line, tally);
     shared = tally.takeBins(1);
     if (!start.meets)
     {
@@ -256,6 +257,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
       tally.takeEchoes(echoes);
       return;
     }
+    sharedStretches = sharedWay(view, space, line, start);
   }
 
   tally.setEchoWeight(1.0f / float(round.paths));
@@ -286,7 +288,7 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
         }
         else
         {
-          tracePath(view, space, line, start, key, tally);
+          traceApart(view, space, line, sharedStretches, key, tally);
         }
       }
       if (path < last)
@@ -298,6 +300,11 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
     if (last == first)
     {
       continue;
+    }
+    for (SharedStretch& stretch : sharedStretches)
+    {
+      tally.sharedSegments(stretch.segments, stretch.paths);
+      stretch.paths = 0;
     }
     const double share = double(last - first) / double(last);
     addMeans(means.bins[std::size_t(batch)], tally.takeBins(last - first), share);
