@@ -5,6 +5,7 @@
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
 #include "pqSonoLoading.h"
+#include "pqSonoUndoing.h"
 
 #include "vtkDataObjectTypes.h"
 #include "vtkPVDataInformation.h"
@@ -90,6 +91,7 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   addExamples();
   new pqSonoDelete(this);
   new pqSonoLoading(this);
+  new pqSonoUndoing(this);
   auto* active = &pqActiveObjects::instance();
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });
   QObject::connect(active, &pqActiveObjects::dataUpdated, this, [this] { updateActions(); });

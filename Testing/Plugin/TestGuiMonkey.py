@@ -200,6 +200,14 @@ class TestGuiMonkey(GuiCase):
             self.assertIn(part, fault)
         self.assertFalse(judge.ended)
 
+    def test_auto_apply_waits_while_something_is_undone(self):
+        """It looked at views that had not been put back yet, and ParaView crashed."""
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.paraview(folder, f"--script={PLAYBACKS / 'undoing.py'}")
+            self.assertEqual(done.returncode, 0, done.stdout)
+            rang = pathlib.Path(folder, "rang.txt").read_text(encoding="utf-8").split("\n")
+        self.assertEqual(rang, ["let through", "another", "end", "ParaView's"])
+
     def test_random_actions(self):
         seed, count = os.environ.get("MONKEY_SEED", "1"), int(os.environ.get("MONKEY_ACTIONS", "300"))
         print(f"seed {seed}, {count} actions", flush=True)
