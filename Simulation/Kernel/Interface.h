@@ -51,8 +51,9 @@ struct Scattered
 {
   Vec3f direction;
   bool reflected;
-  float throughput; ///< factor of the intensity
-  float amplitude;  ///< factor of the amplitude of what is in phase, with its sign; 0: nothing is
+  float throughput;    ///< factor of the intensity
+  float amplitude;     ///< factor of the amplitude of what is in phase, with its sign; 0: nothing is
+  float choice = 0.0f; ///< where in the branch's share the number that chose it lies, where the way is a coherent one
 };
 
 /// Mirror direction; `normal` points from medium 1 into medium 2, cos1 = direction . normal > 0.

@@ -57,6 +57,7 @@ SONO_HD inline void takeBranch(const TraceView& view, const PathBoundary& bounda
   }
   path.intensity *= out.throughput;
   path.amplitude *= out.amplitude;
+  path.choice = out.choice;
   path.reflections += out.reflected ? 1 : 0;
   path.pieces = 0;
   ++path.collisions;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/PathState.h"
 #include "Kernel/Rng.h"
 #include "Kernel/TraceView.h"
 
@@ -42,10 +43,17 @@ SONO_HD inline BounceSample drawFrom(const TraceView& view, const PathKey& key, 
   return independentSample(key.seed, key.line, key.batch, key.path, bounce);
 }
 
-/// What a boundary consumes, the path's `bounce`-th.
-SONO_HD inline BounceSample drawBounce(const TraceView& view, const PathKey& key, int bounce)
+/// What the boundary in front of a path consumes. Where all have transmitted it coherently so far, one number decides
+/// how far that goes on: paths that leave the way at a boundary are then as evenly many as the numbers lie, however
+/// many boundaries there are before it.
+SONO_HD inline BounceSample drawBounce(const TraceView& view, const PathKey& key, const PathState& path)
 {
-  return drawFrom(view, key, bounce, std::uint32_t(bounce));
+  BounceSample u = drawFrom(view, key, path.collisions, std::uint32_t(path.collisions));
+  if (path.collisions > 0 && isOnCoherentWay(path))
+  {
+    u.choice = path.choice;
+  }
+  return u;
 }
 
 /// What the start consumes: its place on the aperture is (polar, azimuth).

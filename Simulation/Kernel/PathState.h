@@ -24,8 +24,17 @@ struct PathState
   int target = -1; ///< target that the path is in; the cells do not count there
   LeftSurface left;
   int collisions = 0;
+  /// Of a path that every boundary so far has transmitted coherently: where in that share of all paths its number lies,
+  /// [0, 1]. Uniform again, it is the next boundary's choice.
+  float choice = 0.0f;
   int pieces = 0; ///< since the last boundary
 };
+
+/// Whether every boundary so far has transmitted the path coherently.
+SONO_HD inline bool isOnCoherentWay(const PathState& path)
+{
+  return path.reflections == 0 && path.amplitude > 0.0f;
+}
 
 /// A straight piece of a path inside one tissue.
 struct PathSegment

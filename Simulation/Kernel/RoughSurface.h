@@ -112,12 +112,8 @@ SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ra
   FacetPath path{ incident, false };
   Vec3f& w = path.direction;
   float below = 1.0f; // share of the surface that lies lower than the path
-  std::uint32_t key[3];
-  const float seen[3] = { float(u.polar), float(u.azimuth), float(u.choice) };
-  for (int i = 0; i < 3; ++i)
-  {
-    key[i] = std::uint32_t(seen[i] * 8388608.0f);
-  }
+  const auto key = [](float seen) { return std::uint64_t(std::uint32_t(seen * 8388608.0f)); };
+  const std::uint64_t facets = (key(u.polar) << 32) | key(u.azimuth);
   for (int facet = 0; facet <= mostFacets; ++facet)
   {
     const float lambda = smithLambda(alpha, w);
@@ -125,8 +121,7 @@ SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ra
     {
       break;
     }
-    const RandomWords words =
-      philox((std::uint64_t(key[0]) << 32) | key[1], key[2], std::uint32_t(facet), 0x51ab7e5u, 0u);
+    const RandomWords words = philox(facets, 0u, std::uint32_t(facet), 0x51ab7e5u, 0u);
     const float chance = uniformFrom(words.v[0]);
     if (w.z > 0.0f)
     {
@@ -179,6 +174,12 @@ SONO_HD inline float reflectionChance(const Reflection& r, bool favoursReflectio
   return favoursReflections ? larger(r.reflectance, (wasReflected ? 1.0f : 0.25f) * fabsf(r.amplitude)) : 0.0f;
 }
 
+/// Where in a share of all numbers one lies, [0, 1] but for rounding.
+SONO_HD inline float choiceWithin(float choice, float from, float share)
+{
+  return (choice - from) / larger(share, 1e-30f);
+}
+
 /// Draws the branch with a chance (see reflectionChance), then whether it goes on coherently, else the facets that it
 /// meets. One number decides on both: with p its strata are p C_R, p (1 - C_R), (1 - p) C_T and (1 - p) (1 - C_T).
 /// `normal` points from medium 1 into medium 2, cos1 = direction . normal > 0. The throughput is the mean surface's R
@@ -197,7 +198,8 @@ SONO_HD inline Scattered scatterRough(const RoughBoundary& rough, const Vec3f& d
     // Of what is in phase, sqrt(C), the share C of the paths tells.
     const float amplitude = drawn > 0.0f && coherent > 0.0f ? sqrtf(share / coherent) / drawn : 0.0f;
     return { branchDirection(direction, normal, cos1, r, reflected), reflected, throughput,
-             reflected && r.amplitude < 0.0f ? -amplitude : amplitude };
+             reflected && r.amplitude < 0.0f ? -amplitude : amplitude,
+             choiceWithin(u.choice, before, drawn * coherent) };
   }
   // A frame whose z points back to where the path comes from, x along its slant.
   const Vec3f slant = direction - normal * cos1;

@@ -104,7 +104,7 @@ template<class Sink>
 SONO_HD inline bool passBoundary(const TraceView& view, const PathBoundary& boundary, const PathKey& key,
                                  PathState& path, Sink& sink)
 {
-  leaveBoundary(view, boundary, drawBounce(view, key, path.collisions), path);
+  leaveBoundary(view, boundary, drawBounce(view, key, path), path);
   sink.left(path, boundary);
   return path.intensity > 0.0f && survivesRoulette(view, key, path);
 }

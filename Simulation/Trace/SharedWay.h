@@ -16,8 +16,8 @@ namespace sono {
 struct SharedStretch
 {
   LineStart start;                   ///< in front of the boundary that the stretch begins at
-  float chance = 1.0f;               ///< paths that draw from here ...
-  float upTo = 0.0f;                 ///< ... to here follow it
+  float chance = 1.0f;               ///< of leaving it by being reflected
+  float share = 0.0f;                ///< of the paths, that follow it: those whose choice lies above `chance` by less
   std::vector<PathSegment> segments; ///< to the next boundary, or to where the path ends
   bool isFollowed = false;           ///< false: from here on each path is by itself
   int paths = 0;                     ///< that have followed it, since they were counted last
@@ -54,8 +54,8 @@ std::vector<SharedStretch> sharedWay(const TraceView& view, const Space& space, 
     const Reflection& r = boundary.reflection;
     stretch.chance = reflectionChance(r, view.favoursReflections, false);
     const float coherent = rough.alpha <= 0.0f ? 1.0f : coherentShare(rough, boundary.cosine, r.cosRefracted, false);
-    stretch.upTo = stretch.chance + (1.0f - stretch.chance) * coherent;
-    if (r.total || !(stretch.upTo > stretch.chance))
+    stretch.share = (1.0f - stretch.chance) * coherent;
+    if (r.total || !(stretch.share > 0.0f))
     {
       break;
     }
@@ -81,14 +81,16 @@ template<class Space, class Sink>
 inline void traceApart(const TraceView& view, const Space& space, const TraceLine& line,
                        std::vector<SharedStretch>& stretches, const PathKey& key, Sink& sink)
 {
+  float choice = drawBounce(view, key, stretches.front().start.path).choice;
   for (SharedStretch& stretch : stretches)
   {
-    const float choice = stretch.isFollowed ? drawBounce(view, key, stretch.start.path.collisions).choice : -1.0f;
-    if (!stretch.isFollowed || choice < stretch.chance || choice > stretch.upTo)
+    if (!stretch.isFollowed || choice < stretch.chance || choice > stretch.chance + stretch.share)
     {
+      stretch.start.path.choice = choice;
       tracePath(view, space, line, stretch.start, key, sink);
       return;
     }
+    choice = choiceWithin(choice, stretch.chance, stretch.share);
     ++stretch.paths;
   }
 }

@@ -39,6 +39,11 @@ const std::vector<Goal> goals{
   { "real_wire_width_error_mm", "0.15 or less", [](double v) { return v <= 0.15; } },
   { "attenuation_slope_db_per_cm", "3.60", [](double v) { return std::fabs(v - 3.6) <= 0.005; } },
   { "equal_rmse_path_ratio", "1 or more", [](double v) { return v >= 1.0; } },
+  { "equal_rmse_time_ratio_a4c", "10 or more", [](double v) { return v >= 10.0; } },
+  { "equal_rmse_time_ratio_stack", "3 or more", [](double v) { return v >= 3.0; } },
+  { "equal_rmse_time_ratio_cyst", "3 or more", [](double v) { return v >= 3.0; } },
+  { "equal_rmse_time_ratio_rib", "3 or more", [](double v) { return v >= 3.0; } },
+  { "equal_rmse_time_ratio_phantom", "3 or more", [](double v) { return v >= 3.0; } },
 };
 
 class Report

@@ -136,7 +136,7 @@ TEST(ErrorStudy, WithoutNoiseADifferenceIsWhatItIsOnAverage)
 TEST(ErrorStudy, AReferenceIsAsFarOffAsItSays)
 {
   const BenchScene rib = makeBenchScene("rib", 2.0, 4);
-  const BenchReference many = makeReference(rib, 60000);
+  const BenchReference many = makeReference(rib, 240000);
   // The ratio of one reference, whose error a few rare paths decide, is off by 0.3 itself.
   double intensity = 0.0;
   double rf = 0.0;
