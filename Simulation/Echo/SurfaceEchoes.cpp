@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace sono {
@@ -25,13 +26,6 @@ constexpr double widestPerSigma = 0.75;
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.
 constexpr double diffuseStepPerLambda = 1.2;
-
-/// Voxels from piece to piece.
-Vec3i voxelsApart(const Vec3f& spacingMm, SurfaceDetail detail)
-{
-  return detail == SurfaceDetail::Full ? Vec3i(1)
-                                       : glm::max(Vec3i(float(interactivePieceMm) / spacingMm + 1e-3f), Vec3i(1));
-}
 
 double blobMm(const EchoSettings& s, const BeamExtent& beam)
 {
@@ -70,8 +64,8 @@ struct SurfaceEchoes::Group
 struct SurfaceEchoes::Room
 {
   FaceList faces;
-  std::vector<std::size_t> taken;                 ///< of the brick's faces, those in the list
   std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
+  std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
   PieceList pieces;
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
   std::vector<HeardList> heard;             ///< by line
@@ -115,16 +109,15 @@ struct SurfaceEchoes::Room
 SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets,
                              const EchoSettings& settings, const BeamModel& beams, SurfaceDetail detail)
   : pieces_(scene.surfacePieces())
-  , apart_(voxelsApart(pieces_.spacingMm(), detail))
+  , isCoarse_(detail == SurfaceDetail::Coarse)
   , seed_(settings.seed)
 {
   const BeamExtent beam = beamExtent(beams);
   blobMm_ = sono::blobMm(settings, beam);
   const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
-  const bool isCoarse = detail == SurfaceDetail::Coarse;
-  const double diffuseSteps = isCoarse ? interactiveDiffuseSteps : 1.0;
-  const double widestSteps = isCoarse ? interactiveWidestSteps : 1.0;
-  const Vec3f spacing = pieces_.spacingMm() * Vec3f(apart_);
+  const double diffuseSteps = isCoarse_ ? interactiveDiffuseSteps : 1.0;
+  const double widestSteps = isCoarse_ ? interactiveWidestSteps : 1.0;
+  const Vec3f spacing = pieces_.spacingMm() * Vec3f(isCoarse_ ? pieces_.coarseApart() : Vec3i(1));
   nets_.spacingMm = spacing;
   nets_.diffuse = cutsFor(spacing, diffuseSteps * diffuseStepPerLambda * lambdaMm);
   nets_.most = cutsFor(spacing, blobMm_ / blobPerStep).cuts;
@@ -147,46 +140,42 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   }
 }
 
-/// Every so many columns along each of two axes: they stand for those beside them.
-bool SurfaceEchoes::isTaken(const SurfacePieces::Face& face) const
-{
-  const auto isOne = [&](int axis) { return face.axis == axis || face.voxel[axis] % apart_[axis] == 0; };
-  return apart_ == Vec3i(1) || (isOne(0) && isOne(1) && isOne(2));
-}
-
 void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group,
                                Room& room) const
 {
   const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
+  const std::uint32_t* coarse = isCoarse_ ? pieces_.coarseFaces(brick).data() : nullptr;
+  const std::size_t count = isCoarse_ ? pieces_.coarseFaces(brick).size() : faces.size();
+  const auto numberOf = [&](std::size_t n) { return coarse ? std::size_t(coarse[n]) : n; };
   const float longestMm = longestStepMm();
   room.faces.clear();
-  room.taken.clear();
-  for (std::size_t f = 0; f < faces.size(); ++f)
+  for (std::size_t n = 0; n < count; ++n)
   {
-    const SurfacePieces::Face& face = faces[f];
-    if (isTaken(face))
-    {
-      const int row = rows_->row(face.below, face.above);
-      room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
-                      rows_->at(row ^ 1));
-      room.taken.push_back(f);
-    }
+    const SurfacePieces::Face& face = faces[numberOf(n)];
+    const int row = rows_->row(face.below, face.above);
+    room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
+                    rows_->at(row ^ 1));
   }
   room.mayHear.resize(group.beams.size());
+  room.anyMayHear.assign(count, 0);
   for (const std::size_t i : seeing)
   {
-    room.mayHear[i].resize(room.taken.size());
+    room.mayHear[i].resize(count);
     markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayHear[i].data());
+    std::transform(room.anyMayHear.begin(), room.anyMayHear.end(), room.mayHear[i].begin(), room.anyMayHear.begin(),
+                   std::bit_or<>());
   }
   room.pieces.clear();
   room.pieceOf.clear();
-  for (std::size_t n = 0; n < room.taken.size(); ++n)
+  for (std::size_t n = 0; n < count; ++n)
   {
-    const std::size_t f = room.taken[n];
+    if (room.anyMayHear[n] == 0)
+    {
+      continue;
+    }
+    const std::size_t f = numberOf(n);
     const int row = rows_->row(faces[f].below, faces[f].above);
-    const bool isHeard = group.table.counts(row) && std::any_of(seeing.begin(), seeing.end(),
-                                                                [&](std::size_t i) { return room.mayHear[i][n] != 0; });
-    const SurfacePiece* piece = isHeard ? pieces_.piece(brick, f) : nullptr;
+    const SurfacePiece* piece = group.table.counts(row) ? pieces_.piece(brick, f) : nullptr;
     if (piece)
     {
       for (const std::size_t i : seeing)

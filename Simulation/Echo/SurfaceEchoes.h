@@ -61,10 +61,8 @@ private:
   /// Pieces that one of the lines hears become points.
   void expand(const std::vector<std::size_t>& seeing, Room& room) const;
 
-  bool isTaken(const SurfacePieces::Face& face) const;
-
   const SurfacePieces& pieces_;
-  Vec3i apart_; ///< voxels from piece to piece
+  bool isCoarse_;
   std::uint64_t seed_;
   double blobMm_;
   std::shared_ptr<const SurfaceRows> rows_;

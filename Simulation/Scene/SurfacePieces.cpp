@@ -1,5 +1,6 @@
 #include "Scene/SurfacePieces.h"
 
+#include "Core/Policy.h"
 #include "Core/Simd.h"
 #include "Scene/FindFace.h"
 #include "Scene/FitPiece.h"
@@ -34,6 +35,7 @@ SurfacePieces::SurfacePieces(const std::uint8_t* tissues, const Vec3i& size, con
   , tissues_(tissues)
   , size_(size)
   , spacingMm_(spacingMm)
+  , coarseApart_(glm::max(Vec3i(float(interactivePieceMm) / spacingMm_ + 1e-3f), Vec3i(1)))
   , sizeMm_(Vec3d(size) * spacingMm)
   , edgeMm_(float(6.0 * std::max({ spacingMm.x, spacingMm.y, spacingMm.z })))
   , bricks_(Vec3i(glm::floor(sizeMm_ / edgeMm_)) + 1)
@@ -76,6 +78,7 @@ const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
     // Of two threads that make the same brick one is too late.
     auto mine = std::make_unique<Brick>();
     mine->faces = findFaces(brick);
+    mine->coarse = coarseOf(mine->faces);
     mine->pieces = std::make_unique<std::atomic<const SurfacePiece*>[]>(mine->faces.size());
     if (place.compare_exchange_strong(there, mine.get(), std::memory_order_acq_rel))
     {
@@ -90,6 +93,13 @@ const std::vector<SurfacePieces::Face>& SurfacePieces::faces(const Vec3i& brick)
   static const std::vector<Face> none;
   const Brick* there = at(brick);
   return there ? there->faces : none;
+}
+
+const std::vector<std::uint32_t>& SurfacePieces::coarseFaces(const Vec3i& brick) const
+{
+  static const std::vector<std::uint32_t> none;
+  const Brick* there = at(brick);
+  return there ? there->coarse : none;
 }
 
 const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) const
@@ -149,6 +159,23 @@ std::vector<SurfacePieces::Face> SurfacePieces::findFaces(const Vec3i& brick) co
   }
   faces.shrink_to_fit();
   return faces;
+}
+
+std::vector<std::uint32_t> SurfacePieces::coarseOf(const std::vector<Face>& faces) const
+{
+  std::vector<std::uint32_t> coarse;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    const auto isOne = [&](int axis) {
+      return faces[f].axis == axis || faces[f].voxel[axis] % coarseApart_[axis] == 0;
+    };
+    if (isOne(0) && isOne(1) && isOne(2))
+    {
+      coarse.push_back(std::uint32_t(f));
+    }
+  }
+  coarse.shrink_to_fit();
+  return coarse;
 }
 
 } // namespace sono

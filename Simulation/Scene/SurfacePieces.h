@@ -51,6 +51,10 @@ public:
   Vec3i firstBrick(int block) const;
   /// None outside of the volume. Stays where it is while this lives.
   const std::vector<Face>& faces(const Vec3i& brick) const;
+  /// Numbers of those of a brick's faces that stand for all where a probe is being moved (Policy.h): every so many
+  /// columns along each of two axes, coarseApart() voxels from one to the next.
+  const std::vector<std::uint32_t>& coarseFaces(const Vec3i& brick) const;
+  const Vec3i& coarseApart() const { return coarseApart_; }
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
 
@@ -58,6 +62,7 @@ private:
   struct Brick
   {
     std::vector<Face> faces;
+    std::vector<std::uint32_t> coarse;
     std::unique_ptr<std::atomic<const SurfacePiece*>[]> pieces; ///< parallel to the faces; null: not yet made
 
     ~Brick();
@@ -65,11 +70,13 @@ private:
 
   const Brick* at(const Vec3i& brick) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
+  std::vector<std::uint32_t> coarseOf(const std::vector<Face>& faces) const;
 
   std::uint64_t id_;
   const std::uint8_t* tissues_;
   Vec3i size_;
   Vec3f spacingMm_;
+  Vec3i coarseApart_;
   Vec3f sizeMm_;
   float edgeMm_;
   Vec3i bricks_;
