@@ -26,6 +26,8 @@ constexpr double widestPerSigma = 0.75;
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.
 constexpr double diffuseStepPerLambda = 1.2;
+/// Faces and pieces lie all over the memory, and are asked for while those before are looked at.
+constexpr std::size_t facesAhead = 8;
 
 double blobMm(const EchoSettings& s, const BeamExtent& beam)
 {
@@ -68,6 +70,7 @@ struct SurfaceEchoes::Room
   std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
   PieceList pieces;
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
+  std::vector<std::size_t> faceOf;          ///< the same: of the brick's
   std::vector<HeardList> heard;             ///< by line
   PointList diffuse, coherent;
 
@@ -152,6 +155,7 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
   for (std::size_t n = 0; n < count; ++n)
   {
     const SurfacePieces::Face& face = faces[numberOf(n)];
+    __builtin_prefetch(&faces[numberOf(std::min(n + facesAhead, count - 1))]);
     const int row = rows_->row(face.below, face.above);
     room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
                     rows_->at(row ^ 1));
@@ -167,6 +171,7 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
   }
   room.pieces.clear();
   room.pieceOf.clear();
+  room.faceOf.clear();
   for (std::size_t n = 0; n < count; ++n)
   {
     if (room.anyMayHear[n] == 0)
@@ -174,19 +179,27 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
       continue;
     }
     const std::size_t f = numberOf(n);
-    const int row = rows_->row(faces[f].below, faces[f].above);
-    const SurfacePiece* piece = group.table.counts(row) ? pieces_.piece(brick, f) : nullptr;
+    const SurfacePiece* piece =
+      group.table.counts(rows_->row(faces[f].below, faces[f].above)) ? pieces_.piece(brick, f) : nullptr;
     if (piece)
     {
+      __builtin_prefetch(piece);
+      __builtin_prefetch(reinterpret_cast<const char*>(piece + 1) - 1);
       for (const std::size_t i : seeing)
       {
         room.mayHear[i][room.pieceOf.size()] = room.mayHear[i][n]; // none overtakes its face
       }
-      const PieceBounds bounds = pieceBounds(*piece, longestMm);
-      room.pieces.push(piece->positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(*piece)),
-                       row);
       room.pieceOf.push_back(piece);
+      room.faceOf.push_back(f);
     }
+  }
+  for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
+  {
+    const SurfacePiece& piece = *room.pieceOf[p];
+    const SurfacePieces::Face& face = faces[room.faceOf[p]];
+    const PieceBounds bounds = pieceBounds(piece, longestMm);
+    room.pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(piece)),
+                     rows_->row(face.below, face.above));
   }
 }
 
