@@ -6,6 +6,8 @@
 #include "Scene/FitPiece.h"
 
 #include <algorithm>
+#include <cmath>
+#include <deque>
 
 namespace sono {
 
@@ -13,7 +15,9 @@ namespace {
 
 using namespace stepfit;
 
-const SurfacePiece noPiece{}; // stands where columns of another axis do
+const SurfacePiece noPiece{};     // stands where columns of another axis do
+constexpr float besideRad = 0.6f; // of what goes on beside a piece
+constexpr float besideMm = 60.0f; // a drag's way
 
 SONO_SIMD_CLONES __attribute__((flatten)) SurfacePiece fitByVectors(const std::uint8_t* tissues, const Vec3i& size,
                                                                     const Vec3f& spacing, const SurfaceFace& face)
@@ -64,14 +68,19 @@ SurfacePieces::Brick::~Brick()
   }
 }
 
+std::size_t SurfacePieces::numberOf(const Vec3i& brick) const
+{
+  return std::size_t(brick.x) +
+         std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z));
+}
+
 const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
 {
   if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))
   {
     return nullptr;
   }
-  auto& place = made_[std::size_t(brick.x) +
-                      std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z))];
+  auto& place = made_[numberOf(brick)];
   const Brick* there = place.load(std::memory_order_acquire);
   if (!there)
   {
@@ -118,6 +127,70 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
     }
   }
   return piece == &noPiece ? nullptr : piece;
+}
+
+void SurfacePieces::fitBeside(const std::function<bool()>& goesOn) const
+{
+  // A face's rough normal points along its axis, so that two of one surface may be each other's opposite.
+  const auto addTo = [](Vec3f& sum, const Vec3f& normal) { sum += glm::dot(sum, normal) < 0.0f ? -normal : normal; };
+  struct Reached
+  {
+    Vec3i brick;
+    Vec3f normal; ///< of the pieces that lead there; any length
+    float awayMm; ///< from the first of them, brick by brick
+  };
+  std::deque<Reached> next;
+  std::vector<bool> isReached(made_.size(), false);
+  for (std::size_t n = 0; n < made_.size(); ++n)
+  {
+    const Brick* there = made_[n].load(std::memory_order_acquire);
+    Vec3f normal(0.0f);
+    for (std::size_t f = 0; there && f < there->faces.size(); ++f)
+    {
+      if (there->pieces[f].load(std::memory_order_relaxed))
+      {
+        addTo(normal, there->faces[f].roughNormal);
+      }
+    }
+    if (normal != Vec3f(0.0f))
+    {
+      const Vec3i brick(int(n % std::size_t(bricks_.x)), int(n / std::size_t(bricks_.x) % std::size_t(bricks_.y)),
+                        int(n / std::size_t(bricks_.x) / std::size_t(bricks_.y)));
+      next.push_back({ brick, normal, 0.0f });
+      isReached[n] = true;
+    }
+  }
+  for (; !next.empty(); next.pop_front())
+  {
+    const Reached from = next.front();
+    const float least = std::cos(besideRad) * glm::length(from.normal);
+    const std::vector<Face>& all = faces(from.brick);
+    Vec3f normal(0.0f);
+    for (const std::uint32_t f : coarseFaces(from.brick))
+    {
+      if (!goesOn())
+      {
+        return;
+      }
+      if (std::fabs(glm::dot(all[f].roughNormal, from.normal)) >= least)
+      {
+        piece(from.brick, f);
+        addTo(normal, all[f].roughNormal);
+      }
+    }
+    const float awayMm = from.awayMm + edgeMm_;
+    for (int side = 0; side < 6 && normal != Vec3f(0.0f) && awayMm <= besideMm; ++side)
+    {
+      Vec3i beside = from.brick;
+      beside[side / 2] += side % 2 == 0 ? -1 : 1;
+      const bool isInside = blockOf(beside) >= 0;
+      if (isInside && !isReached[numberOf(beside)])
+      {
+        isReached[numberOf(beside)] = true;
+        next.push_back({ beside, normal, awayMm });
+      }
+    }
+  }
 }
 
 int SurfacePieces::blockOf(const Vec3i& brick) const

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -57,6 +58,11 @@ public:
   const Vec3i& coarseApart() const { return coarseApart_; }
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
+  /// Whether that has been asked for.
+  bool isFitted(const Vec3i& brick, std::size_t face) const { return at(brick)->pieces[face].load() != nullptr; }
+  /// Fits, while `goesOn`, what a probe that moves from here will ask for: from the bricks of which pieces have been
+  /// asked for outwards, to 60 mm, those of the coarse faces that go on as the pieces beside them do, to 0.6 rad.
+  void fitBeside(const std::function<bool()>& goesOn) const;
 
 private:
   struct Brick
@@ -69,6 +75,7 @@ private:
   };
 
   const Brick* at(const Vec3i& brick) const;
+  std::size_t numberOf(const Vec3i& brick) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
   std::vector<std::uint32_t> coarseOf(const std::vector<Face>& faces) const;
 

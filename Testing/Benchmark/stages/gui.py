@@ -14,6 +14,9 @@ STEP_MM = 1.0
 def drag(name, probe, picture, skin):
     """Prints the figures of one drag and of the rest after it. `picture` is what the view shows of the image."""
     hand = vtkSonoProbeRepresentation()
+    # A view asks for the output that it shows; UpdatePipeline() would ask for all ten of the one filter, and gather what is known
+    # of each.
+    made = picture.SMProxy.GetClientSideObject()
 
     def show(preview):
         """One picture at the pose of the hand, as the probe's panel asks for it; the seconds that it took."""
@@ -21,12 +24,12 @@ def drag(name, probe, picture, skin):
         for name in ("PositionMm", "Axial", "Lateral"):
             probe.GetProperty(name).SetData(getattr(hand, "Get" + name)())
         probe.Preview = preview
-        picture.UpdatePipeline()
-        if picture.GetDataInformation().GetPointDataInformation().GetArrayInformation("BMode") is None:
-            raise SystemExit("gui: the chain made no picture")
+        made.Update(0)
         return time.perf_counter() - start
 
     show(0)
+    if not made.GetOutputDataObject(0).GetPointData().HasArray("BMode"):
+        raise SystemExit("gui: the chain made no picture")
     start = time.perf_counter()
     hand.GetSkin().SetSurfaces(skin)
     hand.GetSkin().Prepare()  # as the panel does when nothing else is to be done
