@@ -114,7 +114,7 @@ struct Scene::Foreseeing
       }
       if (pieces)
       {
-        pieces->fitBeside([this] { return !unwanted; });
+        pieces->fitBeside(met->region().box, [this] { return !unwanted; });
       }
     }))
   {

@@ -129,7 +129,7 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
   return piece == &noPiece ? nullptr : piece;
 }
 
-void SurfacePieces::fitBeside(const std::function<bool()>& goesOn) const
+void SurfacePieces::fitBeside(const VoxelBox& box, const std::function<bool()>& goesOn) const
 {
   // A face's rough normal points along its axis, so that two of one surface may be each other's opposite.
   const auto addTo = [](Vec3f& sum, const Vec3f& normal) { sum += glm::dot(sum, normal) < 0.0f ? -normal : normal; };
@@ -141,23 +141,26 @@ void SurfacePieces::fitBeside(const std::function<bool()>& goesOn) const
   };
   std::deque<Reached> next;
   std::vector<bool> isReached(made_.size(), false);
-  for (std::size_t n = 0; n < made_.size(); ++n)
+  const Vec3f perBrick = spacingMm_ / edgeMm_;
+  const Vec3i first = glm::clamp(Vec3i(Vec3f(box.first) * perBrick), Vec3i(0), bricks_);
+  const Vec3i last = glm::clamp(Vec3i(Vec3f(box.last) * perBrick) + 1, first, bricks_);
+  const Vec3i size = last - first;
+  for (int n = 0; n < size.x * size.y * size.z; ++n)
   {
-    const Brick* there = made_[n].load(std::memory_order_acquire);
+    const Vec3i brick = first + Vec3i(n % size.x, n / size.x % size.y, n / size.x / size.y);
     Vec3f normal(0.0f);
-    for (std::size_t f = 0; there && f < there->faces.size(); ++f)
+    const bool isMade = made_[numberOf(brick)].load(std::memory_order_acquire) != nullptr;
+    for (std::size_t f = 0; isMade && f < faces(brick).size(); ++f)
     {
-      if (there->pieces[f].load(std::memory_order_relaxed))
+      if (isFitted(brick, f))
       {
-        addTo(normal, there->faces[f].roughNormal);
+        addTo(normal, faces(brick)[f].roughNormal);
       }
     }
     if (normal != Vec3f(0.0f))
     {
-      const Vec3i brick(int(n % std::size_t(bricks_.x)), int(n / std::size_t(bricks_.x) % std::size_t(bricks_.y)),
-                        int(n / std::size_t(bricks_.x) / std::size_t(bricks_.y)));
       next.push_back({ brick, normal, 0.0f });
-      isReached[n] = true;
+      isReached[numberOf(brick)] = true;
     }
   }
   for (; !next.empty(); next.pop_front())

@@ -3,6 +3,7 @@
 #include "Kernel/SurfacePiece.h"
 #include "Kernel/Vec.h"
 #include "Scene/SurfaceFace.h"
+#include "Scene/VoxelBox.h"
 
 #include <atomic>
 #include <cstdint>
@@ -60,9 +61,10 @@ public:
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
   /// Whether that has been asked for.
   bool isFitted(const Vec3i& brick, std::size_t face) const { return at(brick)->pieces[face].load() != nullptr; }
-  /// Fits, while `goesOn`, what a probe that moves from here will ask for: from the bricks of which pieces have been
-  /// asked for outwards, to 60 mm, those of the coarse faces that go on as the pieces beside them do, to 0.6 rad.
-  void fitBeside(const std::function<bool()>& goesOn) const;
+  /// Fits, while `goesOn`, what a probe that moves from here will ask for: from the bricks around `box`, in voxels, of
+  /// which pieces have been asked for, outwards to 60 mm those of the coarse faces that go on as the pieces beside them
+  /// do, to 0.6 rad.
+  void fitBeside(const VoxelBox& box, const std::function<bool()>& goesOn) const;
 
 private:
   struct Brick

@@ -39,7 +39,7 @@ struct Fitted
 };
 
 /// Of the coarse faces of all bricks, those whose piece is there. `stop` ends the fitting at so many questions.
-Fitted fittedBeside(int stop)
+Fitted fittedBeside(const VoxelBox& box, int stop)
 {
   const std::vector<std::uint8_t> tissues = floorAndWall();
   const SurfacePieces pieces(tissues.data(), Vec3i(edge), Vec3d(1.0));
@@ -50,7 +50,7 @@ Fitted fittedBeside(int stop)
   EXPECT_NE(upright, heard.end());
   EXPECT_NE(pieces.piece(first, *upright), nullptr);
   int asked = 0;
-  pieces.fitBeside([&] { return ++asked <= stop; });
+  pieces.fitBeside(box, [&] { return ++asked <= stop; });
   Fitted count;
   for (int k = 0; k < pieces.bricks().z; ++k)
   {
@@ -76,7 +76,7 @@ Fitted fittedBeside(int stop)
 
 TEST(SurfacePieces, WhatGoesOnBesideAPieceIsFittedAheadAndNoWallAcross)
 {
-  const Fitted all = fittedBeside(1000000);
+  const Fitted all = fittedBeside({ Vec3i(0), Vec3i(edge) }, 1000000);
   // Every second column of the floor's 40 x 48 along each of two axes, slanted by 24 degrees at most.
   EXPECT_GE(all.floor, 20 * 24 * 9 / 10);
   EXPECT_EQ(all.wall, 0);
@@ -84,9 +84,15 @@ TEST(SurfacePieces, WhatGoesOnBesideAPieceIsFittedAheadAndNoWallAcross)
 
 TEST(SurfacePieces, FittingAheadEndsWhenItIsToldTo)
 {
-  const Fitted few = fittedBeside(10);
+  const Fitted few = fittedBeside({ Vec3i(0), Vec3i(edge) }, 10);
   EXPECT_GE(few.floor, 1);
   EXPECT_LE(few.floor, 11);
+}
+
+TEST(SurfacePieces, WhatWasHeardElsewhereIsNotGoneOnFrom)
+{
+  const Fitted none = fittedBeside({ Vec3i(24, 24, 0), Vec3i(edge) }, 1000000);
+  EXPECT_EQ(none.floor, 1); // the one that was asked for
 }
 
 } // namespace
