@@ -95,12 +95,12 @@ struct Scene::Making
   std::shared_future<SharedRegion> region; ///< null where memory ran out; its end is waited for
 };
 
-/// What a moving probe's pictures will ask for, made in the background while the probe rests: records that the resting
-/// one's paths have met, and beside them; pieces of the surfaces that it hears, further on. Ends when it is dropped.
+/// Records that a moving probe's first paths will ask for, baked in the background while the probe rests: those that
+/// the resting one's have met, and beside them. Ends when it is dropped.
 struct Scene::Foreseeing
 {
-  Foreseeing(std::shared_ptr<const Making> making, SharedRegion met, const SurfacePieces* pieces)
-    : done(std::async(std::launch::async, [this, pieces, making = std::move(making), met = std::move(met)] {
+  Foreseeing(std::shared_ptr<const Making> making, SharedRegion met)
+    : done(std::async(std::launch::async, [this, making = std::move(making), met = std::move(met)] {
       while (making->region.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
       {
         if (unwanted)
@@ -111,10 +111,6 @@ struct Scene::Foreseeing
       if (const SharedRegion region = making->region.get())
       {
         region->bakeBeside(*met, [this] { return !unwanted; });
-      }
-      if (pieces)
-      {
-        pieces->fitBeside(met->region().box, [this] { return !unwanted; });
       }
     }))
   {
@@ -453,8 +449,8 @@ void Scene::foresee(std::shared_ptr<const Making> making) const
 {
   std::unique_ptr<Foreseeing> before; // ends after the lock
   const std::lock_guard<std::mutex> lock(mutex_);
-  before = std::exchange(
-    foreseeing_, making && region_ ? std::make_unique<Foreseeing>(std::move(making), region_, pieces_.get()) : nullptr);
+  before =
+    std::exchange(foreseeing_, making && region_ ? std::make_unique<Foreseeing>(std::move(making), region_) : nullptr);
 }
 
 bool Scene::hasInteractiveRegion() const

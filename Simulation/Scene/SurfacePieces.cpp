@@ -6,8 +6,6 @@
 #include "Scene/FitPiece.h"
 
 #include <algorithm>
-#include <cmath>
-#include <deque>
 
 namespace sono {
 
@@ -15,9 +13,7 @@ namespace {
 
 using namespace stepfit;
 
-const SurfacePiece noPiece{};     // stands where columns of another axis do
-constexpr float besideRad = 0.6f; // of what goes on beside a piece
-constexpr float besideMm = 60.0f; // a drag's way
+const SurfacePiece noPiece{}; // stands where columns of another axis do
 
 SONO_SIMD_CLONES __attribute__((flatten)) SurfacePiece fitByVectors(const std::uint8_t* tissues, const Vec3i& size,
                                                                     const Vec3f& spacing, const SurfaceFace& face)
@@ -68,19 +64,14 @@ SurfacePieces::Brick::~Brick()
   }
 }
 
-std::size_t SurfacePieces::numberOf(const Vec3i& brick) const
-{
-  return std::size_t(brick.x) +
-         std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z));
-}
-
 const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
 {
   if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))
   {
     return nullptr;
   }
-  auto& place = made_[numberOf(brick)];
+  auto& place = made_[std::size_t(brick.x) +
+                      std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z))];
   const Brick* there = place.load(std::memory_order_acquire);
   if (!there)
   {
@@ -127,73 +118,6 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
     }
   }
   return piece == &noPiece ? nullptr : piece;
-}
-
-void SurfacePieces::fitBeside(const VoxelBox& box, const std::function<bool()>& goesOn) const
-{
-  // A face's rough normal points along its axis, so that two of one surface may be each other's opposite.
-  const auto addTo = [](Vec3f& sum, const Vec3f& normal) { sum += glm::dot(sum, normal) < 0.0f ? -normal : normal; };
-  struct Reached
-  {
-    Vec3i brick;
-    Vec3f normal; ///< of the pieces that lead there; any length
-    float awayMm; ///< from the first of them, brick by brick
-  };
-  std::deque<Reached> next;
-  std::vector<bool> isReached(made_.size(), false);
-  const Vec3f perBrick = spacingMm_ / edgeMm_;
-  const Vec3i first = glm::clamp(Vec3i(Vec3f(box.first) * perBrick), Vec3i(0), bricks_);
-  const Vec3i last = glm::clamp(Vec3i(Vec3f(box.last) * perBrick) + 1, first, bricks_);
-  const Vec3i size = last - first;
-  for (int n = 0; n < size.x * size.y * size.z; ++n)
-  {
-    const Vec3i brick = first + Vec3i(n % size.x, n / size.x % size.y, n / size.x / size.y);
-    Vec3f normal(0.0f);
-    const bool isMade = made_[numberOf(brick)].load(std::memory_order_acquire) != nullptr;
-    for (std::size_t f = 0; isMade && f < faces(brick).size(); ++f)
-    {
-      if (isFitted(brick, f))
-      {
-        addTo(normal, faces(brick)[f].roughNormal);
-      }
-    }
-    if (normal != Vec3f(0.0f))
-    {
-      next.push_back({ brick, normal, 0.0f });
-      isReached[numberOf(brick)] = true;
-    }
-  }
-  for (; !next.empty(); next.pop_front())
-  {
-    const Reached from = next.front();
-    const float least = std::cos(besideRad) * glm::length(from.normal);
-    const std::vector<Face>& all = faces(from.brick);
-    Vec3f normal(0.0f);
-    for (const std::uint32_t f : coarseFaces(from.brick))
-    {
-      if (!goesOn())
-      {
-        return;
-      }
-      if (std::fabs(glm::dot(all[f].roughNormal, from.normal)) >= least)
-      {
-        piece(from.brick, f);
-        addTo(normal, all[f].roughNormal);
-      }
-    }
-    const float awayMm = from.awayMm + edgeMm_;
-    for (int side = 0; side < 6 && normal != Vec3f(0.0f) && awayMm <= besideMm; ++side)
-    {
-      Vec3i beside = from.brick;
-      beside[side / 2] += side % 2 == 0 ? -1 : 1;
-      const bool isInside = blockOf(beside) >= 0;
-      if (isInside && !isReached[numberOf(beside)])
-      {
-        isReached[numberOf(beside)] = true;
-        next.push_back({ beside, normal, awayMm });
-      }
-    }
-  }
 }
 
 int SurfacePieces::blockOf(const Vec3i& brick) const

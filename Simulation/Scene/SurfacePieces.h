@@ -3,11 +3,9 @@
 #include "Kernel/SurfacePiece.h"
 #include "Kernel/Vec.h"
 #include "Scene/SurfaceFace.h"
-#include "Scene/VoxelBox.h"
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -59,12 +57,6 @@ public:
   const Vec3i& coarseApart() const { return coarseApart_; }
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
-  /// Whether that has been asked for.
-  bool isFitted(const Vec3i& brick, std::size_t face) const { return at(brick)->pieces[face].load() != nullptr; }
-  /// Fits, while `goesOn`, what a probe that moves from here will ask for: from the bricks around `box`, in voxels, of
-  /// which pieces have been asked for, outwards to 60 mm those of the coarse faces that go on as the pieces beside them
-  /// do, to 0.6 rad.
-  void fitBeside(const VoxelBox& box, const std::function<bool()>& goesOn) const;
 
 private:
   struct Brick
@@ -77,7 +69,6 @@ private:
   };
 
   const Brick* at(const Vec3i& brick) const;
-  std::size_t numberOf(const Vec3i& brick) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
   std::vector<std::uint32_t> coarseOf(const std::vector<Face>& faces) const;
 
