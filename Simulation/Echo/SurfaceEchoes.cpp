@@ -147,9 +147,9 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
                                Room& room) const
 {
   const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
-  const std::uint32_t* coarse = isCoarse_ ? pieces_.coarseFaces(brick).data() : nullptr;
-  const std::size_t count = isCoarse_ ? pieces_.coarseFaces(brick).size() : faces.size();
-  const auto numberOf = [&](std::size_t n) { return coarse ? std::size_t(coarse[n]) : n; };
+  const std::vector<std::uint32_t>* coarse = isCoarse_ ? &pieces_.coarseFaces(brick) : nullptr;
+  const std::size_t count = coarse ? coarse->size() : faces.size();
+  const auto numberOf = [&](std::size_t n) { return coarse ? std::size_t((*coarse)[n]) : n; };
   const float longestMm = longestStepMm();
   room.faces.clear();
   for (std::size_t n = 0; n < count; ++n)

@@ -3,15 +3,12 @@
 #include "BeamScenes.h"
 #include "ErrorCurves.h"
 #include "RegionSwitches.h"
-#include "RelativeRms.h"
 #include "SamplingName.h"
 #include "Study.h"
-#include "Trace/Trace.h"
 
 #include <tbb/global_control.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <complex>
 #include <cstdio>
@@ -292,7 +289,7 @@ void measureRatio(const std::string& scene, bool reverberates, const std::string
   const int paths = output.quick() ? 100 : 1000;
   tracing.pathsPerLine = 400 * paths;
   tracing.seed = 1001;
-  const std::vector<float> reference = trace(*bench.scene, bench.lines, tracing, {}, bench.targets).intensity;
+  const BenchImage reference = makeBenchImage(bench, tracing, Precision::Single);
   tracing.pathsPerLine = paths;
   double squared[2] = { 0.0, 0.0 };
   double seconds[2] = { 0.0, 0.0 };
@@ -303,10 +300,9 @@ void measureRatio(const std::string& scene, bool reverberates, const std::string
     for (int seed = 1; seed <= 8; ++seed)
     {
       tracing.seed = std::uint64_t(seed);
-      const auto start = std::chrono::steady_clock::now();
-      const TracedLines traced = trace(*bench.scene, bench.lines, tracing, {}, bench.targets);
-      seconds[which] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      squared[which] += std::pow(test::relativeRms(traced.intensity, reference), 2);
+      const BenchImage image = makeBenchImage(bench, tracing, Precision::Single);
+      seconds[which] += image.traceSeconds;
+      squared[which] += std::pow(intensityError(image, reference), 2);
     }
   }
   output.figure("equal_rmse_path_ratio" + figureEnd, squared[0] / squared[1], "times");

@@ -307,8 +307,9 @@ TEST(PhantomStudy, WiresAreWhereTheTableHasThem)
   const Spread all = errors.spread(0, "", true);
   EXPECT_EQ(all.count, int(errors.wires.size()));
   EXPECT_LE(all.mean, 0.05);
+  EXPECT_LE(all.deviation, 0.1);
   // Where echoes of the gel or of what reverberates lie in a wire's, it is up to half a millimetre beside its place:
-  // one to five of the 75, by the seed (Testing/Study/README.md), which a deviation would be of.
+  // one to five of the 75, by the seed (Testing/Study/README.md), which the deviation is of.
   std::vector<double> off;
   for (const auto& [target, place] : errors.wires)
   {
