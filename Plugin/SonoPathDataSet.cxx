@@ -67,7 +67,8 @@ QJsonObject probeOf(vtkSMProxy* ultrasound)
       return std::any_of(names.begin(), names.end(), [&](const char* one) { return std::strcmp(one, name) == 0; });
     };
     vtkSMProperty* found = ultrasound->GetProperty(name);
-    if (found && !isOneOf({ "PresetFile", "PositionMm", "Axial", "Lateral", "Preview", "PrepareInteraction" }))
+    if (found &&
+        !isOneOf({ "PresetFile", "PositionMm", "Axial", "Lateral", "Preview", "PrepareInteraction", "MatrixPlane" }))
     {
       probe[keyOf(name)] = valueOf(found);
     }
