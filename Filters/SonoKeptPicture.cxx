@@ -187,7 +187,7 @@ std::string UltrasoundStages::playedKey(const Inputs& inputs)
     return {};
   }
   KeyText key;
-  key.add("played picture").add(double(simulator_.scene()->id())).add(double(formation->GetMTime()));
+  key.add("played picture").add(double(simulator_->scene()->id())).add(double(formation->GetMTime()));
   for (std::size_t port = 1; port < inputs.size(); ++port)
   {
     const std::vector<double> content = inputs[port] ? contentOf(inputs[port]) : std::vector<double>();

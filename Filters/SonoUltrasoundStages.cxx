@@ -64,6 +64,8 @@ UltrasoundStages::UltrasoundStages(vtkSonoUltrasound* owner)
   , bmode(vtkSmartPointer<vtkSonoBMode>::New())
   , converter(vtkSmartPointer<vtkSonoScanConverter>::New())
   , owner_(owner)
+  , simulator_(std::make_unique<Simulator>())
+  , spare_(std::make_unique<Simulator>())
 {
   TraceSettings tracing;
   BModeSettings grey;
@@ -122,7 +124,7 @@ void UltrasoundStages::begin(vtkInformationVector** input)
   vtkMultiBlockDataSet* blocks = anatomy_->builtBlocks(vtkDataObject::GetData(input[Filter::LABELS_OR_SCENE]));
   try
   {
-    if (blocks && vtkSonoSceneHandle::Get(blocks) == simulator_.scene())
+    if (blocks && vtkSonoSceneHandle::Get(blocks) == simulator_->scene())
     {
       vtkDataObject* surfaces = vtkDataObject::GetData(input[Filter::TARGETS]);
       ImageInput image{ field_.pose, settings_, targets(surfaces, blocks), nullptr };
@@ -133,7 +135,7 @@ void UltrasoundStages::begin(vtkInformationVector** input)
       {
         readEchoInputs(inputsOf(input), image);
       }
-      simulator_.begin(image, whole);
+      simulator_->begin(image, whole);
     }
   }
   catch (const std::exception&) // make() meets it again, and lets it be said
@@ -202,8 +204,8 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
     {
       return {};
     }
-    const std::string sentence = probeContactWarning(*simulator_.scene(), lines());
-    return sentence.empty() ? probePlaceWarning(*simulator_.scene(), image.settings.geometry, image.pose) : sentence;
+    const std::string sentence = probeContactWarning(*simulator_->scene(), lines());
+    return sentence.empty() ? probePlaceWarning(*simulator_->scene(), image.settings.geometry, image.pose) : sentence;
   };
   const auto sayAny = [&](const std::vector<std::string>& sentences) {
     for (const std::string& sentence : sentences)
@@ -218,7 +220,7 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
   isAsked_ = true;
   try
   {
-    traced = simulator_.traced(image, progress(tracer, anatomyEnd, tracingEnd));
+    traced = simulator_->traced(image, progress(tracer, anatomyEnd, tracingEnd));
   }
   catch (const Error&)
   {
@@ -234,35 +236,20 @@ TracedResult UltrasoundStages::trace(const ImageInput& image)
     }
     pulseTime_ = 0;
     traceWarnings_ = { contactWarning() };
-    const std::tuple asksFor(simulator_.scene().get(), tracing.maxCollisions, tracing.faceReflection, tracing.depthMm);
+    const std::tuple asksFor(simulator_->scene().get(), tracing.maxCollisions, tracing.faceReflection, tracing.depthMm);
     if (!field_.preview && tracing.reverberates() && limitAskedFor_ != asksFor)
     {
       limitAskedFor_ = asksFor;
-      limitWarning_ = collisionLimitWarning(*simulator_.scene(), lines(), tracing, image.targets);
+      limitWarning_ = collisionLimitWarning(*simulator_->scene(), lines(), tracing, image.targets);
     }
     traceWarnings_.push_back(tracing.reverberates() ? limitWarning_ : std::string());
     sayAny(traceWarnings_);
     if (field_.prepares && !field_.preview)
     {
-      simulator_.prepareInteractive(lines(), tracing);
+      simulator_->prepareInteractive(lines(), tracing);
     }
   }
   return traced;
-}
-
-void UltrasoundStages::prepareMoving()
-{
-  if (!simulator_.scene() || field_.preview)
-  {
-    return;
-  }
-  try
-  {
-    simulator_.prepareInteractive(makeScanLines(settings_.geometry, field_.pose), settings_.tracing);
-  }
-  catch (const Error&) // of a probe that is off the body: make() says it
-  {
-  }
 }
 
 bool UltrasoundStages::offerBetter()
@@ -312,22 +299,22 @@ void UltrasoundStages::makePaths(int port, ImageInput image, int paths, vtkPolyD
 {
   image.settings.tracing.pathsPerLine = paths;
   const auto recorded =
-    simulator_.paths(makeScanLines(image.settings.geometry, image.pose), image.settings.tracing,
-                     tracer->GetNumberOfShownPaths(), image.targets, progress(tracer, tracingEnd, 1.0));
+    simulator_->paths(makeScanLines(image.settings.geometry, image.pose), image.settings.tracing,
+                      tracer->GetNumberOfShownPaths(), image.targets, progress(tracer, tracingEnd, 1.0));
   if (port == Filter::RAY_PATHS)
   {
     fillPaths(*recorded, output);
   }
   else
   {
-    fillHits(*recorded, mediaNames(*simulator_.scene(), image.targets), output);
+    fillHits(*recorded, mediaNames(*simulator_->scene(), image.targets), output);
   }
 }
 
 void UltrasoundStages::makeErrorMap(const ImageInput& image, const TracedResult& traced)
 {
-  const ImageResult map = simulator_.errorMap(image.settings.geometry, traced, field_.preview, image.settings.pixelMm,
-                                              progress(converter, tracingEnd, 1.0));
+  const ImageResult map = simulator_->errorMap(image.settings.geometry, traced, field_.preview, image.settings.pixelMm,
+                                               progress(converter, tracingEnd, 1.0));
   if (!errorArrays_ || !(map == errorMap_))
   {
     errorArrays_ = errorArrays(map);
@@ -340,12 +327,12 @@ void UltrasoundStages::makeImage(const ImageInput& image, std::optional<double> 
 {
   isImageAsked_ = true;
   const ImageResult made =
-    display_.show(simulator_.image(image, progress(converter, 0.0, 1.0)), field_, time, converter->DisplaySettings());
+    display_.show(simulator_->image(image, progress(converter, 0.0, 1.0)), field_, time, converter->DisplaySettings());
   // All else before the picture, which may have to be waited for.
   placeImage(made, image.pose, world);
   placeFlat(made, image.pose, world, flat);
   const ScanPicture picture =
-    simulator_.picture(made, image.settings.geometry, image.pose, simulator_.traced(image, {}));
+    simulator_->picture(made, image.settings.geometry, image.pose, simulator_->traced(image, {}));
   if (!pictureArrays_ || picture.grey.data != picture_.grey.data)
   {
     pictureArrays_ = pictureArrays(picture);
@@ -383,17 +370,21 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   {
     return;
   }
-  simulator_.setScene(vtkSonoSceneHandle::Get(blocks));
+  simulator_->setScene(vtkSonoSceneHandle::Get(blocks));
   const std::string played = playedKey(inputs);
   if (isImage ? takePlayed(played, output) : leavesPlayed(played, port))
   {
     return;
   }
-  simulator_.setProgressive(owner_->GetProgressive());
+  ImageInput image{ field_.pose, settings_, targets(inputs[Filter::TARGETS], blocks), nullptr };
+  if (isImage)
+  {
+    takeAhead(image, progress(tracer, anatomyEnd, bmodeEnd));
+  }
+  simulator_->setProgressive(owner_->GetProgressive());
   // One output would otherwise be of a round that ended after another had been made, and nobody would know which.
   const bool takesBetter = std::exchange(isBetterOffered_, false) || !owner_->GetProgressive();
-  isImproved_ = takesBetter && simulator_.improve();
-  ImageInput image{ field_.pose, settings_, targets(inputs[Filter::TARGETS], blocks), nullptr };
+  isImproved_ = takesBetter && simulator_->improve();
   const TracedResult traced = trace(image);
   fields->PassData(blocks->GetFieldData());
   if (port == Filter::RAY_PATHS || port == Filter::BOUNDARY_HITS)
@@ -421,7 +412,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
     return lines->GetPointData()->ShallowCopy(errorArrays_);
   }
   readEchoInputs(inputs, image);
-  const RfResult rf = simulator_.rf(image, progress(formation, 0.0, bmodeEnd));
+  const RfResult rf = simulator_->rf(image, progress(formation, 0.0, bmodeEnd));
   if (port == Filter::RF_LINES)
   {
     if (rfLines_ && rfLines_->GetSpacing()[0] != shownLayout(field_.geometry, 1, rf.layout().sampleMm).sampleMm)
@@ -434,7 +425,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   writeGreySettings(settings_.bmode, fields);
   if (port == Filter::BMODE_LINES)
   {
-    const BModeResult grey = simulator_.bmode(image, progress(bmode, 0.0, bmodeEnd));
+    const BModeResult grey = simulator_->bmode(image, progress(bmode, 0.0, bmodeEnd));
     return makeLines(
       grey, bmodeOf, [&] { fillBMode(grey, field_, lines); }, bmodeLines_, lines);
   }
@@ -446,6 +437,8 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   makeImage(image, timeOf(inputs[Filter::LABELS_OR_SCENE]),
             owner_->GetErrorMap() ? errorArrays_->GetScalars() : nullptr, world,
             vtkImageData::GetData(output, Filter::FLAT_IMAGE));
+  latest_ = image;
+  beginNext();
   vtkNew<vtkFieldData> kept;
   kept->ShallowCopy(blocks->GetFieldData());
   writeReached(traced.layout(), kept);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "BackgroundImage.h"
 #include "Simulator.h"
 #include "SonoAnatomy.h"
 #include "SonoContent.h"
@@ -76,14 +77,17 @@ public:
   /// Whether somebody uses by now what was left empty.
   bool isLeftWanted() const;
   /// Whether more rounds of paths are traced in the background, and whether make() gives a better result by now.
-  bool isRefining() const { return simulator_.isRefining(); }
-  bool hasBetter() const { return simulator_.hasBetter(); }
+  bool isRefining() const { return simulator_->isRefining(); }
+  bool hasBetter() const { return simulator_->hasBetter(); }
   /// hasBetter(). Only from then on, and once, make() takes the better result over.
   bool offerBetter();
   /// Whether it is still to be taken over.
   bool isBetterOffered() const { return isBetterOffered_ && hasBetter(); }
   /// Begins what the first picture of a moving probe needs.
   void prepareMoving();
+  /// See vtkSonoUltrasound.
+  bool makeAhead(const double positionMm[3], const double axial[3], const double lateral[3]);
+  bool isAheadReady() const { return !ahead_ || ahead_->hasEnded(); }
   /// Makes an announced output; the image and the flat image together. Throws Error, Aborted when the filter is to
   /// stop.
   void make(int port, vtkInformationVector** input, vtkInformationVector* output);
@@ -102,6 +106,8 @@ private:
   Progress progress(vtkAlgorithm* stage, double from, double to);
   static Inputs inputsOf(vtkInformationVector** input);
   void begin(vtkInformationVector** input);
+  void beginNext();
+  void takeAhead(const ImageInput& image, const Progress& progress);
   const std::vector<TargetSurface>& targets(vtkDataObject* input, vtkMultiBlockDataSet* blocks);
   TracedResult trace(const ImageInput& image);
   void readEchoInputs(const Inputs& inputs, ImageInput& image);
@@ -124,7 +130,12 @@ private:
 
   vtkSonoUltrasound* owner_;
   std::unique_ptr<Anatomy> anatomy_;
-  Simulator simulator_;
+  std::unique_ptr<Simulator> simulator_;
+  // Of a probe that moves, see makeAhead().
+  std::optional<ImageInput> latest_;       ///< that was made
+  std::optional<ImageInput> next_;         ///< that is to be made behind what is under way
+  std::unique_ptr<Simulator> spare_;       ///< null while it makes an image ahead; takes turns with simulator_
+  std::unique_ptr<BackgroundImage> ahead_; ///< null: none
   // As announced.
   ProbeField field_;
   ImageSettings settings_;

@@ -112,14 +112,20 @@ void vtkSonoProbeSource::UseDevice(int device)
 
 sono::ProbeField vtkSonoProbeSource::Probe() const
 {
+  return this->ProbeAt(this->PositionMm, this->Axial, this->Lateral, this->Preview);
+}
+
+sono::ProbeField vtkSonoProbeSource::ProbeAt(const double positionMm[3], const double axial[3], const double lateral[3],
+                                             bool preview) const
+{
   sono::ProbeField probe;
   static_cast<sono::ProbeSettings&>(probe) = this->PresetFile.empty()
                                                ? sono::settingsIn<sono::ProbeSettings>(*this->Parameters)
                                                : sono::readProbePreset(presetPath(this->PresetFile));
   const auto& given = sono::settingsIn<sono::ProbeSettings>(*this->Parameters);
   probe.geometry.assumedSoundSpeedMPerS = given.geometry.assumedSoundSpeedMPerS;
-  probe.preview = this->Preview;
-  probe.coarse = this->Preview && !runsOnGpu(this->Device);
+  probe.preview = preview;
+  probe.coarse = preview && !runsOnGpu(this->Device);
   probe.geometry.compoundFans = probe.coarse ? 1 : given.geometry.compoundFans;
   if (probe.coarse)
   {
@@ -133,7 +139,7 @@ sono::ProbeField vtkSonoProbeSource::Probe() const
   probe.prepares = this->PrepareInteraction;
 
   const auto vector = [](const double* v) { return sono::Vec3d(v[0], v[1], v[2]); };
-  const sono::ProbePose pose{ vector(this->PositionMm), vector(this->Axial), vector(this->Lateral) };
+  const sono::ProbePose pose{ vector(positionMm), vector(axial), vector(lateral) };
   probe.pose = pose.orthonormalized();
   if (this->MatrixPlane != WHOLE_VOLUME && probe.geometry.isMatrix())
   {

@@ -151,10 +151,15 @@ public:
   vtkGetMacro(PrepareInteraction, bool);
   ///@}
 
+  ///@{
   /**
-   * The probe, of the preset where one is named. Throws sono::Error for what is out of range.
+   * The probe, of the preset where one is named; or at another pose, moving or not. Throws sono::Error for what is out
+   * of range.
    */
   sono::ProbeField Probe() const;
+  sono::ProbeField ProbeAt(const double positionMm[3], const double axial[3], const double lateral[3],
+                           bool preview) const;
+  ///@}
 
 protected:
   vtkSonoProbeSource();

@@ -121,6 +121,16 @@ void vtkSonoUltrasound::PrepareMoving()
   this->Inside->prepareMoving();
 }
 
+bool vtkSonoUltrasound::MakeAhead(const double positionMm[3], const double axial[3], const double lateral[3])
+{
+  return this->Inside->makeAhead(positionMm, axial, lateral);
+}
+
+bool vtkSonoUltrasound::IsAheadReady()
+{
+  return this->Inside->isAheadReady();
+}
+
 vtkMTimeType vtkSonoUltrasound::GetMTime()
 {
   if (this->Inside->isLeftWanted() || (this->Progressive && this->Inside->isBetterOffered()))

@@ -132,6 +132,18 @@ public:
    */
   void PrepareMoving();
 
+  ///@{
+  /**
+   * For a GUI that draws one picture of a moving probe while the next is computed. MakeAhead begins, in the background,
+   * the image of a moving probe at another pose; if one is under way, when that has been asked for. False where it does
+   * not: no image was made yet, it is made by a pulse from a file, or a GPU makes it. An Update with Preview at that
+   * pose takes the image over, which is the same as without; another one drops it. IsAheadReady says whether an Update
+   * would not have to wait for it.
+   */
+  bool MakeAhead(const double positionMm[3], const double axial[3], const double lateral[3]);
+  bool IsAheadReady();
+  ///@}
+
   /**
    * An output is made when it is asked for: the images by Update(), another by Update(port).
    */

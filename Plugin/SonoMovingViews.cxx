@@ -184,7 +184,8 @@ void SonoMovingViews::lighten()
   }
   for (pqView* view : this->Slow)
   {
-    drawOnInteraction(view, false); // draw() follows each step
+    sonoTell(view->getProxy(), "SetUseLightKit", 0); // four of its five lights are a third of the time
+    drawOnInteraction(view, false);                  // draw() follows each step
   }
 }
 
@@ -206,7 +207,7 @@ void SonoMovingViews::drawInFull()
   }
   for (pqView* view : this->Views)
   {
-    for (const char* name : { "DepthPeeling", "UseFXAA" })
+    for (const char* name : { "DepthPeeling", "UseFXAA", "UseLight" })
     {
       if (view && view->getProxy()->GetProperty(name))
       {

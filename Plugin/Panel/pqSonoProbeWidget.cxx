@@ -125,6 +125,16 @@ void pqSonoProbeWidget::start()
   this->Rest.stop();
 }
 
+/// By hand.
+void pqSonoProbeWidget::grip()
+{
+  this->start();
+  if (this->Shown)
+  {
+    this->Ahead.restart(this->pose());
+  }
+}
+
 void pqSonoProbeWidget::move()
 {
   this->showMessage();
@@ -268,11 +278,23 @@ void pqSonoProbeWidget::showMoving()
   {
     this->Shown = std::make_unique<SonoMovingViews>(this->proxy());
   }
+  if (this->IsOtherMoment)
   {
-    SCOPED_UNDO_EXCLUDE();
-    this->push(this->pose(), true);
+    this->Ahead.restart(); // what is computed is of the anatomy as it was
   }
-  this->Shown->draw();
+  const auto drawn = this->Ahead.toDraw(this->pose());
+  if (!drawn.isEmpty())
+  {
+    {
+      SCOPED_UNDO_EXCLUDE();
+      this->push(drawn, true);
+    }
+    this->Shown->draw();
+  }
+  if (this->Ahead.isWaiting())
+  {
+    this->Look.start();
+  }
 }
 
 void pqSonoProbeWidget::rest()
@@ -288,6 +310,8 @@ void pqSonoProbeWidget::rest()
     return;
   }
   this->Frame.stop();
+  this->Look.stop();
+  this->Ahead.restart();
   this->Moving = false;
   std::unique_ptr<SonoMovingViews> shown = std::move(this->Shown);
   const bool wanted = this->mayScan();

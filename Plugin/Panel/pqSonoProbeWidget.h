@@ -1,6 +1,7 @@
 #ifndef pqSonoProbeWidget_h
 #define pqSonoProbeWidget_h
 
+#include "SonoAhead.h"
 #include "SonoRefining.h"
 #include "SonoShownSurfaces.h"
 #include "SonoWindows.h"
@@ -71,6 +72,7 @@ protected Q_SLOTS:
 
 private Q_SLOTS:
   void start();
+  void grip();
   void move();
   void showMoving();
   void rest();
@@ -103,6 +105,7 @@ private:
   QCheckBox* Live;
   QLabel* Message;
   QTimer Frame; // fires when there is nothing else to do
+  QTimer Look;  // fires while a picture is computed that is to be drawn
   QTimer Rest;
   QTimer Prepare; // fires when the view has not been drawn for a moment
   bool Moving = false;
@@ -113,6 +116,7 @@ private:
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests
   SonoShownSurfaces Surfaces;
+  SonoAhead Ahead;
   SonoRefining Refining;
 };
 

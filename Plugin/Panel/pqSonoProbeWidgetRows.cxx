@@ -21,6 +21,7 @@
 
 namespace {
 
+constexpr int untilReadyMs = 4;      // little of what a picture takes
 constexpr int restMs = 150;          // more than keys that are held take to repeat
 constexpr int untilPreparedMs = 500; // more than settings take to come to rest
 
@@ -28,6 +29,7 @@ constexpr int untilPreparedMs = 500; // more than settings take to come to rest
 
 pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentObject)
   : Superclass("representations", "SonoProbeWidgetRepresentation", smproxy, sonoLayout(smproxy, group), parentObject)
+  , Ahead(smproxy)
   , Refining(smproxy)
 {
   // Somebody may drag this probe. It is no change of an image and waits for no Apply.
@@ -110,13 +112,16 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Frame.setSingleShot(true);
   this->Frame.setInterval(0);
   this->connect(&this->Frame, SIGNAL(timeout()), SLOT(showMoving()));
+  this->Look.setSingleShot(true);
+  this->Look.setInterval(untilReadyMs);
+  this->connect(&this->Look, SIGNAL(timeout()), SLOT(showMoving()));
   this->Rest.setSingleShot(true);
   this->Rest.setInterval(restMs);
   this->connect(&this->Rest, SIGNAL(timeout()), SLOT(rest()));
   this->Prepare.setSingleShot(true);
   this->Prepare.setInterval(untilPreparedMs);
   this->connect(&this->Prepare, SIGNAL(timeout()), SLOT(prepare()));
-  this->connect(this, SIGNAL(startInteraction()), SLOT(start()));
+  this->connect(this, SIGNAL(startInteraction()), SLOT(grip()));
   this->connect(this, SIGNAL(interaction()), SLOT(move()));
   this->connect(this, &pqInteractivePropertyWidget::endInteraction, this, [this] { this->finish(); });
   this->connect(pqApplicationCore::instance()->getServerManagerModel(), &pqServerManagerModel::preSourceRemoved, this,

@@ -1,10 +1,11 @@
 """A probe on its way: each step runs the stages behind the probe once and prepares nothing again, the picture does not depend
 on the way, and it looks like the final one."""
+import time
 import unittest
 
 import numpy as np
 from chain import Chain, count_runs, make
-from sonovdb.vtkSonoFilters import vtkSonoThoraxSource, vtkSonoUltrasound
+from sonovdb.vtkSonoFilters import vtkSonoRayTracer, vtkSonoThoraxSource, vtkSonoUltrasound
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
@@ -93,6 +94,45 @@ class TestDrag(unittest.TestCase):
             ultrasound.Update()
             pictures.append(array(ultrasound.GetOutput()))
         np.testing.assert_array_equal(*pictures)
+
+    def test_the_next_picture_is_made_while_one_is_drawn(self):
+        """And is the one that comes without; what was made for another pose, or for other settings, is dropped."""
+        thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
+        thorax.Update()
+        ahead, alone = (ultrasound_on(thorax, LineCount=24, Device=vtkSonoRayTracer.CPU) for _ in range(2))
+        probe = ahead.GetProbe()
+        start, axial, lateral = probe.GetPositionMm(), probe.GetAxial(), probe.GetLateral()
+        begin = lambda step: ahead.MakeAhead(moved(start, step), axial, lateral)
+        self.assertFalse(begin(1))  # nothing has been made
+        ahead.Update()
+        for ultrasound in (ahead, alone):
+            ultrasound.GetProbe().SetPreview(True)
+
+        def check(step):
+            for ultrasound in (ahead, alone):
+                ultrasound.GetProbe().SetPositionMm(*moved(start, step))
+                ultrasound.Update()
+            for port in (0, 7):
+                for name in ("BMode", "Labels"):
+                    np.testing.assert_array_equal(array(ahead.GetOutputDataObject(port), name),
+                                                  array(alone.GetOutputDataObject(port), name))
+
+        self.assertTrue(begin(1))
+        for step in range(1, 5):
+            self.assertTrue(begin(step + 1))  # behind the one that is under way
+            check(step)
+        while not ahead.IsAheadReady():
+            time.sleep(0.001)
+        check(5)
+        self.assertTrue(begin(6))
+        check(7)
+        self.assertTrue(begin(8))
+        for ultrasound in (ahead, alone):
+            ultrasound.GetRayTracer().SetPathSeed(5)
+            ultrasound.GetBMode().SetGainDb(6)
+        check(8)
+        self.assertFalse(ahead.MakeAhead(start, axial, axial))
+        check(9)
 
     def test_picture_does_not_depend_on_the_way(self):
         thorax = make(vtkSonoThoraxSource, SpacingMm=4.0)
