@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QList>
 #include <QPair>
 #include <QString>
 #include <QVector>

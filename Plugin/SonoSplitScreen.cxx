@@ -32,7 +32,7 @@
 
 namespace {
 
-pqPipelineSource* itemOf(vtkSMProxy* proxy)
+pqPipelineSource* pipelineItemOf(vtkSMProxy* proxy)
 {
   return pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(proxy);
 }
@@ -60,8 +60,8 @@ pqPipelineSource* registered(vtkSMSourceProxy* proxy)
   proxy->UpdateVTKObjects();
   vtkNew<vtkSMParaViewPipelineController> controller;
   controller->RegisterPipelineProxy(proxy);
-  itemOf(proxy)->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
-  return itemOf(proxy);
+  pipelineItemOf(proxy)->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  return pipelineItemOf(proxy);
 }
 
 SonoSplit show(const char* tab, const pqPipelineSource* first, pqPipelineSource* second)

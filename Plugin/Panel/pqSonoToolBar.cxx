@@ -5,6 +5,7 @@
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
 #include "pqSonoLoading.h"
+#include "pqSonoLostViews.h"
 #include "pqSonoUndoing.h"
 
 #include "vtkDataObjectTypes.h"
@@ -91,6 +92,7 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   addExamples();
   new pqSonoDelete(this);
   new pqSonoLoading(this);
+  new pqSonoLostViews(this);
   new pqSonoUndoing(this);
   auto* active = &pqActiveObjects::instance();
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });

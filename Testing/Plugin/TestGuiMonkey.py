@@ -208,6 +208,14 @@ class TestGuiMonkey(GuiCase):
             rang = pathlib.Path(folder, "rang.txt").read_text(encoding="utf-8").split("\n")
         self.assertEqual(rang, ["let through", "another", "end", "ParaView's"])
 
+    def test_apply_passes_over_a_view_without_a_place(self):
+        """Its layout was removed, and its widget with it; ParaView crashed at the next Apply."""
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.paraview(folder, f"--script={PLAYBACKS / 'lost_view.py'}")
+            self.assertEqual(done.returncode, 0, done.stdout)
+            drawn = pathlib.Path(folder, "drawn.txt").read_text(encoding="utf-8").split("\n")
+        self.assertEqual(drawn, ["3.0", "4.0"])  # in the view that has one
+
     def test_random_actions(self):
         seed, count = os.environ.get("MONKEY_SEED", "1"), int(os.environ.get("MONKEY_ACTIONS", "300"))
         print(f"seed {seed}, {count} actions", flush=True)
