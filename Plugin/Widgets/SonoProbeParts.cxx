@@ -51,6 +51,9 @@ vtkSonoProbeRepresentation::Internals::Internals()
   this->Probe->SetAxial(0.0, 0.0, 1.0);
   this->Probe->SetLateral(1.0, 0.0, 0.0);
 
+  vtkNew<vtkPolyData> nothing; // until there are numbers that are valid
+  this->Head.Mapper->SetInputData(nothing);
+  this->Frame.Mapper->SetInputData(nothing);
   this->Outline.Mapper->SetInputData(this->OutlineShape);
   this->Outline.SetColour({ 1.0, 0.9, 0.3 });
   this->Outline.Actor->GetProperty()->SetLineWidth(3.0);

@@ -9,8 +9,8 @@ from probecase import angle, pose, sphere, turned
 from sonovdb.vtkSonoFilters import vtkSonoProbeSource
 from sonovdb.vtkSonoWidgets import vtkSonoProbeRepresentation as Probe, vtkSonoProbeWidget
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkRenderingCore import (vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor, vtkTextProperty,
-                                         vtkTextRenderer)
+from vtkmodules.vtkRenderingCore import (vtkPropCollection, vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor,
+                                         vtkTextProperty, vtkTextRenderer)
 import vtkmodules.vtkRenderingFreeType
 
 
@@ -283,6 +283,17 @@ class TestShape(unittest.TestCase):
         before = self.bounds_in_frame(probe)
         probe.SetDepthMm(0)
         self.assertEqual(probe.GetBounds()[:5], before[:5])
+
+    def test_numbers_that_never_were_valid_leave_nothing_to_draw(self):
+        """Each time the view was drawn, VTK complained of mappers without an input."""
+        probe, parts = Probe(), vtkPropCollection()
+        probe.SetNumber("SectorDeg", 0)
+        probe.GetBounds()
+        probe.GetActors(parts)
+        mappers = [parts.GetItemAsObject(i).GetMapper() for i in range(parts.GetNumberOfItems())
+                   if parts.GetItemAsObject(i).IsA("vtkActor")]
+        self.assertGreater(len(mappers), 5)
+        self.assertTrue(all(mapper.GetInput() for mapper in mappers))
 
     def test_preset_that_is_missing_is_drawn_with_the_numbers(self):
         probe = Probe()

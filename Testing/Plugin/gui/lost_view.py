@@ -1,4 +1,4 @@
-"""What Apply does where a view's layout is gone, and its widget with it, as ParaView's --script. Writes what was drawn before and after
+"""What Apply does where a view's layout is gone, and its widget with it, as ParaView's --script. Writes what another view has drawn
 into drawn.txt in the home folder, and ends ParaView. Needs python3-pyqt5."""
 import pathlib
 
@@ -14,7 +14,8 @@ def window():
 
 def apply_spacing(text):
     """As if typed."""
-    edit = next(w for parent in window().findChildren(QtWidgets.QWidget, "SpacingMm") for w in parent.findChildren(QtWidgets.QLineEdit))
+    widget = window().findChild(QtWidgets.QWidget, "SpacingMm")
+    edit = widget.findChild(QtWidgets.QLineEdit)
     edit.setFocus()
     edit.setText(text)
     edit.textEdited.emit(text)
