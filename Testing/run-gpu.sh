@@ -4,6 +4,8 @@
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
 #   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
+#   run-gpu.sh views [FOLDER]  there: a drag drawn in ParaView's views, the last pictures into the folder; `pack views` packs ParaView
+#                          for it, with a display server, for there is none
 #   run-gpu.sh dataset FILE [FOLDER [PART PARTS]]  there: writes a data set (the same pack), or takes it image by image
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh peers [FOLDER]  there: programs of others on the same scenes, tables and report in the folder (build-gpu/peers);
@@ -62,6 +64,44 @@ pack_filters()
   archive filters "$work"
 }
 
+# ParaView's Python, and what of it the stage `renders` loads here.
+pack_views()
+{
+  "$root/Testing/build-preset.sh" release
+  local work packages=/usr/lib/python3/dist-packages plugin=lib/paraview-5.11/plugins/SonoVDB/SonoVDB.so file
+  work="$(mktemp -d)"
+  mkdir -p "$work/lib" "$work/bin" "$work/python" "$work/dri" "$work/share"
+  cat > "$work/mapped.py" << END
+import runpy
+runpy.run_path("$root/Testing/Benchmark/stages/renders.py")
+with open("/proc/self/maps") as maps, open("$work/mapped", "w") as mapped:
+    mapped.write("\n".join(sorted({line.split()[-1] for line in maps if "/" in line and ".so" in line})))
+END
+  SONOVDB_PLUGIN="$root/build/$plugin" PYTHONPATH="$root/build/lib/python3/dist-packages" \
+    xvfb-run -a -s "-screen 0 1400x900x24" pvpython --no-mpi "$work/mapped.py"
+  cp "$(readlink -f "$(command -v pvpython)")" "$work/bin/pvpython"
+  cp "$(command -v Xvfb)" "$(command -v xkbcomp)" "$work/bin"
+  cp -r /usr/share/X11/xkb "$work/share"
+  cp "$root/build/$plugin" "$root"/build/lib/libvtkSono*.so "$work/lib"
+  cp -r "$root/build/lib/python3/dist-packages/sonovdb" "$work/python"
+  cp -rL "$root/build/share/sonovdb" "$work/share"
+  (cd /usr/lib/python3.11 && find . -name '*.py' -not -path '*/test/*' -o -path './lib-dynload/*') |
+    tar -C /usr/lib/python3.11 -c -T - | tar -C "$work/python" -x
+  (cd "$packages" && find paraview vtkmodules -name '*.py') | tar -C "$packages" -c -T - | tar -C "$work/python" -x
+  while read -r file; do
+    case "$file" in
+      "$packages"/*) (cd "$packages" && cp --parents "${file#"$packages"/}" "$work/python") ;;
+      */dri/*) cp "$file" "$work/dri" ;;
+    esac
+  done < "$work/mapped"
+  # Mesa's own beside them: what NVIDIA's library for X looks for at run time comes with it.
+  for file in "$work"/bin/* "$work"/dri/* "$work"/lib/SonoVDB.so $(grep "^$packages\|/libGLX_mesa" "$work/mapped"); do
+    libraries_of "$file" "$work/lib"
+  done
+  rm "$work"/mapped*
+  archive views "$work"
+}
+
 # Those that run on a GPU, as install-dependencies.sh knows them, and what they need beside what the machine has. The others
 # would only repeat there what the CPU's study has measured.
 pack_peers()
@@ -116,6 +156,18 @@ case "${1:-}" in
     unpack filters
     SONOVDB_DATA_DIR="$unpacked/filters" LD_LIBRARY_PATH="$unpacked/filters/lib" "$unpacked/filters/FilterBenchmark"
     ;;
+  views)
+    unpack views
+    views="$unpacked/views"
+    export LD_LIBRARY_PATH="$views/lib:$views/lib/blas:${LD_LIBRARY_PATH:-}" LIBGL_DRIVERS_PATH="$views/dri"
+    [ -e /usr/bin/xkbcomp ] || cp "$views/bin/xkbcomp" /usr/bin # where the display server looks for it
+    "$views/bin/Xvfb" :99 -screen 0 1400x900x24 -xkbdir "$views/share/xkb" +extension GLX &
+    trap 'kill %1' EXIT
+    sleep 3
+    DISPLAY=:99 __GLX_VENDOR_LIBRARY_NAME=nvidia PYTHONHOME="$views/python" PYTHONPATH="$views/python:$views/python/lib-dynload" \
+      SONOVDB_DATA_DIR="$views/share/sonovdb" SONOVDB_PLUGIN="$views/lib/SonoVDB.so" SONOVDB_RENDERED="${2:-}" \
+      "$views/bin/pvpython" --no-mpi "$root/Testing/Benchmark/stages/renders.py"
+    ;;
   dataset)
     unpack filters
     LD_LIBRARY_PATH="$unpacked/filters/lib" "$unpacked/filters/DataSetBenchmark" "${@:2}"
@@ -145,7 +197,7 @@ END
     done
     ;;
   *)
-    sed -n '2,11s/^# *//p' "$0" >&2
+    sed -n '2,13s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac
