@@ -8,8 +8,10 @@ namespace {
 
 /// What ParaView's tracer, of which its states are made too, does for a source: where it is one of ours and the first,
 /// two lines that load the plugin stand before it, for a ParaView that has not loaded it by itself. And what the layout
-/// sets of a view stays, which ParaView leaves out where its settings have the same. The tracer's module is changed as
-/// it is imported, since whoever asks for it earlier would import much of ParaView.
+/// sets of a view stays, which ParaView leaves out where its settings have the same. And a state that cannot be written
+/// leaves no tracer behind: ParaView would record on, and collect Python's garbage at each of the hundreds of proxies
+/// that a deleted view has. Their modules are changed as they are imported, since whoever asks for them earlier would
+/// import much of ParaView.
 constexpr const char* hook = R"python(
 def _sonovdb_record():
     import importlib.abc
@@ -28,7 +30,7 @@ def _sonovdb_record():
                 if known.GetPluginName(i) == "SonoVDB" and known.GetPluginFileName(i):
                     yield known.GetPluginFileName(i), remote
 
-    def change(smtrace):
+    def change_trace(smtrace):
         from paraview import simple
         finalize = smtrace.RegisterPipelineProxy.finalize
         ours = ("MaximumNumberOfPeels", "LODResolution")
@@ -59,9 +61,24 @@ def _sonovdb_record():
 
         smtrace.ViewProxyFilter.should_never_trace = never_but_layout
 
+    def end_with_state(smstate):
+        get_state = smstate.get_state
+
+        def get_or_end(*options, **named):
+            try:
+                return get_state(*options, **named)
+            except Exception:
+                smstate.smtrace.stop_trace()
+                raise
+
+        smstate.get_state = get_or_end
+
     class Finder(importlib.abc.MetaPathFinder):
+        def __init__(self, name, change):
+            self.name, self.change = name, change
+
         def find_spec(self, name, path, target=None):
-            if name != "paraview.smtrace":
+            if name != self.name:
                 return None
             sys.meta_path.remove(self)
             spec = importlib.util.find_spec(name)
@@ -69,15 +86,16 @@ def _sonovdb_record():
 
             def execute_and_change(module):
                 execute(module)
-                change(module)
+                self.change(module)
 
             spec.loader.exec_module = execute_and_change
             return spec
 
-    if "paraview.smtrace" in sys.modules:
-        change(sys.modules["paraview.smtrace"])
-    else:
-        sys.meta_path.insert(0, Finder())
+    for name, change in (("paraview.smtrace", change_trace), ("paraview.smstate", end_with_state)):
+        if name in sys.modules:
+            change(sys.modules[name])
+        else:
+            sys.meta_path.insert(0, Finder(name, change))
 
 
 _sonovdb_record()

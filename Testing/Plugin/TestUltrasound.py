@@ -181,6 +181,13 @@ class TestUltrasound(unittest.TestCase):
         exec(compile(state, "state", "exec"), {})
         self.assertTrue((grey(simple.FindSource("ultrasound")) == before).all())
 
+    def test_a_state_that_cannot_be_written_ends_its_trace(self):
+        """ParaView recorded on, and deleted views for 15 s, since it collects garbage at each proxy of a trace."""
+        labels, manager = make_ultrasound().Input, servermanager.ProxyManager()
+        manager.UnRegisterProxy("sources", manager.GetProxyName("sources", labels.SMProxy), labels.SMProxy)
+        self.assertRaises(smtrace.Untraceable, smstate.get_state)
+        self.assertIsNone(servermanager.vtkSMTrace.GetActiveTracer())
+
     def test_trace_replays(self):
         smtrace.start_trace()
         before = grey(make_ultrasound(GainDb=4, LobeSigmaDeg=8))
