@@ -437,7 +437,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   makeImage(image, timeOf(inputs[Filter::LABELS_OR_SCENE]),
             owner_->GetErrorMap() ? errorArrays_->GetScalars() : nullptr, world,
             vtkImageData::GetData(output, Filter::FLAT_IMAGE));
-  latest_ = image;
+  latest_ = std::move(image);
   beginNext();
   vtkNew<vtkFieldData> kept;
   kept->ShallowCopy(blocks->GetFieldData());

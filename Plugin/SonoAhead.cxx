@@ -1,7 +1,6 @@
 #include "SonoAhead.h"
 
-#include "vtkSMProxy.h"
-#include "vtkSonoUltrasound.h"
+#include "SonoUltrasoundHere.h"
 
 #include <algorithm>
 #include <utility>
@@ -21,12 +20,6 @@ SonoAhead::SonoAhead(vtkSMProxy* source)
 {
 }
 
-/// That is made in this process; null: none.
-vtkSonoUltrasound* SonoAhead::filter() const
-{
-  return dynamic_cast<vtkSonoUltrasound*>(this->Source->GetClientSideObject());
-}
-
 void SonoAhead::restart()
 {
   this->Drawn.clear();
@@ -36,7 +29,7 @@ void SonoAhead::restart()
 void SonoAhead::restart(const Pose& here)
 {
   this->restart();
-  if (this->filter())
+  if (sonoUltrasoundHere(this->Source))
   {
     this->begin(here); // for the surfaces that its lines hear; the picture itself is not shown
   }
@@ -48,7 +41,7 @@ bool SonoAhead::begin(const Pose& pose)
   const QVector<double> position = numbersOf(pose, "PositionMm");
   const QVector<double> axial = numbersOf(pose, "Axial");
   const QVector<double> lateral = numbersOf(pose, "Lateral");
-  return this->filter()->MakeAhead(position.constData(), axial.constData(), lateral.constData());
+  return sonoUltrasoundHere(this->Source)->MakeAhead(position.constData(), axial.constData(), lateral.constData());
 }
 
 /// Whether another picture is to come, of the probe as it is.
@@ -59,7 +52,7 @@ bool SonoAhead::isOther(const Pose& pose) const
 
 SonoAhead::Pose SonoAhead::toDraw(const Pose& now)
 {
-  if (!this->filter() || this->Drawn.isEmpty()) // nobody is to wait for the first one
+  if (!sonoUltrasoundHere(this->Source) || this->Drawn.isEmpty()) // nobody is to wait for the first one
   {
     return this->Drawn = now;
   }
@@ -72,7 +65,7 @@ SonoAhead::Pose SonoAhead::toDraw(const Pose& now)
     this->Next = now;
     return {};
   }
-  if (!this->filter()->IsAheadReady())
+  if (!sonoUltrasoundHere(this->Source)->IsAheadReady())
   {
     return {};
   }

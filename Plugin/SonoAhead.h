@@ -6,7 +6,6 @@
 #include <QVector>
 
 class vtkSMProxy;
-class vtkSonoUltrasound;
 
 /**
  * Which pose of a moving probe is drawn while the picture of the next one is computed (vtkSonoUltrasound::MakeAhead):
@@ -33,7 +32,6 @@ public:
 private:
   Q_DISABLE_COPY(SonoAhead)
 
-  vtkSonoUltrasound* filter() const;
   bool begin(const Pose& pose);
   bool isOther(const Pose& pose) const;
 

@@ -1,5 +1,7 @@
 #include "SonoPhases.h"
 
+#include "SonoUltrasoundHere.h"
+
 #include "pqUndoStack.h"
 #include "vtkAlgorithm.h"
 #include "vtkSMPropertyHelper.h"
@@ -8,7 +10,6 @@
 #include "vtkSonoLabelMapReader.h"
 #include "vtkSonoPhasesAhead.h"
 #include "vtkSonoThoraxSource.h"
-#include "vtkSonoUltrasound.h"
 
 namespace {
 
@@ -29,7 +30,7 @@ SonoPhases::~SonoPhases() = default;
 std::unique_ptr<SonoPhases> SonoPhases::begin(vtkSMProxy* ultrasound)
 {
   vtkSMProxy* labels = vtkSMPropertyHelper(ultrasound, "Input").GetAsProxy();
-  auto* filter = vtkSonoUltrasound::SafeDownCast(ultrasound->GetClientSideObject());
+  auto* filter = sonoUltrasoundHere(ultrasound);
   auto* source = labels ? vtkAlgorithm::SafeDownCast(labels->GetClientSideObject()) : nullptr;
   if (!filter || !(vtkSonoThoraxSource::SafeDownCast(source) || vtkSonoLabelMapReader::SafeDownCast(source)))
   {
@@ -49,6 +50,6 @@ std::unique_ptr<SonoPhases> SonoPhases::begin(vtkSMProxy* ultrasound)
   phases->ultrasound_->UpdateVTKObjects();
   phases->work_ = vtkSmartPointer<vtkSonoPhasesAhead>::New();
   phases->work_->Begin(source, filter, vtkAlgorithm::SafeDownCast(phases->source_->GetClientSideObject()),
-                       vtkSonoUltrasound::SafeDownCast(phases->ultrasound_->GetClientSideObject()));
+                       sonoUltrasoundHere(phases->ultrasound_));
   return phases;
 }

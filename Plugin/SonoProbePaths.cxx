@@ -1,5 +1,7 @@
 #include "SonoProbePaths.h"
 
+#include "SonoPipelineItem.h"
+
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
 #include "pqPipelineSource.h"
@@ -31,11 +33,6 @@ vtkSmartPointer<vtkSMSourceProxy> makeSource(vtkSMProxy* beside, const char* gro
 {
   return vtkSmartPointer<vtkSMSourceProxy>::Take(
     vtkSMSourceProxy::SafeDownCast(beside->GetSessionProxyManager()->NewProxy(group, name)));
-}
-
-pqPipelineSource* itemOf(vtkSMProxy* proxy)
-{
-  return pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(proxy);
 }
 
 /// What both have by the same name, but for what they are connected to.
@@ -105,7 +102,7 @@ pqPipelineSource* sonoMakePath(const std::vector<SonoTimedPose>& poses, pqPipeli
     controller->Show(path, 0, view->getViewProxy());
     view->render();
   }
-  pqPipelineSource* made = itemOf(path);
+  pqPipelineSource* made = sonoPipelineItem(path);
   made->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
   return made;
 }
@@ -151,7 +148,7 @@ pqPipelineSource* sonoMakeSweep(pqPipelineSource* path, pqPipelineSource* ultras
   copySettings(from, probe, { "Preview", "PrepareInteraction" });
   controller->PostInitializeProxy(probe);
   controller->RegisterPipelineProxy(probe);
-  itemOf(probe)->setModifiedState(pqProxy::UNMODIFIED);
+  sonoPipelineItem(probe)->setModifiedState(pqProxy::UNMODIFIED);
 
   const auto sweep = makeSource(from, "filters", "SonoSweep");
   controller->PreInitializeProxy(sweep);
@@ -161,5 +158,5 @@ pqPipelineSource* sonoMakeSweep(pqPipelineSource* path, pqPipelineSource* ultras
   controller->PostInitializeProxy(sweep);
   copySettings(from, sweep, { "Input", "Probe", "Poses" });
   controller->RegisterPipelineProxy(sweep);
-  return itemOf(sweep);
+  return sonoPipelineItem(sweep);
 }

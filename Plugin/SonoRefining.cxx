@@ -2,12 +2,11 @@
 
 #include "SonoKeptAnatomy.h"
 #include "SonoTell.h"
+#include "SonoUltrasoundHere.h"
 
 #include "pqApplicationCore.h"
 #include "pqUndoStack.h"
-#include "vtkSMProxy.h"
 #include "vtkSMSession.h"
-#include "vtkSonoUltrasound.h"
 
 namespace {
 
@@ -23,12 +22,6 @@ SonoRefining::SonoRefining(vtkSMProxy* source)
   QObject::connect(&this->Timer, &QTimer::timeout, &this->Timer, [this] { this->look(); });
 }
 
-/// That is made in this process; null: none.
-vtkSonoUltrasound* SonoRefining::filter() const
-{
-  return dynamic_cast<vtkSonoUltrasound*>(this->Source->GetClientSideObject());
-}
-
 void SonoRefining::setProgressive(bool progressive)
 {
   sonoTell(this->Source, "SetProgressive", progressive ? 1 : 0);
@@ -36,7 +29,7 @@ void SonoRefining::setProgressive(bool progressive)
 
 void SonoRefining::begin()
 {
-  if (this->filter())
+  if (sonoUltrasoundHere(this->Source))
   {
     this->setProgressive(true);
     this->Timer.start();
@@ -55,8 +48,9 @@ void SonoRefining::look()
     this->Timer.start();
     return;
   }
-  const bool mayGetBetter = this->filter()->IsRefining(); // asked first: what ends now has left its picture
-  if (this->filter()->HasBetter())
+  const bool mayGetBetter =
+    sonoUltrasoundHere(this->Source)->IsRefining(); // asked first: what ends now has left its picture
+  if (sonoUltrasoundHere(this->Source)->HasBetter())
   {
     SCOPED_UNDO_EXCLUDE();
     const SonoKeptAnatomy anatomy(this->Source);

@@ -3,7 +3,6 @@
 #include <QTimer>
 
 class vtkSMProxy;
-class vtkSonoUltrasound;
 
 /**
  * Shows how the picture of a Simulate Ultrasound with a target error gets better: after the first paths, which Apply
@@ -23,7 +22,6 @@ public:
 private:
   Q_DISABLE_COPY(SonoRefining)
 
-  vtkSonoUltrasound* filter() const;
   void setProgressive(bool progressive);
   void look();
 

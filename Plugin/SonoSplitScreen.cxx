@@ -1,6 +1,7 @@
 #include "SonoSplitScreen.h"
 
 #include "SonoLayout.h"
+#include "SonoPipelineItem.h"
 
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
@@ -32,11 +33,6 @@
 
 namespace {
 
-pqPipelineSource* pipelineItemOf(vtkSMProxy* proxy)
-{
-  return pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(proxy);
-}
-
 vtkSMSourceProxy* proxyOf(const pqPipelineSource* source)
 {
   return vtkSMSourceProxy::SafeDownCast(source->getProxy());
@@ -60,8 +56,8 @@ pqPipelineSource* registered(vtkSMSourceProxy* proxy)
   proxy->UpdateVTKObjects();
   vtkNew<vtkSMParaViewPipelineController> controller;
   controller->RegisterPipelineProxy(proxy);
-  pipelineItemOf(proxy)->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
-  return pipelineItemOf(proxy);
+  sonoPipelineItem(proxy)->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  return sonoPipelineItem(proxy);
 }
 
 SonoSplit show(const char* tab, const pqPipelineSource* first, pqPipelineSource* second)

@@ -3,6 +3,7 @@
 #include "SonoFlatView.h"
 #include "SonoLayout.h"
 #include "SonoOutputFilter.h"
+#include "SonoPipelineItem.h"
 #include "SonoSplitScreen.h"
 #include "pqSonoCaliperFollow.h"
 #include "pqSonoKeptAlike.h"
@@ -70,9 +71,8 @@ bool isShown(pqRenderView* view, const char* kind)
 pqPipelineSource* ultrasoundOf(pqRenderView* view)
 {
   const SonoShownImage image = view ? sonoFlatImageOf(view->getProxy()) : SonoShownImage();
-  return image.source && std::strcmp(image.source->GetXMLName(), "SonoUltrasound") == 0
-           ? pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(image.source)
-           : nullptr;
+  return image.source && std::strcmp(image.source->GetXMLName(), "SonoUltrasound") == 0 ? sonoPipelineItem(image.source)
+                                                                                        : nullptr;
 }
 
 /// In the middle of what a view shows, so that each point can be seen and dragged; a little below the `before` others.
@@ -207,7 +207,7 @@ void pqSonoFlatMenu::measureVentricle()
   }
   const auto portOf = [](pqRenderView* of) {
     const SonoShownImage image = sonoFlatImageOf(of->getProxy());
-    auto* source = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(image.source);
+    auto* source = sonoPipelineItem(image.source);
     return source ? source->getOutputPort(static_cast<int>(image.port)) : nullptr;
   };
   QMap<QString, QList<pqOutputPort*>> inputs;

@@ -1,35 +1,21 @@
 #include "BackgroundImage.h"
-#include "BusyScene.h"
 #include "ErrorText.h"
+#include "SmallImage.h"
 
 #include <gtest/gtest.h>
 
 using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
+using test::busyScene;
 
 namespace {
 
-std::shared_ptr<const Scene> busyScene()
-{
-  static const std::shared_ptr<const Scene> scene = test::makeBusyScene();
-  return scene;
-}
-
 ImageInput inputAt(double lateralMm, int pathsPerLine = 64)
 {
-  ImageInput input;
-  input.pose.positionMm = { lateralMm, 24.0, 0.0 };
-  ImageSettings& s = input.settings;
-  s.geometry.lineCount = 9;
-  s.geometry.depthMm = 50.0;
-  s.geometry.sectorDeg = 40.0;
-  s.tracing.pathsPerLine = pathsPerLine;
-  s.tracing.radialBinMm = 0.5;
-  s.echo.samplingMHz = 20.0;
-  s.pixelMm = 0.5;
-  s.matchStages();
-  s.setDevice(Device::Cpu);
+  ImageInput input = test::smallInput();
+  input.pose.positionMm.x = lateralMm;
+  input.settings.tracing.pathsPerLine = pathsPerLine;
   return input;
 }
 

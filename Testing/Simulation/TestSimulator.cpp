@@ -1,5 +1,5 @@
-#include "BusyScene.h"
 #include "ErrorText.h"
+#include "SmallImage.h"
 
 #include "Echo/ComputedBeam.h"
 #include "Image/GreyBytes.h"
@@ -14,31 +14,10 @@
 using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
+using test::busyScene;
+using test::smallInput;
 
 namespace {
-
-std::shared_ptr<const Scene> busyScene()
-{
-  static const std::shared_ptr<const Scene> scene = test::makeBusyScene();
-  return scene;
-}
-
-ImageInput smallInput()
-{
-  ImageInput input;
-  input.pose.positionMm = { 32.0, 24.0, 0.0 };
-  ImageSettings& s = input.settings;
-  s.geometry.lineCount = 9;
-  s.geometry.depthMm = 50.0;
-  s.geometry.sectorDeg = 40.0;
-  s.tracing.pathsPerLine = 64;
-  s.tracing.radialBinMm = 0.5;
-  s.echo.samplingMHz = 20.0;
-  s.pixelMm = 0.5;
-  s.matchStages();
-  s.setDevice(Device::Cpu);
-  return input;
-}
 
 /// A closed box around a point.
 TargetSurface boxTarget(const Vec3d& centre)
