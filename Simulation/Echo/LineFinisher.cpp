@@ -71,9 +71,8 @@ float LineFinisher::reachMm(int line) const
 
 bool LineFinisher::hasBoundaryEchoes(int line) const
 {
-  const auto first = traced_->boundaryEcho.begin() + std::ptrdiff_t(line) * traced_->echoCount;
-  return std::any_of(first, first + traced_->echoCount,
-                     [](std::complex<float> e) { return e != std::complex<float>{}; });
+  const std::complex<float>* first = traced_->boundaryEcho.data() + std::size_t(line) * std::size_t(traced_->echoCount);
+  return lastOther(reinterpret_cast<const float*>(first), 2 * traced_->echoCount) > 0;
 }
 
 /// Where nothing reverberates, nothing is spent on it.
@@ -224,11 +223,47 @@ void LineFinisher::addReverberating(int line, const ReverberationNodes& nodes, R
   nodes.add(line, room.table.data(), samples_, iq);
 }
 
+int LineFinisher::heardDepths(int line, const LineSum* surfaces) const
+{
+  if (!traced_)
+  {
+    return int(sumCount_);
+  }
+  const float* bins = traced_->intensity.data() + std::size_t(line) * std::size_t(traced_->binCount);
+  const int lit = lastOther(bins, traced_->binCount); // in between, intensities are straight to the next bin's middle
+  const double ends = lit == traced_->binCount ? double(sumCount_) : std::ceil((lit + 0.5) / binsPerSample_);
+  const int onSurfaces = surfaces ? (lastOther(surfaces->iq.data(), 2 * int(sumCount_)) + 1) / 2 : 0;
+  return std::max({ 1, int(std::min(double(sumCount_), lit == 0 ? 0.0 : ends)), onSurfaces });
+}
+
+int LineFinisher::rangesOf(const RangeMap& map, int depths) const
+{
+  if (!map.offsetMm)
+  {
+    return std::min(depths, rangeCount_);
+  }
+  const double depthMm = depths * sampleMm_;
+  const double binMm = traced_->binMm;
+  int k = 0;
+  while (k < map.bins && k * binMm + double(map.offsetMm[k]) < depthMm)
+  {
+    ++k;
+  }
+  return k == map.bins ? rangeCount_ : int(std::min(double(rangeCount_), std::ceil(k * binMm / sampleMm_) + 2.0));
+}
+
 void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces, const ReverberationNodes& nodes,
                           Room& room, std::complex<float>* iq) const
 {
   const std::size_t firstBin = traced_ ? std::size_t(line) * std::size_t(traced_->binCount) : 0;
-  const int depthCount = int(sumCount_);
+  const bool isReflected = traced_ && hasBoundaryEchoes(line);
+  const RangeMap map = rangeMap(line);
+  // What nothing is heard from is not gone through: half of a line that ends in the lung.
+  const int depthCount = heardDepths(line, surfaces);
+  const int heardCount = isReflected ? rangeCount_ : rangesOf(map, depthCount);
+  const int half = pulse_.half();
+  const int outCount = std::min(samples_, heardCount + half);
+  const int turnCount = std::max(heardCount, outCount);
   const float* intensity = nullptr;
   if (traced_)
   {
@@ -238,46 +273,56 @@ void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces,
   }
   const SamplePair byDepth{ room.depthRe.data(), room.depthIm.data() };
   scaleAndAdd(sum.iq.data(), intensity, surfaces ? surfaces->iq.data() : nullptr, depthCount, byDepth);
-  const int half = pulse_.half();
   const SamplePair heard{ room.re.data() + half, room.im.data() + half };
-  const RangeMap map = rangeMap(line);
+  const float* offset = nullptr;
   if (map.offsetMm)
   {
-    offsetsAtSamples(map, float(sampleMm_), rangeCount_ + 1, room.offset.data());
-    showDepths(byDepth, depthCount, room.offset.data(), carrier_, rangeCount_, heard, room.far);
+    offsetsAtSamples(map, float(sampleMm_), turnCount + 1, room.offset.data());
+    offset = room.offset.data();
+    showDepths(byDepth, depthCount, offset, carrier_, heardCount, heard, room.far);
   }
   else
   {
-    demodulate(byDepth, carrier_, rangeCount_, heard);
+    const int shown = std::min(heardCount, depthCount);
+    demodulate(byDepth, carrier_, shown, heard);
+    std::fill(heard.re + shown, heard.re + heardCount, 0.0f);
+    std::fill(heard.im + shown, heard.im + heardCount, 0.0f);
   }
   const bool isSinking = sinks(line);
   if (isSinking)
   {
-    linearAtSamples(traced_->attenuationNpPerMHz.data() + firstBin, traced_->binCount, binsPerSample_, depthCount,
+    const int deepest = turnCount + (offset ? int(std::ceil(offset[turnCount - 1])) : 0);
+    const int npCount = std::clamp(deepest + 1, 1, int(sumCount_));
+    linearAtSamples(traced_->attenuationNpPerMHz.data() + firstBin, traced_->binCount, binsPerSample_, npCount,
                     room.tableByDepth.data());
-    exponentsAtSamples(*downshift_, room.tableByDepth.data(), depthCount, map.offsetMm ? room.offset.data() : nullptr,
-                       rangeCount_, room.exponent.data());
-    applySinkGain(*downshift_, room.exponent.data(), rangeCount_, heard);
+    exponentsAtSamples(*downshift_, room.tableByDepth.data(), npCount, offset, turnCount, room.exponent.data());
+    applySinkGain(*downshift_, room.exponent.data(), heardCount, heard);
   }
-  if (traced_ && hasBoundaryEchoes(line))
+  if (isReflected)
   {
     addReflected(line, room, heard);
   }
   const SamplePair turns{ room.turnRe.data(), room.turnIm.data() };
   if (isSinking)
   {
-    downshiftRotations(*downshift_, room.exponent.data(), rangeCount_, turns);
-    rotate(turns.re, turns.im, rangeCount_, heard);
+    downshiftRotations(*downshift_, room.exponent.data(), turnCount, turns);
+    rotate(turns.re, turns.im, heardCount, heard);
   }
-  pulse_.convolve(room.re.data(), room.im.data(), samples_, { room.outRe.data(), room.outIm.data() });
+  const int silentEnd = std::min(rangeCount_, outCount + half); // that is what the pulse reaches
+  for (float* values : { heard.re, heard.im })
+  {
+    std::fill(values + heardCount, values + std::max(heardCount, silentEnd), 0.0f);
+  }
+  pulse_.convolve(room.re.data(), room.im.data(), outCount, { room.outRe.data(), room.outIm.data() });
   if (isSinking)
   {
-    rotateBack(room.outRe.data(), room.outIm.data(), turns.re, turns.im, samples_, iq);
+    rotateBack(room.outRe.data(), room.outIm.data(), turns.re, turns.im, outCount, iq);
   }
   else
   {
-    interleave(room.outRe.data(), room.outIm.data(), samples_, iq);
+    interleave(room.outRe.data(), room.outIm.data(), outCount, iq);
   }
+  std::fill(iq + outCount, iq + samples_, std::complex<float>{});
   if (traced_ && reverberates(line))
   {
     addReverberating(line, nodes, room, iq);

@@ -62,6 +62,9 @@ private:
   /// What the media take of what has been reflected, Np per MHz in each bin; null where the frequency stays.
   const float* reflectedNp(int line) const;
   bool hasBoundaryEchoes(int line) const;
+  /// Samples of depth, at least one, behind which nothing is heard, and of range that show so many.
+  int heardDepths(int line, const LineSum* surfaces) const;
+  int rangesOf(const RangeMap& map, int depths) const;
   bool reverberates(int line) const;
   bool sinks(int line) const;
 

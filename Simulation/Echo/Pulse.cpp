@@ -20,9 +20,9 @@ constexpr double pi = 3.14159265358979323846;
 SONO_SIMD_CLONES void weightedSums(const float* in, const float* kernel, int taps, int count, float* out)
 {
   constexpr int tile = 64; // the sums of a tile stay in registers
-  int s = 0;
-  for (; s + tile <= count; s += tile)
+  for (int next = 0; next < count && count >= tile; next += tile)
   {
+    const int s = std::min(next, count - tile); // the last one begins within the one before
     float sum[tile] = {};
     for (int k = 0; k < taps; ++k)
     {
@@ -33,7 +33,7 @@ SONO_SIMD_CLONES void weightedSums(const float* in, const float* kernel, int tap
     }
     std::copy(sum, sum + tile, out + s);
   }
-  for (; s < count; ++s)
+  for (int s = 0; s < count && count < tile; ++s)
   {
     float sum = 0.0f;
     for (int k = 0; k < taps; ++k)

@@ -86,6 +86,30 @@ SONO_SIMD_CLONES void offsetsAtSamples(const RangeMap& map, float sampleMm, int 
   }
 }
 
+SONO_SIMD_CLONES int lastOther(const float* values, int count)
+{
+  constexpr int part = 256;
+  while (count >= part)
+  {
+    const float* from = values + count - part;
+    int others = 0;
+    for (int i = 0; i < part; ++i)
+    {
+      others += from[i] != 0.0f ? 1 : 0;
+    }
+    if (others > 0)
+    {
+      break;
+    }
+    count -= part;
+  }
+  while (count > 0 && values[count - 1] == 0.0f)
+  {
+    --count;
+  }
+  return count;
+}
+
 SONO_SIMD_CLONES void scaleAndAdd(const float* iq, const float* factor, const float* added, int count, SamplePair out)
 {
   float* re = out.re;

@@ -32,6 +32,9 @@ void binAtSamples(const float* bins, int binCount, double binsPerSample, int cou
 /// Depth less range, in samples, at each sample of range: RangeMap::depthOf.
 void offsetsAtSamples(const RangeMap& map, float sampleMm, int count, float* out);
 
+/// How many values there are up to the last that is not 0.
+int lastOther(const float* values, int count);
+
 /// re + i im, as two arrays, at the samples of a line.
 struct SamplePair
 {

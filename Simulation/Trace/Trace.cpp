@@ -163,16 +163,27 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   const TargetSpans spans = targetSpans(view, space, axis);
   int medium = mediumOnAxis(view, space, axis, spans, 0.0f);
   double range = 0.0;
-  double lost = 0.0;
+  double amplitude = 1.0;
   double absorbed = 0.0;
+  float lastNp = 0.0f;
+  double lastFactor = 1.0; // within a medium each step takes the same
+  for (std::vector<float>* values : { &way.rangeMm, &way.amplitude, &way.absorbedNp })
+  {
+    values->reserve(std::size_t(steps) + 1);
+  }
   for (int s = 0; s <= steps; ++s)
   {
     way.rangeMm.push_back(float(range));
-    way.amplitude.push_back(float(std::exp(-0.5 * lost)));
+    way.amplitude.push_back(float(amplitude));
     way.absorbedNp.push_back(float(absorbed));
     const FlightStep step = flightStep(view, space, axis, spans, way.stepMm, s, medium);
     range += double(step.rangeMm);
-    lost += double(step.lostNp);
+    if (step.lostNp != lastNp)
+    {
+      lastNp = step.lostNp;
+      lastFactor = std::exp(-0.5 * double(lastNp));
+    }
+    amplitude *= lastFactor;
     absorbed += double(step.absorbedNp);
   }
   float* offset = out.depthOffsetMm.data() + std::size_t(line) * std::size_t(out.binCount);

@@ -4,12 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 using namespace sono;
 using sono::testing::errorOf;
 using sono::testing::expectContains;
 using test::busyScene;
 
 namespace {
+
+constexpr int endless = 10'000'000; // paths, the most there may be
 
 ImageInput inputAt(double lateralMm, int pathsPerLine = 64)
 {
@@ -47,8 +52,8 @@ TEST(BackgroundImage, IsWhatTheSimulatorMakesByItselfWhileAnotherIsMade)
 
 TEST(BackgroundImage, StopsAndGivesTheSimulatorBack)
 {
-  const ImageInput endless = inputAt(33.0, 100'000'000);
-  BackgroundImage image(std::make_unique<Simulator>(busyScene()), endless);
+  BackgroundImage image(std::make_unique<Simulator>(busyScene()), inputAt(33.0, endless));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50)); // it has begun, or was refused
   EXPECT_FALSE(image.hasEnded());
   const std::unique_ptr<Simulator> there = image.stop();
   Simulator here(busyScene());
@@ -57,7 +62,8 @@ TEST(BackgroundImage, StopsAndGivesTheSimulatorBack)
 
 TEST(BackgroundImage, WaitsNoLongerThanItIsToldTo)
 {
-  BackgroundImage image(std::make_unique<Simulator>(busyScene()), inputAt(33.0, 100'000'000));
+  BackgroundImage image(std::make_unique<Simulator>(busyScene()), inputAt(33.0, endless));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_THROW(image.finish([](double) { return false; }), Aborted);
   EXPECT_FALSE(image.hasEnded());
 }

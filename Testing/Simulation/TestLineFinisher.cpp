@@ -179,6 +179,83 @@ TEST(LineFinisher, AgreesWithTheDirectSum)
   }
 }
 
+/// Sound that ends halfway, of which nothing is heard behind but what a path has reflected.
+TEST(LineFinisher, EndsWhereNothingIsHeard)
+{
+  const EchoSettings settings = settingsOf(50.0);
+  for (const bool isReflected : { false, true })
+  {
+    TracedLines traced = busyLine(settings);
+    const std::size_t lit = traced.intensity.size() / 2;
+    std::fill(traced.intensity.begin() + std::ptrdiff_t(lit), traced.intensity.end(), 0.0f);
+    std::fill(traced.reverberation.begin(), traced.reverberation.end(), 0.0f);
+    if (!isReflected)
+    {
+      std::fill(traced.boundaryEcho.begin(), traced.boundaryEcho.end(), 0.0f);
+    }
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    const LineFinisher finisher(settings, InterfaceModel::Acoustic, &traced, nullptr, {});
+    LineFinisher::Room room = finisher.room();
+    std::vector<std::complex<float>> iq(std::size_t(settings.sampleCount()), 7.0f);
+    LineSum sum = finisher.emptySum();
+    std::fill(sum.iq.begin(), sum.iq.end(), 1e6f);
+    TracedLines whole = busyLine(settings);
+    whole.reverberation.clear();
+    const LineFinisher before(settings, InterfaceModel::Acoustic, &whole, nullptr, {});
+    before.finish(0, sum, nullptr, {}, room, iq.data()); // leaves the room full
+    for (float& v : sum.iq)
+    {
+      v = normal(random);
+    }
+    finisher.finish(0, sum, nullptr, {}, room, iq.data());
+    const std::vector<Complex> exact =
+      directly(settings, traced, sum, { { 9, 0.4f }, std::vector<float>(iq.size() + 500, 0.0f) }, finisher.pulse());
+    double largest = 0.0;
+    double worst = 0.0;
+    for (std::size_t s = 0; s < exact.size(); ++s)
+    {
+      largest = std::max(largest, std::abs(exact[s]));
+      worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
+    }
+    EXPECT_GT(largest, 1.0);
+    EXPECT_LT(worst, 1e-5 * largest) << isReflected;
+    const bool isSilent = std::all_of(iq.begin() + std::ptrdiff_t(iq.size() * 3 / 4), iq.end(),
+                                      [](std::complex<float> v) { return v == std::complex<float>{}; });
+    EXPECT_EQ(isSilent, !isReflected);
+  }
+}
+
+/// The same with surfaces, which are heard deeper.
+TEST(LineFinisher, HearsSurfacesWhereNothingElseIs)
+{
+  const EchoSettings settings = settingsOf(50.0);
+  TracedLines traced = busyLine(settings);
+  std::fill(traced.intensity.begin(), traced.intensity.end(), 0.0f);
+  std::fill(traced.reverberation.begin(), traced.reverberation.end(), 0.0f);
+  std::fill(traced.boundaryEcho.begin(), traced.boundaryEcho.end(), 0.0f);
+  const LineFinisher finisher(settings, InterfaceModel::Acoustic, &traced, nullptr, {});
+  LineSum surfaces = finisher.emptySum();
+  const std::size_t at = std::size_t(settings.sampleCount()) * 3 / 4;
+  surfaces.iq[2 * at + 1] = 1.0f;
+  LineFinisher::Room room = finisher.room();
+  std::vector<std::complex<float>> iq(std::size_t(settings.sampleCount()));
+  finisher.finish(0, finisher.emptySum(), &surfaces, {}, room, iq.data());
+  TracedLines lit = traced; // the same echo as a scatterer's where all is lit
+  std::fill(lit.intensity.begin(), lit.intensity.end(), 1.0f);
+  const std::vector<Complex> exact =
+    directly(settings, lit, surfaces, { { 9, 0.4f }, std::vector<float>(iq.size() + 500, 0.0f) }, finisher.pulse());
+  double largest = 0.0;
+  double worst = 0.0;
+  for (std::size_t s = 0; s < exact.size(); ++s)
+  {
+    largest = std::max(largest, std::abs(exact[s]));
+    worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
+  }
+  EXPECT_GT(largest, 0.5);
+  EXPECT_LT(worst, 1e-5 * largest);
+}
+
 /// What is known of B is noisy, and its phase sums it up over the whole line: added to the direct sound in that phase,
 /// speckle that reverberates would make another picture of each number of paths.
 TEST(LineFinisher, WhatReverberatesDoesNotDependOnTheAttenuation)
