@@ -311,7 +311,7 @@ void LineFinisher::finish(int line, const LineSum& sum, const LineSum* surfaces,
   const int silentEnd = std::min(rangeCount_, outCount + half); // that is what the pulse reaches
   for (float* values : { heard.re, heard.im })
   {
-    std::fill(values + heardCount, values + std::max(heardCount, silentEnd), 0.0f);
+    std::fill(values + heardCount, values + silentEnd, 0.0f);
   }
   pulse_.convolve(room.re.data(), room.im.data(), outCount, { room.outRe.data(), room.outIm.data() });
   if (isSinking)

@@ -147,10 +147,25 @@ std::vector<Complex> directly(const EchoSettings& settings, const TracedLines& t
   return iq;
 }
 
+/// To 1e-5 of the largest sample, which is louder than `least`.
+void expectAgreement(const std::vector<Complex>& exact, const std::vector<std::complex<float>>& iq, double least)
+{
+  double largest = 0.0;
+  double worst = 0.0;
+  for (std::size_t s = 0; s < exact.size(); ++s)
+  {
+    largest = std::max(largest, std::abs(exact[s]));
+    worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
+  }
+  EXPECT_GT(largest, least);
+  EXPECT_LT(worst, 1e-5 * largest);
+}
+
 TEST(LineFinisher, AgreesWithTheDirectSum)
 {
   for (const double samplingMHz : { 50.0, 17.3 })
   {
+    SCOPED_TRACE(samplingMHz);
     const EchoSettings settings = settingsOf(samplingMHz);
     const TracedLines traced = busyLine(settings);
     std::mt19937 random(5);
@@ -167,15 +182,7 @@ TEST(LineFinisher, AgreesWithTheDirectSum)
     LineFinisher::Room room = finisher.room();
     finisher.finish(0, sum, nullptr, finisher.reverberationNodes(), room, iq.data());
     const std::vector<Complex> exact = directly(settings, traced, sum, speckle, finisher.pulse());
-    double largest = 0.0;
-    double worst = 0.0;
-    for (std::size_t s = 0; s < exact.size(); ++s)
-    {
-      largest = std::max(largest, std::abs(exact[s]));
-      worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
-    }
-    EXPECT_GT(largest, 1.0);
-    EXPECT_LT(worst, 1e-5 * largest) << samplingMHz;
+    expectAgreement(exact, iq, 1.0);
   }
 }
 
@@ -185,6 +192,7 @@ TEST(LineFinisher, EndsWhereNothingIsHeard)
   const EchoSettings settings = settingsOf(50.0);
   for (const bool isReflected : { false, true })
   {
+    SCOPED_TRACE(isReflected);
     TracedLines traced = busyLine(settings);
     const std::size_t lit = traced.intensity.size() / 2;
     std::fill(traced.intensity.begin() + std::ptrdiff_t(lit), traced.intensity.end(), 0.0f);
@@ -211,15 +219,7 @@ TEST(LineFinisher, EndsWhereNothingIsHeard)
     finisher.finish(0, sum, nullptr, {}, room, iq.data());
     const std::vector<Complex> exact =
       directly(settings, traced, sum, { { 9, 0.4f }, std::vector<float>(iq.size() + 500, 0.0f) }, finisher.pulse());
-    double largest = 0.0;
-    double worst = 0.0;
-    for (std::size_t s = 0; s < exact.size(); ++s)
-    {
-      largest = std::max(largest, std::abs(exact[s]));
-      worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
-    }
-    EXPECT_GT(largest, 1.0);
-    EXPECT_LT(worst, 1e-5 * largest) << isReflected;
+    expectAgreement(exact, iq, 1.0);
     const bool isSilent = std::all_of(iq.begin() + std::ptrdiff_t(iq.size() * 3 / 4), iq.end(),
                                       [](std::complex<float> v) { return v == std::complex<float>{}; });
     EXPECT_EQ(isSilent, !isReflected);
@@ -245,15 +245,7 @@ TEST(LineFinisher, HearsSurfacesWhereNothingElseIs)
   std::fill(lit.intensity.begin(), lit.intensity.end(), 1.0f);
   const std::vector<Complex> exact =
     directly(settings, lit, surfaces, { { 9, 0.4f }, std::vector<float>(iq.size() + 500, 0.0f) }, finisher.pulse());
-  double largest = 0.0;
-  double worst = 0.0;
-  for (std::size_t s = 0; s < exact.size(); ++s)
-  {
-    largest = std::max(largest, std::abs(exact[s]));
-    worst = std::max(worst, std::abs(exact[s] - Complex(iq[s])));
-  }
-  EXPECT_GT(largest, 0.5);
-  EXPECT_LT(worst, 1e-5 * largest);
+  expectAgreement(exact, iq, 0.5);
 }
 
 /// What is known of B is noisy, and its phase sums it up over the whole line: added to the direct sound in that phase,
