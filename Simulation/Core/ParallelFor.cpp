@@ -14,34 +14,46 @@ namespace sono {
 namespace {
 
 /// What ThreadSanitizer cannot see in a libtbb that was compiled without it: a loop's tasks come after what came before
-/// the loop, and before what comes after it. Between two tasks there is no order.
-struct LoopOrder
+/// the loop, and before what comes after it, by an exception too. Between two tasks there is no order.
+class LoopOrder
 {
+public:
 #if defined(SONO_TELL_THREAD_SANITIZER)
-  void begin()
+  LoopOrder()
   {
-    __tsan_release(&begun);
+    __tsan_release(&begun_);
   }
-  void beginTask()
+  ~LoopOrder()
   {
-    __tsan_acquire(&begun);
+    __tsan_acquire(&ended_);
   }
-  void endTask()
-  {
-    __tsan_release(&ended);
-  }
-  void end()
-  {
-    __tsan_acquire(&ended);
-  }
+  LoopOrder(const LoopOrder&) = delete;
+  LoopOrder& operator=(const LoopOrder&) = delete;
 
-  char begun = 0;
-  char ended = 0;
+  class Task
+  {
+  public:
+    explicit Task(LoopOrder& order)
+      : order_(order)
+    {
+      __tsan_acquire(&order_.begun_);
+    }
+    ~Task() { __tsan_release(&order_.ended_); }
+    Task(const Task&) = delete;
+    Task& operator=(const Task&) = delete;
+
+  private:
+    LoopOrder& order_;
+  };
+
+private:
+  char begun_ = 0;
+  char ended_ = 0;
 #else
-  void begin() {}
-  void beginTask() {}
-  void endTask() {}
-  void end() {}
+  struct Task
+  {
+    explicit Task(LoopOrder&) {}
+  };
 #endif
 };
 
@@ -81,16 +93,14 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
   };
   LoopOrder order;
   const auto run = [&](int i) {
-    order.beginTask();
+    const LoopOrder::Task task(order);
     if (!stop)
     {
       body(i, yieldPoint);
       ++done;
       reportDone();
     }
-    order.endTask();
   };
-  order.begin();
   if (loopCores == LoopCores::All)
   {
     tbb::parallel_for(0, count, run);
@@ -102,7 +112,6 @@ void parallelFor(int count, const Progress& progress, const std::function<void(i
       run(i);
     }
   }
-  order.end();
   if (stop)
   {
     throw Aborted();
