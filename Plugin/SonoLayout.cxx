@@ -1,5 +1,6 @@
 #include "SonoLayout.h"
 
+#include "SonoDrawNow.h"
 #include "SonoOutputFilter.h"
 
 #include "vtkNew.h"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -268,7 +268,7 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
 
 } // namespace
 
-vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function<void(vtkSMViewProxy*)>& drawNow)
+vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
 {
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = ultrasound->GetSessionProxyManager();
@@ -290,7 +290,7 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function
 
   // What a kept picture suffices for comes first: whoever asks for other outputs waits for the simulation.
   fillFlatView(flat, ultrasound, controller);
-  drawNow(flat);
+  sonoDrawNow(flat);
   const auto line = sonoFilterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine");
   fillSolidView(solid, ultrasound, controller);
   const std::initializer_list<double> yellow{ 1.0, 0.85, 0.2 };
@@ -317,13 +317,13 @@ vtkSMViewProxy* sonoShowSplitLayout(const char* tab, vtkSMSourceProxy* first, vt
   layout->AssignView(flats + 1, solid);
   layout->AssignView(left, one);
   layout->AssignView(left + 1, other);
+  // Each takes a second or two; meanwhile the window answers.
   fillFlatView(one, first, controller);
+  sonoDrawNow(one);
   fillFlatView(other, second, controller);
+  sonoDrawNow(other);
   fillSolidView(solid, first, controller);
-  for (const auto& view : { solid, one, other })
-  {
-    view->StillRender();
-  }
+  sonoDrawNow(solid);
   return solid;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 class vtkSMSessionProxyManager;
 class vtkSMSourceProxy;
 class vtkSMViewProxy;
@@ -9,12 +7,12 @@ class vtkSMViewProxy;
 /// Sets up a tab "Ultrasound" for a Simulate Ultrasound, unless there is one that shows it: the anatomy, translucent,
 /// with probe, fan and image in place; the image flat with rulers in cm, a grey bar, the probe's marker and text; the
 /// RF and envelope of one line, which is drawn into both images. Makes an A-Line, a Flat Image Scale and a Flat Image
-/// Text for that, unless there are some. The flat view is filled first and given to drawNow, which is to bring it to
-/// the screen: the rest can take long. The view with the anatomy.
-vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound, const std::function<void(vtkSMViewProxy*)>& drawNow);
+/// Text for that, unless there are some. The flat view comes to the screen first: the rest can take long. The
+/// view with the anatomy.
+vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound);
 
 /// A tab of this name with the flat views of two Simulate Ultrasounds side by side, and below them the first one's
-/// body. Returns the body's view.
+/// body, each on the screen as soon as it is filled. Returns the body's view.
 vtkSMViewProxy* sonoShowSplitLayout(const char* tab, vtkSMSourceProxy* first, vtkSMSourceProxy* second);
 /// One more image in a body's view.
 void sonoShowImageInBody(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* body);

@@ -8,6 +8,7 @@
 #include "pqUndoStack.h"
 #include "pqView.h"
 #include "vtkCommand.h"
+#include "vtkLight.h"
 #include "vtkNew.h"
 #include "vtkPVDataRepresentation.h"
 #include "vtkRenderer.h"
@@ -15,6 +16,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
 #include "vtkSMRenderViewProxy.h"
+#include "vtkSMSessionProxyManager.h"
 #include "vtkSmartPointer.h"
 
 #include <QWidget>
@@ -182,11 +184,26 @@ void SonoMovingViews::lighten()
       sonoTell(view->getProxy(), "SetUseFXAA", 0);
     }
   }
+  this->makeLamp();
   for (pqView* view : this->Slow)
   {
-    sonoTell(view->getProxy(), "SetUseLightKit", 0); // four of its five lights are a third of the time
-    drawOnInteraction(view, false);                  // draw() follows each step
+    if (vtkSMPropertyHelper(view->getProxy(), "UseLight", true).GetAsInt())
+    {
+      sonoTell(view->getProxy(), "SetUseLightKit", 0); // four of its five lights are a third of the time
+      sonoTell(view->getProxy(), "AddLight", VTKOBJECT(this->Lamp));
+    }
+    drawOnInteraction(view, false); // draw() follows each step
   }
+}
+
+/// At the eye, where a body is about as bright as in the light of ParaView's kit. The lamp that a view without lights
+/// makes for itself is brighter by half.
+void SonoMovingViews::makeLamp()
+{
+  SCOPED_UNDO_EXCLUDE();
+  this->Lamp.TakeReference(this->Source->GetSessionProxyManager()->NewProxy("additional_lights", "Light"));
+  vtkSMPropertyHelper(this->Lamp, "LightType").Set(VTK_LIGHT_TYPE_CAMERA_LIGHT);
+  this->Lamp->UpdateVTKObjects();
 }
 
 void SonoMovingViews::drawInFull()
@@ -219,6 +236,7 @@ void SonoMovingViews::drawInFull()
   {
     if (view)
     {
+      sonoTell(view->getProxy(), "RemoveLight", VTKOBJECT(this->Lamp));
       drawOnInteraction(view, true);
     }
   }

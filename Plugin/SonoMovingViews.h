@@ -26,7 +26,8 @@ class vtkSMProxy;
  * from when all rests. Nor does the anatomy run, which does not change with the pose (SonoKeptAnatomy).
  *
  * Where drawing itself is slow, as in software, a slow view shows fewer triangles, as when it is turned, without
- * peeling and without smoothed edges, at every second picture only, and charts wait until drawInFull.
+ * peeling and without smoothed edges, in the light of one lamp, at every second picture only, and charts wait until
+ * drawInFull.
  */
 class SonoMovingViews
 {
@@ -69,11 +70,13 @@ private:
   void markModified(pqView* view, Marked which);
   bool drawQuick();
   void lighten();
+  void makeLamp();
 
   vtkSmartPointer<vtkSMProxy> Source;
   std::unique_ptr<SonoKeptAnatomy> Anatomy;                     // until drawInFull
   QList<QPointer<pqView>> Views;                                // the slow ones last
   QList<QPointer<pqView>> Slow;                                 // of them
+  vtkSmartPointer<vtkSMProxy> Lamp;                             // which lights these
   QMap<pqView*, QList<QPointer<pqDataRepresentation>>> Shown;   // by the views
   QList<QPair<vtkWeakPointer<vtkObject>, unsigned long>> Muted; // with their observers
   int Pictures = 0;                                             // on the way so far

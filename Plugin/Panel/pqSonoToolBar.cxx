@@ -29,8 +29,6 @@
 #include "pqView.h"
 
 #include <QAction>
-#include <QCoreApplication>
-#include <QEventLoop>
 #include <QMenu>
 #include <QToolButton>
 
@@ -60,19 +58,6 @@ bool hasPicture(pqPipelineSource* source)
   auto* ultrasound = vtkSMSourceProxy::SafeDownCast(source->getProxy());
   ultrasound->UpdatePipeline();
   return ultrasound->GetDataInformation(vtkSonoUltrasound::FLAT_IMAGE)->GetNumberOfPoints() > 0;
-}
-
-/// Onto the screen, without waiting for the end of what a click does: the view's place in its window, its picture, and
-/// that into the window. A person's clicks and keys wait, and timers, some of which draw other views.
-void drawNow(vtkSMViewProxy* view)
-{
-  const auto settle = [] {
-    QCoreApplication::processEvents(QEventLoop::ExcludeUserInputEvents | QEventLoop::ExcludeSocketNotifiers |
-                                    QEventLoop::X11ExcludeTimers);
-  };
-  settle();
-  view->StillRender();
-  settle();
 }
 
 } // namespace
@@ -139,7 +124,7 @@ void pqSonoToolBar::showLayout()
     return;
   }
   unshown_ = nullptr;
-  vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()), drawNow);
+  vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
   pqActiveObjects::instance().setActiveSource(source);
   // Where the probe can be seen and dragged.
   pqActiveObjects::instance().setActiveView(
