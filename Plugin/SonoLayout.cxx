@@ -294,13 +294,12 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
   const auto line = sonoFilterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine");
   fillSolidView(solid, ultrasound, controller);
   const std::initializer_list<double> yellow{ 1.0, 0.85, 0.2 };
-  showPlainly(line, 1, yellow, 1.0, flat, controller);
   showPlainly(line, 2, yellow, 2.0, solid, controller);
+  sonoDrawNow(solid);
+  showPlainly(line, 1, yellow, 1.0, flat, controller);
+  flat->StillRender();
   fillChart(chart, line, controller);
-  for (const auto& view : { solid, flat, chart })
-  {
-    view->StillRender();
-  }
+  chart->StillRender();
   return solid;
 }
 

@@ -7,8 +7,8 @@ class vtkSMViewProxy;
 /// Sets up a tab "Ultrasound" for a Simulate Ultrasound, unless there is one that shows it: the anatomy, translucent,
 /// with probe, fan and image in place; the image flat with rulers in cm, a grey bar, the probe's marker and text; the
 /// RF and envelope of one line, which is drawn into both images. Makes an A-Line, a Flat Image Scale and a Flat Image
-/// Text for that, unless there are some. The flat view comes to the screen first: the rest can take long. The
-/// view with the anatomy.
+/// Text for that, unless there are some. The flat view comes to the screen first, then the body: all of it can
+/// take long. The view with the anatomy.
 vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound);
 
 /// A tab of this name with the flat views of two Simulate Ultrasounds side by side, and below them the first one's

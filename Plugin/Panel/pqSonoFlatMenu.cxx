@@ -10,6 +10,7 @@
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
@@ -25,9 +26,11 @@
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMRepresentationProxy.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkSonoCaliper.h"
 
 #include <QAction>
+#include <QInputDialog>
 #include <QMenu>
 
 #include <algorithm>
@@ -52,12 +55,22 @@ pqRenderView* flatView()
   return found == views.end() ? nullptr : *found;
 }
 
-int numberOfCalipers()
+int numberOf(const char* kind)
 {
   const auto sources = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
-  return int(std::count_if(sources.begin(), sources.end(), [](const pqPipelineSource* source) {
-    return std::strcmp(source->getProxy()->GetXMLName(), "SonoCaliper") == 0;
+  return int(std::count_if(sources.begin(), sources.end(), [kind](const pqPipelineSource* source) {
+    return std::strcmp(source->getProxy()->GetXMLName(), kind) == 0;
   }));
+}
+
+/// What a person writes; empty: nothing.
+QString askForWords()
+{
+  QInputDialog dialog(pqCoreUtilities::mainWidget());
+  dialog.setObjectName("SonoAnnotation");
+  dialog.setWindowTitle(QObject::tr("Annotation"));
+  dialog.setLabelText(QObject::tr("Text in the flat view:"));
+  return dialog.exec() == QDialog::Accepted ? dialog.textValue().trimmed() : QString();
 }
 
 bool isShown(pqRenderView* view, const char* kind)
@@ -73,6 +86,21 @@ pqPipelineSource* ultrasoundOf(pqRenderView* view)
   const SonoShownImage image = view ? sonoFlatImageOf(view->getProxy()) : SonoShownImage();
   return image.source && std::strcmp(image.source->GetXMLName(), "SonoUltrasound") == 0 ? sonoPipelineItem(image.source)
                                                                                         : nullptr;
+}
+
+/// Where it can be read and dragged, each a line below the `before` others.
+void write(vtkSMProxy* shown, int before)
+{
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", shown);
+  constexpr int lines = 8;
+  constexpr int anywhere = 0;
+  const double at[] = { 0.1, 0.8 - 0.08 * (before % lines) };
+  const double yellow[] = { 1.0, 0.85, 0.2 };
+  vtkSMPropertyHelper(shown, "WindowLocation", true).Set(anywhere);
+  vtkSMPropertyHelper(shown, "Position", true).Set(at, 2);
+  vtkSMPropertyHelper(shown, "Color", true).Set(yellow, 3);
+  vtkSMPropertyHelper(shown, "FontSize", true).Set(16);
+  shown->UpdateVTKObjects();
 }
 
 /// In the middle of what a view shows, so that each point can be seen and dragged; a little below the `before` others.
@@ -98,7 +126,7 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
 {
   this->setObjectName("SonoFlatButton");
   this->setIcon(QIcon(":/sono/caliper.svg"));
-  this->setToolTip(tr("Text, labels, calipers and split screen of the flat view"));
+  this->setToolTip(tr("Text, labels, calipers, annotations and split screen of the flat view"));
   this->setPopupMode(QToolButton::InstantPopup);
   new pqSonoCaliperFollow(this);
   pqSonoKeptAlike::sharedProbe(this);
@@ -124,6 +152,8 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
          "and, "
          "for biplane, in that of the two-chamber view"),
       [this] { measureVentricle(); });
+  add("actionSonoAnnotation", tr("Annotation"), tr("Write into the flat view; drag the text to where it belongs"),
+      [this] { annotate(); });
   menu->addSeparator();
   add("actionSonoSplit", tr("Split Screen"),
       tr("A second Simulate Ultrasound of the same probe, with settings of its own, beside the first"),
@@ -184,7 +214,7 @@ void pqSonoFlatMenu::measure(int kind, const QString& step)
     return;
   }
   BEGIN_UNDO_SET(step);
-  const int before = numberOfCalipers();
+  const int before = numberOf("SonoCaliper");
   pqPipelineSource* caliper =
     pqApplicationCore::instance()->getObjectBuilder()->createSource("sources", "SonoCaliper", view->getServer());
   vtkSMPropertyHelper(caliper->getProxy(), "Kind").Set(kind);
@@ -195,6 +225,27 @@ void pqSonoFlatMenu::measure(int kind, const QString& step)
   END_UNDO_SET();
   pqActiveObjects::instance().setActiveView(view);
   pqActiveObjects::instance().setActiveSource(caliper); // whose points can be dragged then
+  view->render();
+}
+
+void pqSonoFlatMenu::annotate()
+{
+  const QString words = flatView() ? askForWords() : QString();
+  pqRenderView* view = flatView();
+  if (words.isEmpty() || !view)
+  {
+    return;
+  }
+  BEGIN_UNDO_SET(tr("Annotation"));
+  const int before = numberOf("TextSource");
+  pqPipelineSource* text =
+    pqApplicationCore::instance()->getObjectBuilder()->createSource("sources", "TextSource", view->getServer());
+  vtkSMPropertyHelper(text->getProxy(), "Text").Set(words.toUtf8().constData());
+  text->getProxy()->UpdateVTKObjects();
+  text->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  write(controller->Show(vtkSMSourceProxy::SafeDownCast(text->getProxy()), 0, view->getViewProxy()), before);
+  END_UNDO_SET();
   view->render();
 }
 

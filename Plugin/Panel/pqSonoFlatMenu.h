@@ -22,6 +22,7 @@ private:
   void update();
   void toggle(const char* kind, const QString& step);
   void measure(int kind, const QString& step);
+  void annotate();
   void measureVentricle();
   void split();
   void showMMode();

@@ -8,11 +8,12 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from events import MAIN, PROBE, click, event, menu, pause, save_state, select, undo, write
+from events import MAIN, PROBE, click, event, menu, pause, save_state, select, undo, view, write
 from guicase import PLAYBACKS, GuiCase, bytes_of
 
 ACCEPT = f"{MAIN}/propertiesDock/propertiesPanel/Accept"
-SPLIT = event(f"{MAIN}/SonoToolBar/SonoFlatButton/SonoFlatMenu", "activate", "actionSonoSplit")
+FLAT_MENU = f"{MAIN}/SonoToolBar/SonoFlatButton/SonoFlatMenu"
+SPLIT = event(FLAT_MENU, "activate", "actionSonoSplit")
 REDO = menu("menu_Edit", "actionEditRedo")
 TRACE = menu("menuTools", "actionToolsStartStopTrace")
 EDITOR = f"{MAIN}/0pqPythonScriptEditor0"
@@ -61,6 +62,22 @@ view = next(v for v in GetViews() if v.GetXMLName() == "RenderView" and v.Intera
 SaveScreenshot(sys.argv[2] + ".png", view, ImageResolution=[416, 313], FontScaling="Do not scale fonts")
 with open(sys.argv[2] + ".json", "w", encoding="utf-8") as file:
     json.dump(said, file)
+"""
+
+# Of each caliper of a state, what it measures and says.
+ASK_CALIPERS = """
+import json
+LoadState(sys.argv[1])
+said = []
+for (name, _), source in sorted(GetSources().items()):
+    if source.GetXMLName() == "SonoCaliper":
+        source.UpdatePipeline()
+        field = source.SMProxy.GetClientSideObject().GetOutputDataObject(0).GetFieldData()
+        said.append([source.SMProxy.GetProperty("Kind").GetElement(0),
+                     [list(source.GetProperty(f"Point{i}Mm").GetData()) for i in (1, 2, 3)],
+                     field.GetArray("Value").GetValue(0), field.GetAbstractArray("Text").GetValue(0)])
+with open(sys.argv[2], "w", encoding="utf-8") as file:
+    json.dump(sorted(said, key=lambda one: one[0]), file)
 """
 
 
@@ -129,6 +146,56 @@ class TestGuiFlat(GuiCase):
         self.assertLess(math.dist(ends[0][:2], wanted), 2.5)
         self.assertAlmostEqual(measured["caliper"][0], math.dist(*ends), places=3)
         self.assertEqual(measured["caliper"][1], f"{math.dist(*ends):.1f} mm")
+
+    def test_an_annotation_is_written_dragged_and_undone(self):
+        """What is cancelled or empty writes nothing. An ellipse and an angle beside it have values of their own."""
+        flat = view(2, 5)
+
+        def annotate(words, button):
+            dialog = f"{MAIN}/SonoAnnotation"
+            return "\n".join((event(FLAT_MENU, "activate", "actionSonoAnnotation"),
+                              event(f"{dialog}/1QLineEdit0", "set_string", words),
+                              click(f"{dialog}/1QDialogButtonBox0/1QPushButton{button}"), pause(500)))
+
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            drag = [event(flat, kind, f"({x},{y},{button},{held},0)") for kind, x, y, button, held in (
+                ("mouseMove", 0.14, 0.18, 0, 0), ("mousePress", 0.14, 0.18, 1, 1), ("mouseMove", 0.24, 0.28, 0, 1),
+                ("mouseMove", 0.44, 0.48, 0, 1), ("mouseRelease", 0.44, 0.48, 1, 0))]
+            played = write(folder / "annotate.xml", click(ACCEPT), click(f"{MAIN}/SonoToolBar/actionSonoSimulate"), pause(1000),
+                           annotate("nothing", 1), annotate("  ", 0), save_state("none"), annotate("Right lobe", 0),
+                           save_state("written"), undo(), pause(500), save_state("undone"), REDO, pause(500), *drag, pause(500),
+                           save_state("dragged"),
+                           event(FLAT_MENU, "activate", "actionSonoEllipse"), event(FLAT_MENU, "activate", "actionSonoAngle"),
+                           pause(1000), save_state("measured"))
+            self.assertEqual(self.play(played, folder, f"--data={self.label_map(folder)}"), [])
+            states = {name: folder / f"{name}.pvsm" for name in ("none", "written", "undone", "dragged", "measured")}
+            words = {name: [texts(one, "Text")[0] for one in proxies(state, "TextSource")] for name, state in states.items()}
+            at = {name: [numbers(one, "Position") for one in proxies(states[name], "TextSourceRepresentation")
+                         if numbers(one, "WindowLocation") == [0]] for name in ("written", "dragged")}
+            kinds = [numbers(one, "Kind") for one in proxies(states["measured"], "SonoCaliper")]
+            self.run_script(ASK_CALIPERS, folder, states["measured"], folder / "values.json")
+            values = json.loads((folder / "values.json").read_text(encoding="utf-8"))
+            _, shown = self.ask(states["dragged"], folder)
+        self.assertEqual(words, {"none": [], "written": ["Right lobe"], "undone": [], "dragged": ["Right lobe"],
+                                 "measured": ["Right lobe"]})
+        moved = [after - before for before, after in zip(at["written"][0], at["dragged"][0])]
+        self.assertAlmostEqual(moved[0], 0.3, delta=0.02)
+        self.assertAlmostEqual(moved[1], -0.3, delta=0.02)
+        yellow = sum(row[3 * x] > 180 and row[3 * x + 2] < 120 for row in shown[130:180] for x in range(160, 320))
+        self.assertGreater(yellow, 60)
+        self.assertEqual(kinds, [[1], [2]])
+        for kind, points, value, text in values:
+            one, other, third = ([p - q for p, q in zip(point, points[0])] for point in points)
+            across = math.dist(points[0], points[1])
+            if kind == 1:  # its second half axis is the third point's distance from the first axis
+                height = abs(other[0] * third[1] - other[1] * third[0]) / across
+                self.assertAlmostEqual(value, math.pi * 0.5 * across * height, delta=1e-3 * value)
+                self.assertEqual(text, f"{value / 100:.2f} cm^2")
+            else:
+                turn = math.degrees(math.atan2(other[0] * third[1] - other[1] * third[0], other[0] * third[0] + other[1] * third[1]))
+                self.assertAlmostEqual(value, abs(turn), places=2)
+                self.assertEqual(text, f"{value:.1f} deg")
 
     def test_clicks_trace_a_ventricle(self):
         """One point each, where the picture was clicked; undo takes one back, and no scan line is picked meanwhile."""

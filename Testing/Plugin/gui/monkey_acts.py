@@ -12,8 +12,8 @@ FILTERS = ("SonoUltrasound", "SonoUltrasound", "SonoSceneBuilder", "SonoRayTrace
            "SonoALine", "SonoMMode", "SonoFlatScale", "SonoFlatText", "SonoFlatLabels", "SonoFlatPixel", "SonoScanDetail",
            "SonoLabelTable", "SonoLiveLink", "Slice", "Threshold", "Contour")
 TOOLS = ("actionSonoSimulate", "actionSonoSimulate", "actionSonoLayout", "actionSonoLayout", "actionSonoFlatText",
-         "actionSonoFlatLabels", "actionSonoDistance", "actionSonoEllipse", "actionSonoAngle", "actionSonoSplit",
-         "actionSonoTissues", "actionSonoScanner", "actionSonoScanner")
+         "actionSonoFlatLabels", "actionSonoDistance", "actionSonoEllipse", "actionSonoAngle", "actionSonoAnnotation",
+         "actionSonoSplit", "actionSonoTissues", "actionSonoScanner", "actionSonoScanner")
 MOST_SOURCES = 14
 OUTSIDE = (-1, 0, 1e9, -1e30, float("nan"))  # of most ranges
 # The third hides all but what is sought. The last ends ParaView 5.11, without SonoVDB too, when a background's texture was to be
