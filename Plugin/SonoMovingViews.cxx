@@ -196,8 +196,8 @@ void SonoMovingViews::lighten()
   }
 }
 
-/// At the eye, where a body is about as bright as in the light of ParaView's kit. The lamp that a view without lights
-/// makes for itself is brighter by half.
+/// At the eye, where a body is about as bright as in the light of ParaView's kit. Without any light a view shows it
+/// unshaded, and brighter by half.
 void SonoMovingViews::makeLamp()
 {
   SCOPED_UNDO_EXCLUDE();

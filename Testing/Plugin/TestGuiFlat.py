@@ -185,6 +185,7 @@ class TestGuiFlat(GuiCase):
         yellow = sum(row[3 * x] > 180 and row[3 * x + 2] < 120 for row in shown[130:180] for x in range(160, 320))
         self.assertGreater(yellow, 60)
         self.assertEqual(kinds, [[1], [2]])
+        self.assertEqual([kind for kind, *_ in values], [1, 2])
         for kind, points, value, text in values:
             one, other, third = ([p - q for p, q in zip(point, points[0])] for point in points)
             across = math.dist(points[0], points[1])

@@ -45,7 +45,7 @@ KNOWN = {
     r"vtkPCGNSWriter.*(Unable to write data object of class vtkImageData|returned failure for request)",
     # The same of a surface, for which it falls back on PVD, whose folder would have the name of a file that is there.
     r"vtkXMLPVDWriter.*Sorry unable to create directory",
-    r'vtkXMLWriter.*(Error opening output file|Error code "Not a directory")',
+    r'vtkXMLWriter.*(Error opening output file "[^"]*/(\w+\.\w+)/\2_\d+\.vtp"|Error code "Not a directory")',
     # VTK 9.2's selector compares the number of a prop before it has one, with what lies in the memory by chance: its constructor
     # leaves that number (PropID) out.
     r"vtkPVHardwareSelector.*Too many props",
