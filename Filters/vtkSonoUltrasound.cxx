@@ -62,6 +62,9 @@ void vtkSonoUltrasound::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << indent << "ErrorMap: " << this->ErrorMap << endl;
   os << indent << "SharedProbe: " << this->SharedProbe << endl;
+  os << indent << "Freeze: " << this->Freeze << endl;
+  os << indent << "StoreFolder: " << this->StoreFolder << endl;
+  os << indent << "HeartRate: " << this->HeartRate << endl;
   os << indent << "Progressive: " << this->Progressive << endl;
 }
 

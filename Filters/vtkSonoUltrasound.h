@@ -6,6 +6,7 @@
 #include "vtkSonoFiltersModule.h" // for export macro
 
 #include <memory>
+#include <string>
 
 namespace sono {
 class UltrasoundStages;
@@ -113,6 +114,21 @@ public:
 
   ///@{
   /**
+   * What a program that shows the filter as a scanner does with it; they change no image. Freeze: whether the picture
+   * stays while the probe moves and is set, default off. StoreFolder: where pictures of it are written, default "":
+   * whoever writes one asks. HeartRate: how many times a minute all time steps are played, 20 to 300 a minute, or 0, the
+   * default: as many as their times say.
+   */
+  void SetFreeze(bool frozen) { this->Freeze = frozen; }
+  vtkGetMacro(Freeze, bool);
+  void SetStoreFolder(const char* folder) { this->StoreFolder = folder ? folder : ""; }
+  const char* GetStoreFolder() { return this->StoreFolder.c_str(); }
+  void SetHeartRate(double rate) { this->HeartRate = rate; }
+  vtkGetMacro(HeartRate, double);
+  ///@}
+
+  ///@{
+  /**
    * With a target error or a time budget of the tracer, whether a picture of the first round of paths is made at once
    * and the others are traced in the background, until another picture is wanted: HasBetter says whether there is a
    * better one, IsRefining whether one may follow. An Update makes a better one once HasBetter has said so; all outputs
@@ -170,6 +186,9 @@ private:
   std::unique_ptr<sono::UltrasoundStages> Inside;
   bool ErrorMap = false;
   int SharedProbe = 0;
+  bool Freeze = false;
+  std::string StoreFolder;
+  double HeartRate = 0.0;
   bool Progressive = false;
 };
 

@@ -95,6 +95,10 @@ void SonoScannerSettings::addRow(QGridLayout* grid, vtkSMProxy* ultrasound, cons
   auto* label = new QLabel(QCoreApplication::translate("SonoScannerSettings", text), this);
   label->setToolTip(QString("<p>%1: %2</p>").arg(property->GetXMLLabel(), pqPropertyWidget::getTooltip(property)));
   widget->setToolTip(label->toolTip());
+  for (auto* part : widget->findChildren<QWidget*>())
+  {
+    part->setAccessibleName(label->text());
+  }
   for (auto* number : widget->findChildren<pqDoubleLineEdit*>())
   {
     number->setMaximumWidth(numberWidth); // the room is the slider's

@@ -3,26 +3,31 @@
 #include "SonoPhases.h"
 #include "pqSonoProbeWidget.h"
 
+#include "pqCoreUtilities.h"
 #include "pqPipelineSource.h"
 #include "pqServer.h"
 #include "pqTimeKeeper.h"
 #include "pqUndoStack.h"
+#include "vtkCommand.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineController.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
+#include "vtkSMTrace.h"
 #include "vtkSonoPhasesAhead.h"
 
 #include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <QSignalBlocker>
 
 #include <cmath>
 #include <utility>
 
 namespace {
 
+constexpr const char* heartRate = "HeartRate";
 constexpr int lookForPhaseMs = 15;
 constexpr int fewPhases = 2; // that a beat can be seen in
 constexpr double usualPerMin = 60.0;
@@ -61,6 +66,8 @@ pqSonoBeat::pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent
        "probe; it may be dragged meanwhile. At first the anatomy of each phase is made in the background, and "
        "those that are ready are played. Again: stops at the phase that is shown, in full."));
   rate_->setObjectName("HeartRate");
+  rate_->setAccessibleName(tr("Heart rate"));
+  rate_->setKeyboardTracking(false); // a number is one step of undo, not a digit
   rate_->setRange(20.0, 300.0);
   rate_->setDecimals(0);
   rate_->setValue(usualPerMin);
@@ -71,6 +78,12 @@ pqSonoBeat::pqSonoBeat(std::function<pqSonoProbeWidget*()> find, QWidget* parent
   row->addWidget(play_);
   row->addWidget(new QLabel(tr("Rate")));
   row->addWidget(rate_);
+  QObject::connect(rate_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double rate) {
+    SCOPED_UNDO_SET(tr("Heart Rate"));
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source_->getProxy());
+    vtkSMPropertyHelper(source_->getProxy(), heartRate).Set(rate);
+    source_->getProxy()->UpdateVTKObjects();
+  });
   QObject::connect(play_, &QPushButton::toggled, this, [this](bool wanted) { play(wanted); });
   steps_.setInterval(lookForPhaseMs);
   this->connect(&steps_, SIGNAL(timeout()), SLOT(step()));
@@ -90,6 +103,8 @@ void pqSonoBeat::follow(pqPipelineSource* source)
   if (pqTimeKeeper* now = timeKeeperOf(source_))
   {
     this->connect(now, SIGNAL(timeStepsChanged()), SLOT(showState()));
+    pqCoreUtilities::connect(source_->getProxy()->GetProperty(heartRate), vtkCommand::ModifiedEvent, this,
+                             SLOT(showState()));
   }
   this->showState();
 }
@@ -107,7 +122,9 @@ void pqSonoBeat::showState()
   this->setEnabled(isMoving);
   if (isMoving)
   {
-    rate_->setValue(rateOf(times));
+    const double given = vtkSMPropertyHelper(source_->getProxy(), heartRate).GetAsDouble();
+    const QSignalBlocker quiet(rate_); // what is shown is nobody's choice
+    rate_->setValue(given > 0.0 ? given : rateOf(times));
   }
 }
 

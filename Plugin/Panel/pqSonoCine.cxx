@@ -38,6 +38,7 @@ pqSonoCine::pqSonoCine(QWidget* parent)
 {
   this->setObjectName("SonoCine");
   scrubber_->setObjectName("Scrubber");
+  scrubber_->setAccessibleName(tr("Cine"));
   scrubber_->setToolTip(
     tr("Cine loop: the last %1 pictures of a moving probe, newest on the right. Freeze, then drag it "
        "or use the arrow keys; the probe goes back with the picture, one step of undo.")

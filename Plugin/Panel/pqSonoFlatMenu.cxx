@@ -130,7 +130,7 @@ pqSonoFlatMenu::pqSonoFlatMenu(QWidget* parent)
   this->setPopupMode(QToolButton::InstantPopup);
   new pqSonoCaliperFollow(this);
   pqSonoKeptAlike::sharedProbe(this);
-  auto* menu = new QMenu(this);
+  auto* menu = new QMenu(tr("&Flat View"), this);
   menu->setObjectName("SonoFlatMenu");
   this->setMenu(menu);
   text_ =

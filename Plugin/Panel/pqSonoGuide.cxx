@@ -16,7 +16,7 @@
 
 namespace {
 
-// What a standard view that was found may be off its ideal plane (docs/views.md).
+// Within which a place counts as reached: no more than a short-axis view may be off (docs/views.md).
 constexpr double withinMm = 5.0;
 constexpr double withinDeg = 5.0;
 constexpr double leastMm = 2.0; // of a slide that is worth a line

@@ -49,7 +49,8 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   this->Step->setValue(5.0);
   this->Step->setSuffix(" degrees");
   this->Step->setToolTip(tr("How far one click on a button below turns the probe, 0.1 to 90 degrees."));
-  grid->addWidget(new QLabel(tr("Turn by"), this), row, 0);
+  this->Step->setAccessibleName(tr("Turn by"));
+  grid->addWidget(new QLabel(this->Step->accessibleName(), this), row, 0);
   grid->addWidget(this->Step, row, 1, 1, 3);
   this->addTurn(grid, row + 1, tr("Rotate"),
                 tr("About the probe's axis. In the view: drag the yellow ring, or Ctrl + left, right."),
@@ -143,6 +144,7 @@ void pqSonoProbeWidget::addRow(QGridLayout* grid, const char* function)
   {
     auto* edit = new pqDoubleLineEdit(this);
     edit->setObjectName(count > 1 ? QString("%1_%2").arg(function).arg(i) : function);
+    edit->setAccessibleName(count > 1 ? QString("%1 %2").arg(label->text(), QString("xyz"[i])) : label->text());
     edit->setToolTip(pqPropertyWidget::getTooltip(smproperty));
     label->setToolTip(edit->toolTip());
     this->addPropertyLink(edit, "text2", SIGNAL(textChangedAndEditingFinished()), smproperty, i);
@@ -160,6 +162,7 @@ void pqSonoProbeWidget::addTurn(QGridLayout* grid, int row, const QString& name,
     auto* button = new QToolButton(this);
     button->setObjectName(name + (sign < 0 ? "Minus" : "Plus"));
     button->setText(sign < 0 ? QString(QChar(0x2212)) : "+");
+    button->setAccessibleName(QString("%1 %2").arg(name, button->text()));
     button->setToolTip(toolTip);
     button->setAutoRepeat(true);
     button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);

@@ -21,6 +21,7 @@
 #include "vtkCommand.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
 #include <QAction>
@@ -85,7 +86,10 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
   QAction* folderAct = new QAction(tr("Store in..."), this);
   folderAct->setIconText("...");
   folderAct->setToolTip(tr("Choose another folder for stored pictures."));
-  QObject::connect(folderAct, &QAction::triggered, this, [this] { chooseFolder(); });
+  QObject::connect(folderAct, &QAction::triggered, this, [this] {
+    SCOPED_UNDO_SET(tr("Store Folder"));
+    chooseFolder();
+  });
   QAction* flipAct = this->addAct("Flip", tr("Flip"), Qt::Key_F8,
                                   tr("Left to right: turns the probe by 180 degrees about its axis, and its marker "
                                      "with it."));
@@ -237,6 +241,8 @@ void pqSonoScannerDock::fill()
       pqCoreUtilities::connect(source_->getProxy()->GetProperty(name), vtkCommand::ModifiedEvent, this,
                                SLOT(showPlane()));
     }
+    pqCoreUtilities::connect(source_->getProxy()->GetProperty(sonoFreeze), vtkCommand::ModifiedEvent, this,
+                             SLOT(showFrozen()));
   }
   this->say(source_ ? QString() : tr("Select a Simulate Ultrasound in the pipeline browser; this panel then sets it."));
   this->enable();
@@ -250,10 +256,15 @@ void pqSonoScannerDock::enable()
   {
     act->setEnabled(source_ && this->isVisible());
   }
+  this->showFrozen();
+  this->showPlane();
+}
+
+void pqSonoScannerDock::showFrozen()
+{
   const QSignalBlocker quiet(freezeAct_);
   freezeAct_->setChecked(source_ && sonoIsFrozen(source_->getProxy()));
   cine_->setFrozen(freezeAct_->isChecked());
-  this->showPlane();
 }
 
 /// As the properties panel does with each change of its own.
@@ -275,8 +286,12 @@ void pqSonoScannerDock::nudge(const char* property, double step)
 
 void pqSonoScannerDock::freeze(bool frozen)
 {
-  source_->setProperty(sonoFrozen, frozen);
-  cine_->setFrozen(frozen);
+  {
+    SCOPED_UNDO_SET(frozen ? tr("Freeze") : tr("Unfreeze"));
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source_->getProxy());
+    vtkSMPropertyHelper(source_->getProxy(), sonoFreeze).Set(frozen ? 1 : 0);
+    source_->getProxy()->UpdateVTKObjects();
+  }
   auto* panel = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
   if (!frozen && panel && source_->modifiedState() == pqProxy::MODIFIED)
   {
@@ -284,28 +299,50 @@ void pqSonoScannerDock::freeze(bool frozen)
   }
 }
 
+QString pqSonoScannerDock::folder() const
+{
+  return QString::fromUtf8(vtkSMPropertyHelper(source_->getProxy(), "StoreFolder").GetAsString());
+}
+
 bool pqSonoScannerDock::chooseFolder()
 {
   // Where the filter runs: of a remote server, its folders.
-  pqFileDialog dialog(source_->getServer(), pqCoreUtilities::mainWidget(), tr("Store pictures in"), folder_, QString());
+  pqFileDialog dialog(source_->getServer(), pqCoreUtilities::mainWidget(), tr("Store pictures in"),
+                      this->folder().isEmpty() ? folder_ : this->folder(), QString());
   dialog.setObjectName("SonoStoreDialog");
   dialog.setFileMode(pqFileDialog::Directory);
   if (dialog.exec() != QDialog::Accepted || dialog.getSelectedFiles().isEmpty())
   {
     return false;
   }
-  folder_ = dialog.getSelectedFiles()[0];
+  this->storeIn(dialog.getSelectedFiles()[0]);
   return true;
+}
+
+void pqSonoScannerDock::storeIn(const QString& folder)
+{
+  folder_ = folder;
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source_->getProxy());
+  vtkSMPropertyHelper(source_->getProxy(), "StoreFolder").Set(folder.toUtf8().data());
+  source_->getProxy()->UpdateVTKObjects();
 }
 
 void pqSonoScannerDock::store()
 {
-  if (folder_.isEmpty() && !this->chooseFolder())
+  if (this->folder().isEmpty())
   {
-    return;
+    SCOPED_UNDO_EXCLUDE(); // undo after a picture was stored goes back to what was done before it
+    if (!folder_.isEmpty())
+    {
+      this->storeIn(folder_); // as of another filter
+    }
+    else if (!this->chooseFolder())
+    {
+      return;
+    }
   }
   const QString time = QDateTime::currentDateTime().toString("yyyyMMdd_HHmmss_zzz");
-  const QString file = QString("%1/ultrasound_%2.png").arg(folder_, time);
+  const QString file = QString("%1/ultrasound_%2.png").arg(this->folder(), time);
   const QString refusal = sonoStorePicture(vtkSMSourceProxy::SafeDownCast(source_->getProxy()), file);
   this->say(refusal.isEmpty() ? tr("Stored as %1.").arg(file) : refusal);
 }

@@ -29,6 +29,7 @@ public:
 
 private Q_SLOTS:
   void showPlane();
+  void showFrozen();
 
 private:
   /// A key, and what it does; none of them repeats while it is held but those of `nudge`.
@@ -41,7 +42,9 @@ private:
   void nudge(const char* property, double step);
   void freeze(bool frozen);
   void store();
+  QString folder() const;
   bool chooseFolder();
+  void storeIn(const QString& folder);
   void turnPlane();
   void toggleBiplane();
   bool isPlaneTurned() const;
@@ -61,7 +64,7 @@ private:
   pqSonoCine* cine_;
   pqSonoPath* path_;
   pqSonoBeat* beat_;
-  QString folder_;                 // where pictures are stored
+  QString folder_;                 // where pictures were stored last
   std::vector<double> firstAxial_; // before the other plane was asked for
   std::vector<double> firstLateral_;
 };

@@ -2,6 +2,7 @@
 
 #include "SonoExamples.h"
 #include "SonoLayout.h"
+#include "SonoMenu.h"
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
 #include "pqSonoLoading.h"
@@ -30,6 +31,7 @@
 
 #include <QAction>
 #include <QMenu>
+#include <QTimer>
 #include <QToolButton>
 
 #include <cstring>
@@ -83,6 +85,7 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });
   QObject::connect(active, &pqActiveObjects::dataUpdated, this, [this] { updateActions(); });
   updateActions();
+  QTimer::singleShot(0, this, [this] { sonoInstallMenu(this); }); // the window may not have its menus yet
 }
 
 void pqSonoToolBar::updateActions()
@@ -135,7 +138,7 @@ void pqSonoToolBar::showLayout()
 void pqSonoToolBar::addExamples()
 {
   auto* button = new QToolButton(this);
-  auto* menu = new QMenu(button);
+  auto* menu = new QMenu(tr("&Examples"), button);
   menu->setObjectName("SonoExamplesMenu");
   menu->setToolTipsVisible(true);
   for (const SonoExample& example : sonoExamples())

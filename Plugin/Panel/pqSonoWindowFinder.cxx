@@ -27,6 +27,7 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widge
   grid->setHorizontalSpacing(4);
   grid->setVerticalSpacing(4);
   this->Target->setObjectName("WindowTarget");
+  this->Target->setAccessibleName(tr("What to look for"));
   this->Target->setEditable(true);
   this->Target->setInsertPolicy(QComboBox::NoInsert);
   for (const char* name : { "heart", "liver", "right kidney", "left kidney", "spleen", "gallbladder", "bladder",
@@ -41,6 +42,7 @@ pqSonoWindowFinder::pqSonoWindowFinder(vtkSMProxy* ultrasound, vtkSMProxy* widge
   button->setToolTip(tr("Puts the probe onto the skin where it sees most of the organ, through the least bone and gas, "
                         "and takes the probe and the depth for it. Where the label map is cut is no skin."));
   this->Candidate->setObjectName("WindowCandidate");
+  this->Candidate->setAccessibleName(tr("Places found"));
   this->Candidate->setToolTip(
     tr("The best places, at most five, or the standard views, and what the probe sees from each. Small pictures, of "
        "few lines and paths, come one by one while nothing else is done."));

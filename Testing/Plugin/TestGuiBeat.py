@@ -43,6 +43,13 @@ class TestGuiBeat(GuiCase):
         # It plays what is ready, says how many are, and then nothing.
         self.assertIn("2 of 6 phases are ready.", said["sentences"])
         self.assertEqual(said["sentences"][-1], "")
+        # At 20 beats a minute a phase lasts half a second; none is left out.
+        self.assertEqual(said["property"], 20)
+        slow = [(at, round(6 * time)) for at, time in said["slow"] if at > said["readyAt"] + 1.5]  # the first came of the other rate
+        self.assertGreater(len(slow), 8)
+        self.assertEqual({(b - a) % 6 for (_, a), (_, b) in zip(slow, slow[1:])}, {1})
+        self.assertAlmostEqual((slow[-1][0] - slow[0][0]) / (len(slow) - 1), 0.5, delta=0.1)
+        self.assertNotEqual(said["undone"][0], 20)
         self.assertTrue(said["pictures"][0]["said"].endswith("of 6 phases are ready."), said["pictures"][0])
         seen = {round(6 * picture["time"]): picture["picture"] for picture in said["pictures"]}
         self.assertEqual({str(phase): picture for phase, picture in seen.items()}, expected)

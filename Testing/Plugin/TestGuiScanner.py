@@ -129,8 +129,10 @@ class TestGuiScanner(GuiCase):
 
     def test_flip_and_store(self):
         with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "other").mkdir()
             drawn = self.play_panel("scanner_buttons.xml", folder)
-            flipped, restored = sorted(pathlib.Path(folder).glob("ultrasound_*.png"))
+            (flipped,) = pathlib.Path(folder).glob("ultrasound_*.png")
+            (restored,) = pathlib.Path(folder, "other").glob("ultrasound_*.png")
             left, right = (self.halves(picture) for picture in (flipped, restored))
         full = [line for line in drawn if line["Preview"] == 0]
         self.assertEqual(len(full), 3)

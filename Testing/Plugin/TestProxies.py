@@ -144,7 +144,7 @@ class TestProxies(unittest.TestCase):
                     not domains & {"EnumerationDomain", "BooleanDomain"}:
                 numbers += 1
                 self.assertTrue(domains & {"IntRangeDomain", "DoubleRangeDomain"})
-                self.assertRegex(tooltip, r"\b(mm|cm|dB|kPa|MHz|m/s|degrees|seconds|no unit)\b")
+                self.assertRegex(tooltip, r"\b(mm|cm|dB|kPa|MHz|m/s|degrees|seconds|a minute|no unit)\b")
                 self.assertRegex(tooltip, r"\d|any place")
         self.assertGreater(numbers, 60)
 

@@ -1,0 +1,122 @@
+"""Each control that no other test touches: what is turned, set, shown or made is what the control says, and nothing else is. Needs
+Xvfb, python3-pyqt5 and python3-xlib; run by ctest -L gui."""
+import json
+import math
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from guicase import PLAYBACKS, GuiCase
+
+
+def angle(a, b):
+    """In degrees."""
+    cosine = sum(x * y for x, y in zip(a, b)) / math.hypot(*a) / math.hypot(*b)
+    return math.degrees(math.acos(max(-1, min(1, cosine))))
+
+
+class TestGuiPanel(GuiCase):
+    def play_scene(self, name, folder):
+        os.environ.update(PANEL_SCENE=name, PANEL_SCRIPTS=str(PLAYBACKS))
+        done = self.paraview(folder, f"--script={PLAYBACKS / 'panel.py'}")
+        failed = pathlib.Path(folder, "failed.txt")
+        self.assertFalse(failed.exists(), failed.exists() and failed.read_text())
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual([line for line in done.stdout.splitlines() if "ERR|" in line or "Traceback" in line], [])
+        return json.loads(pathlib.Path(folder, "panel.json").read_text(encoding="utf-8"))
+
+    def test_pose(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("pose", folder)
+        first = found["first"]
+        for name, kept, turned in (("Rotate", "axial", "lateral"), ("Tilt", "lateral", "axial"), ("Rock", None, "axial")):
+            there, back = found[name + "Plus"], found[name + "Minus"]
+            with self.subTest(control=name):
+                self.assertAlmostEqual(angle(there[turned], first[turned]), 10, delta=0.01)
+                if kept:
+                    self.assertAlmostEqual(angle(there[kept], first[kept]), 0, delta=0.01)
+                else:  # in the image plane
+                    self.assertAlmostEqual(angle(there["lateral"], first["lateral"]), 10, delta=0.01)
+                self.assertNotEqual(there["picture"], first["picture"])
+                self.assertFalse(there["waits"])
+                self.assertAlmostEqual(angle(back[turned], first[turned]), 0, delta=0.01)
+        self.assertEqual(found["undone"]["position"], found["RockMinus"]["position"])
+        self.assertEqual(found["shown"], [True, True])
+        self.assertTrue(found["not live"]["waits"])
+        self.assertEqual(found["not live"]["picture"], found["undone"]["picture"])
+        self.assertFalse(found["applied"]["waits"])
+        self.assertNotEqual(found["applied"]["picture"], found["undone"]["picture"])
+        self.assertAlmostEqual(angle(found["applied"]["lateral"], found["undone"]["lateral"]), 10, delta=0.01)
+        self.assertFalse(found["live again"]["waits"])
+        self.assertAlmostEqual(angle(found["live again"]["lateral"], found["undone"]["lateral"]), 20, delta=0.01)
+
+    def test_scanner(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("scanner", folder)
+            frozen = [element.get("value") for element in ElementTree.parse(pathlib.Path(folder, "frozen.pvsm")).iterfind(
+                ".//Proxy[@type='SonoUltrasound']/Property[@name='Freeze']/Element")]
+            stored = [path.name for path in pathlib.Path(folder).glob("ultrasound_*.png")]
+        for i in range(2, 8):
+            before, after, undone = (found[f"{what} {i}"] for what in ("before", "set", "undone"))
+            gained = [b - a for a, b in zip(before["bands"], after["bands"])]
+            with self.subTest(depth=i):
+                self.assertEqual([after["value"], undone["value"]], [32, 0])
+                self.assertEqual(undone["picture"], before["picture"])
+                self.assertGreater(max(gained), 5)
+                self.assertIn(gained.index(max(gained)), (i - 2, i - 1, i))
+        (width, seen), (other, then) = found["widths"]
+        self.assertNotEqual(width, other)
+        self.assertAlmostEqual(then - seen, other - width, delta=1.5)
+        text, times = found["rate"]
+        rate, _, unit = text.partition(" ")
+        self.assertEqual(unit, "pictures/s")
+        recent = [at for at in times if at > times[-1] - 2]
+        self.assertAlmostEqual(float(rate), (len(recent) - 1) / (recent[-1] - recent[0]), delta=0.4 * float(rate))
+        self.assertEqual(found["frozen"], [[0, False], [1, True], [0, False], [1, True]])
+        self.assertEqual(found["before frozen"]["picture"], found["frozen picture"]["picture"])
+        self.assertNotEqual(found["unfrozen"]["picture"], found["before frozen"]["picture"])
+        self.assertFalse(found["unfrozen"]["waits"])
+        self.assertEqual(frozen, ["1"])
+        self.assertEqual(len(stored), 1)
+        self.assertIn(stored[0], found["stored"])
+        self.assertEqual(found["planes"], [["F9", False], ["Shift+F9", False]])  # of a matrix probe alone
+
+    def test_views(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("views", folder)
+        self.assertGreater(len({tuple(pixels) for _, pixels, _ in found["sizes"]}), 2)
+        for height_mm, (columns, rows), (width, height) in found["sizes"]:
+            spare = min(height_mm / height, height_mm * columns / rows / width)
+            self.assertGreater(spare, 1.0)
+            self.assertLess(spare, 1.35)
+        self.assertEqual(found["sizes"][-1], found["sizes"][0])
+        self.assertEqual(found["shared"], [True, True])
+        self.assertEqual(sorted(found["apart"]), [False, True])
+        self.assertEqual(sorted(found["chambers"]), [0, 1])
+
+    def test_needle(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("needle", folder)
+        self.assertTrue(found["with"]["targets"])
+        self.assertNotEqual(found["with"]["picture"], found["without"]["picture"])
+        moved = found["moved"]
+        self.assertLess(math.dist(*moved["hub"]), 1e-6)
+        self.assertGreater(math.dist(*moved["tip"]), 2)
+        self.assertNotEqual(moved["picture"], found["with"]["picture"])
+
+    def test_keys(self):
+        """Alt+U, arrows and Return do what the tool bar's buttons do; what takes keys in our panels has a name to be read out."""
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("keys", folder)
+        for name in ("actionSonoSimulate", "actionSonoLayout", "&Flat View", "&Examples", "actionSonoScanner", "actionSonoFreeze"):
+            self.assertIn(name, found["menu"])
+        self.assertGreater(max(found["simulated"]["bands"]), 10)
+        self.assertEqual(found["calipers"], 1)
+        self.assertEqual(found["nameless"], [])
+
+
+if __name__ == "__main__":
+    sys.exit(not unittest.main(argv=sys.argv[:1], exit=False).result.wasSuccessful())

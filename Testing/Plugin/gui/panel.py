@@ -1,0 +1,386 @@
+"""Controls of the panels and of the views, one after the other, as ParaView's --script: a person's clicks and keys, in its process.
+PANEL_SCENE names which; what was found after each is in panel.json."""
+import hashlib
+import json
+import os
+import pathlib
+import sys
+import time
+import traceback
+
+import numpy as np
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+from PyQt5 import QtCore, QtWidgets
+
+sys.path.insert(0, os.environ["PANEL_SCRIPTS"])
+from monkey_hands import Hands  # noqa: E402
+
+FLAT_IMAGE = 7
+LONGEST_S = 60
+QUIET_MS = 900  # longer than what a probe or a setting waits for before it counts as resting
+hands = Hands(pathlib.Path.cwd())
+main = hands.main
+found = {}
+
+
+def child(kind, name, inside=main):
+    return next(w for w in inside.findChildren(kind, name) if w.isVisible())
+
+
+def press(name, inside=main):
+    child(QtWidgets.QAbstractButton, name, inside).click()
+
+
+def trigger(name):
+    next(act for act in main.findChildren(QtWidgets.QAction, name) if act.isEnabled()).trigger()
+
+
+def knob(name):
+    """Of the scanner's panel."""
+    return child(QtWidgets.QWidget, name, child(QtWidgets.QWidget, "SonoScannerSettings"))
+
+
+def ultrasounds():
+    return [source for _, source in sorted(GetSources().items()) if source.GetXMLName() == "SonoUltrasound"]
+
+
+def flat_of(ultrasound):
+    """The flat picture as rows of greys; none: empty."""
+    image = ultrasound.SMProxy.GetClientSideObject().GetOutputDataObject(FLAT_IMAGE)
+    grey = image.GetPointData().GetArray("BMode") if image else None
+    columns, rows, _ = image.GetDimensions()
+    return vtk_to_numpy(grey).reshape(rows, columns).astype(float) if grey else np.zeros((8, 8))
+
+
+def settle():
+    """Until nothing has run and no picture has changed for a while."""
+    began = quiet = time.monotonic()
+    before = None
+    while time.monotonic() - quiet < 1e-3 * QUIET_MS:
+        yield 100
+        state = [hashlib.md5(flat_of(each).tobytes()).hexdigest() for each in ultrasounds()]
+        busy = servermanager.ActiveConnection.Session.GetPendingProgress() or any(each.Preview for each in ultrasounds())
+        if busy or state != before:
+            quiet, before = time.monotonic(), state
+        if time.monotonic() - began > LONGEST_S:
+            raise TimeoutError("the picture does not come to rest")
+
+
+def note(name, ultrasound, **more):
+    picture = flat_of(ultrasound)
+    middle = picture[:, picture.shape[1] // 3:2 * picture.shape[1] // 3]
+    found[name] = {"position": list(ultrasound.PositionMm), "axial": list(ultrasound.Axial), "lateral": list(ultrasound.Lateral),
+                   "picture": hashlib.md5(picture.tobytes()).hexdigest(),
+                   "bands": [float(band.mean()) for band in np.array_split(middle, 8)],
+                   "waits": child(QtWidgets.QAbstractButton, "Accept").isEnabled(), **more}
+
+
+def hands_at(steps):
+    """What hands do, a step at a time."""
+    for _ in steps:
+        yield 100
+
+
+def begin():
+    """The layout of a small thorax."""
+    SetActiveSource(ThoraxPhantom(registrationName="thorax", Spacingmm=4))
+    yield 500
+    trigger("actionSonoSimulate")
+    yield from settle()
+    (ultrasound,) = ultrasounds()
+    ultrasound.LineCount, ultrasound.PathsPerLine = 24, 64
+    ultrasound.SMProxy.UpdateVTKObjects()
+    RenderAllViews()
+    yield from settle()
+    return ultrasound
+
+
+def looks(widget):
+    image = widget.grab().toImage()
+    bits = image.bits()
+    bits.setsize(image.byteCount())
+    return bytes(bits)
+
+
+def pose():
+    """The buttons below the pose, the two boxes, and what waits for Apply without Live."""
+    ultrasound = yield from begin()
+    note("first", ultrasound)
+    child(QtWidgets.QDoubleSpinBox, "Step").setValue(10)
+    for name in ("RotatePlus", "RotateMinus", "TiltPlus", "TiltMinus", "RockPlus", "RockMinus", "SnapToSkin"):
+        press(name)
+        yield from settle()
+        note(name, ultrasound)
+    trigger("actionEditUndo")
+    yield from settle()
+    note("undone", ultrasound)
+    body = max(hands.views(), key=lambda each: each.height())
+    seen = [looks(body)]
+    for _ in range(2):
+        press("ShowProbe")
+        yield 700
+        seen.append(looks(body))
+    found["shown"] = [seen[0] != seen[1], seen[0] == seen[2]]
+    press("Live")
+    press("RotatePlus")
+    yield 2500
+    note("not live", ultrasound)
+    press("Accept")
+    yield from settle()
+    note("applied", ultrasound)
+    press("Live")
+    press("RotatePlus")
+    yield from settle()
+    note("live again", ultrasound)
+
+
+def scanner():
+    """What else the scanner's panel has: the sliders of each depth, the width, the rate, freeze, store."""
+    ultrasound = yield from begin()
+    dock = hands.dock("pqSonoScannerDock")
+    dock.show()
+    yield 500
+    for i in range(2, 8):
+        slider = child(QtWidgets.QSlider, "Slider", knob(f"Tgc{i}Db"))
+        note(f"before {i}", ultrasound)
+        slider.setValue(90)
+        yield from settle()
+        note(f"set {i}", ultrasound, value=ultrasound.GetProperty(f"Tgc{i}Db")[0])
+        trigger("actionEditUndo")
+        yield from settle()
+        note(f"undone {i}", ultrasound, value=ultrasound.GetProperty(f"Tgc{i}Db")[0])
+    ultrasound.ScanKind = 0
+    ultrasound.SMProxy.UpdateVTKObjects()
+    RenderAllViews()
+    yield from settle()
+    widths = []
+    for place in (None, 80):
+        if place is not None:
+            child(QtWidgets.QSlider, "Slider", knob("WidthMm")).setValue(place)
+            yield from settle()
+        bounds = ultrasound.SMProxy.GetClientSideObject().GetOutputDataObject(FLAT_IMAGE).GetBounds()
+        widths.append([ultrasound.GetProperty("WidthMm")[0], bounds[1] - bounds[0]])
+    found["widths"] = widths
+    times = []
+    view = next(each for each in GetViews() if each.GetXMLName() == "RenderView" and each.InteractionMode == "2D")
+    drawn = view.SMProxy.AddObserver("EndEvent", lambda *_: times.append((time.monotonic(), ultrasound.Preview)))
+    for _ in range(12):
+        press("RotatePlus")
+        yield 120
+    found["rate"] = [child(QtWidgets.QLabel, "Rate").text(), [at for at, moving in times if moving]]
+    view.SMProxy.RemoveObserver(drawn)
+    yield from settle()
+    freeze = child(QtWidgets.QAbstractButton, "Freeze")
+    frozen = [[ultrasound.Freeze, freeze.isChecked()]]
+    for act in (freeze.click, lambda: trigger("actionEditUndo"), lambda: trigger("actionEditRedo")):
+        act()
+        yield 700
+        frozen.append([ultrasound.Freeze, freeze.isChecked()])
+    found["frozen"] = frozen
+    note("before frozen", ultrasound)
+    press("RotatePlus")
+    yield 2500
+    note("frozen picture", ultrasound)
+    SaveState("frozen.pvsm")
+    freeze.click()
+    yield from settle()
+    note("unfrozen", ultrasound)
+    ultrasound.StoreFolder = os.getcwd()
+    ultrasound.SMProxy.UpdateVTKObjects()
+    yield 300
+    place = hands.place(child(QtWidgets.QLabel, "Rate"))
+    yield from hands_at(hands.click(place.x() + 2, place.y() + 2))  # the window has the keys then
+    hands.press_key("F7")
+    yield 50
+    hands.let_go()
+    yield 1500
+    found["stored"] = child(QtWidgets.QLabel, "SonoScannerMessage").text()
+    planes = [main.findChild(QtWidgets.QAction, f"actionSono{name}") for name in ("Plane", "Biplane")]
+    found["planes"] = [[act.shortcut().toString(), act.isEnabled()] for act in planes]
+
+
+def fits(view, ultrasound):
+    """The flat view: mm from top to bottom, its size in pixels, and the image's in mm."""
+    bounds = ultrasound.SMProxy.GetClientSideObject().GetOutputDataObject(FLAT_IMAGE).GetBounds()
+    return [2 * view.CameraParallelScale, list(view.ViewSize), [bounds[1] - bounds[0], bounds[3] - bounds[2]]]
+
+
+def views():
+    """The flat view in a window of other sizes, and a split screen of two probes."""
+    ultrasound = yield from begin()
+    view = next(each for each in GetViews() if each.GetXMLName() == "RenderView" and each.InteractionMode == "2D")
+    sizes = [fits(view, ultrasound)]
+    whole = main.size()
+    for width, height in ((900, 850), (1250, 560), (whole.width(), whole.height())):
+        main.resize(width, height)
+        yield 1500
+        sizes.append(fits(view, ultrasound))
+    found["sizes"] = sizes
+    trigger("actionSonoSplit")
+    yield from settle()
+    first, second = sorted(ultrasounds(), key=lambda each: each.SMProxy is not ultrasound.SMProxy)
+    for name, number in (("shared", None), ("apart", 0)):
+        if number is not None:
+            second.SharedProbe = number
+            second.SMProxy.UpdateVTKObjects()
+            yield 500
+        before = [list(each.Lateral) for each in (first, second)]
+        press("RotatePlus")
+        yield from settle()
+        found[name] = [list(each.Lateral) != was for each, was in zip((first, second), before)]
+    trigger("actionSonoVentricle")
+    yield 1500
+    (volume,) = [source for _, source in GetSources().items() if source.GetXMLName() == "SonoVentricleVolume"]
+    chambers = [volume.Input, volume.TwoChamber]
+    found["chambers"] = [next(i for i, each in enumerate((first, second)) if each.SMProxy is port.SMProxy) for port in chambers]
+
+
+def on_screen(view, widget, point):
+    """Where a place of the world is."""
+    renderer = view.SMProxy.GetRenderer()
+    renderer.SetWorldPoint(*point, 1.0)
+    renderer.WorldToDisplay()
+    x, y, _ = renderer.GetDisplayPoint()
+    corner = hands.place(widget)
+    return corner.x() + x, corner.y() + widget.height() - 1 - y
+
+
+def choose_target(name):
+    """In ParaView's dialog, once it is open."""
+    dialog = QtWidgets.QApplication.activeModalWidget()
+    if dialog is None:
+        return QtCore.QTimer.singleShot(100, lambda: choose_target(name))
+    next(each for each in dialog.findChildren(QtWidgets.QRadioButton) if "Targets" in each.text()).click()
+    # ParaView's tree is no widget that PyQt knows; its selection is.
+    chosen = next(each for each in dialog.findChildren(QtCore.QItemSelectionModel) if each.parent().objectName() == "pipelineView")
+    everywhere = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
+    (place,) = chosen.model().match(chosen.model().index(0, 0), QtCore.Qt.DisplayRole, name, 1, everywhere)
+    chosen.setCurrentIndex(place, QtCore.QItemSelectionModel.ClearAndSelect)
+    dialog.accept()
+
+
+def needle():
+    """A needle that is made a target by the dialog and moved by its handles."""
+    ultrasound = yield from begin()
+    note("without", ultrasound)
+    position, axial = np.array(ultrasound.PositionMm), np.array(ultrasound.Axial)
+    middle, lateral = position + 40 * axial, np.array(ultrasound.Lateral)
+    hub, tip = list(middle - 15 * lateral), list(middle + 15 * lateral)
+    trigger("SonoNeedle")
+    yield 500
+    name, stick = next((name, source) for (name, _), source in GetSources().items() if source.GetXMLName() == "SonoNeedle")
+    stick.Hubmm, stick.Tipmm, stick.Diametermm = hub, tip, 3
+    press("Accept")
+    yield 1000
+    SetActiveSource(ultrasound)
+    yield 500
+    QtCore.QTimer.singleShot(300, lambda: choose_target(name))
+    trigger("actionChangeInput")
+    yield from settle()
+    note("with", ultrasound, targets=ultrasound.Targets is not None)
+    view = next(each for each in GetViews() if each.GetXMLName() == "RenderView" and each.InteractionMode == "3D"
+                and len(each.Representations) > 1)
+    SetActiveView(view)
+    SetActiveSource(stick)
+    yield 700
+    child(QtWidgets.QCheckBox, "show3DWidget").setChecked(True)  # ParaView hides a line's ends when another source is selected
+    yield 700
+    widget = max(hands.views(), key=lambda each: each.height())
+    x, y = on_screen(view, widget, stick.Tipmm)
+    for step in range(5):
+        hands.move(x + 8 * step, y + 4 * step)
+        yield 200
+        if step == 0:
+            hands.press(1)
+            yield 300
+    hands.let_go()
+    yield 700
+    press("Accept")
+    yield from settle()
+    note("moved", ultrasound, hub=[hub, list(stick.Hubmm)], tip=[tip, list(stick.Tipmm)])
+
+
+def type_keys(*names):
+    """Together."""
+    for name in names:
+        hands.press_key(name)
+    hands.let_go()
+
+
+def go_down_to(name):
+    """To an entry of the menu that is open."""
+    menu = QtWidgets.QApplication.activePopupWidget()
+    for _ in range(20):
+        if menu.activeAction() is not None and name in (menu.activeAction().objectName(), menu.activeAction().text()):
+            return
+        type_keys("Down")
+        yield 150
+    raise ValueError(f"no key leads to {name}")
+
+
+def keys():
+    """From a label map to a picture and a caliper without the mouse."""
+    thorax = ThoraxPhantom(registrationName="thorax", Spacingmm=4)
+    SetActiveSource(thorax)
+    yield 500
+    place = hands.place(child(QtWidgets.QDockWidget, "propertiesDock"))
+    yield from hands_at(hands.click(place.x() + 30, place.y() + 10))  # the window has the keys then
+    type_keys("Alt_L", "u")
+    yield 500
+    menu = QtWidgets.QApplication.activePopupWidget()
+    found["menu"] = [act.objectName() or act.text() for act in menu.actions() if not act.isSeparator()]
+    yield from go_down_to("actionSonoSimulate")
+    type_keys("Return")
+    yield 500
+    yield from settle()
+    (ultrasound,) = ultrasounds()
+    note("simulated", ultrasound)
+    type_keys("Alt_L", "u")
+    yield 500
+    yield from go_down_to("&Flat View")
+    type_keys("Right")
+    yield 300
+    yield from go_down_to("actionSonoDistance")
+    type_keys("Return")
+    yield 1500
+    found["calipers"] = [source.GetXMLName() for source in GetSources().values()].count("SonoCaliper")
+    SetActiveSource(ultrasound)
+    hands.dock("pqSonoScannerDock").show()
+    yield 700
+    nameless = [each.objectName() for dock in ("propertiesDock", "pqSonoScannerDock")
+                for each in hands.dock(dock).findChildren((QtWidgets.QLineEdit, QtWidgets.QSlider, QtWidgets.QAbstractSpinBox))
+                if each.isVisible() and each.focusPolicy() & QtCore.Qt.TabFocus and not (each.accessibleName() or each.parentWidget().accessibleName())
+                and any(part.objectName() in ("SonoProbe", "SonoScannerControls") for part in ancestors(each))]
+    found["nameless"] = nameless
+
+
+def ancestors(widget):
+    while widget is not None:
+        yield widget
+        widget = widget.parentWidget()
+
+
+class Play:
+    """A scene is a generator that says how many milliseconds ParaView goes on by itself."""
+
+    def __init__(self, scene):
+        self.scene = scene
+        QtCore.QTimer.singleShot(1000, self.step)
+
+    def step(self):
+        try:
+            QtCore.QTimer.singleShot(next(self.scene), self.step)
+        except StopIteration:
+            pathlib.Path("panel.json").write_text(json.dumps(found), encoding="utf-8")
+            QtCore.QTimer.singleShot(0, QtWidgets.QApplication.quit)
+
+
+def fail(*failure):
+    """PyQt would end the process."""
+    pathlib.Path("failed.txt").write_text("".join(traceback.format_exception(*failure)), encoding="utf-8")
+    os._exit(1)
+
+
+sys.excepthook = fail
+play = Play({"pose": pose, "scanner": scanner, "views": views, "needle": needle, "keys": keys}[os.environ["PANEL_SCENE"]]())
