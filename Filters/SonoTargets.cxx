@@ -5,6 +5,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCleanPolyData.h"
+#include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
@@ -37,6 +38,12 @@ vtkStringArray* tissueNames(vtkFieldData* field)
   return names && names->GetNumberOfValues() > 0 ? names : nullptr;
 }
 
+double rodDiameterMm(vtkFieldData* field)
+{
+  vtkDataArray* diameter = field->GetArray("RodDiameterMm");
+  return diameter && diameter->GetNumberOfValues() > 0 ? diameter->GetTuple1(0) : 0.0;
+}
+
 const Tissue& findTissue(const std::string& name, const TissueTable& tissues)
 {
   const Tissue* tissue = tissues.find(name);
@@ -61,6 +68,7 @@ std::vector<TargetSurface> targetSurfaces(vtkPolyData* polyData, const std::stri
   mergeAndTriangulate(polyData, surface);
   vtkStringArray* ofCells = tissueNames(surface->GetCellData());
   vtkStringArray* ofAll = tissueNames(polyData->GetFieldData());
+  const double rodMm = rodDiameterMm(polyData->GetFieldData());
   const std::string common = ofAll ? std::string(ofAll->GetValue(0)) : tissueName;
 
   std::vector<Vec3d> points(static_cast<std::size_t>(surface->GetNumberOfPoints()));
@@ -71,7 +79,7 @@ std::vector<TargetSurface> targetSurfaces(vtkPolyData* polyData, const std::stri
   std::map<std::string, TargetSurface> targets;
   if (!ofCells)
   {
-    targets.try_emplace(common, TargetSurface{ common, findTissue(common, tissues), points, {} });
+    targets.try_emplace(common, TargetSurface{ common, findTissue(common, tissues), points, {}, rodMm });
   }
   vtkNew<vtkIdList> corners;
   for (vtkIdType cell = 0; cell < surface->GetNumberOfPolys(); ++cell)
@@ -80,7 +88,7 @@ std::vector<TargetSurface> targetSurfaces(vtkPolyData* polyData, const std::stri
     auto target = targets.find(name);
     if (target == targets.end())
     {
-      target = targets.emplace(name, TargetSurface{ name, findTissue(name, tissues), points, {} }).first;
+      target = targets.emplace(name, TargetSurface{ name, findTissue(name, tissues), points, {}, rodMm }).first;
     }
     surface->GetPolys()->GetCellAtId(cell, corners);
     target->second.triangles.push_back({ static_cast<int>(corners->GetId(0)), static_cast<int>(corners->GetId(1)),

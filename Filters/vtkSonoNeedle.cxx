@@ -5,6 +5,7 @@
 #include "SonoStage.h"
 
 #include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
@@ -109,9 +110,13 @@ int vtkSonoNeedle::RequestData(vtkInformation*, vtkInformationVector**, vtkInfor
     vtkNew<vtkStringArray> tissue;
     tissue->SetName("Tissue");
     tissue->InsertNextValue(this->Tissue);
+    vtkNew<vtkDoubleArray> diameter;
+    diameter->SetName("RodDiameterMm");
+    diameter->InsertNextValue(this->DiameterMm);
     vtkPolyData* needle = vtkPolyData::GetData(output);
     needle->SetPoints(points);
     needle->SetPolys(polygons);
     needle->GetFieldData()->AddArray(tissue);
+    needle->GetFieldData()->AddArray(diameter);
   });
 }

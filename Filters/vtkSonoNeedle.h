@@ -11,7 +11,8 @@
  * @brief A needle with a bevelled tip, for the targets of vtkSonoUltrasound and vtkSonoRayTracer
  *
  * A closed surface in the label map's world (LPS mm): a solid cylinder of 24 sides, whose cross-section is the circle's
- * area, from a hub to the tip, ground to a plane there. The field array "Tissue" says what it is made of.
+ * area, from a hub to the tip, ground to a plane there. The field array "Tissue" says what it is made of, and
+ * "RodDiameterMm" that it is round and solid, so that it rings.
  */
 class VTKSONOFILTERS_EXPORT vtkSonoNeedle : public vtkPolyDataAlgorithm
 {

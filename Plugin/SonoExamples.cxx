@@ -87,14 +87,14 @@ const std::vector<SonoExample>& sonoExamples()
       {},
       true },
     { "Needle",
-      "A needle in the plane of a picture of the bundled thorax's liver; drag its ends",
+      "A needle with its comet's tail in a picture of the bundled thorax's liver; drag its ends",
       "SonoThoraxSource",
       { { "SpacingMm", thoraxMm } },
       "curvilinear_c5-2",
       { { "DepthMm", 120.0 } },
       { -87.5, -86.5, -67.5, 0.5011, 0.8577, -0.1149, 0.8359, -0.5141, -0.1923 },
       true,
-      { -54.9, -118.2, -75.0, -59.1, -28.2, -74.0 } },
+      { -17.1, -99.0, -83.7, -70.6, -47.9, -71.4 } },
   };
   return examples;
 }

@@ -170,7 +170,8 @@ bool same(const std::vector<ScanLine>& a, const std::vector<ScanLine>& b)
 bool same(const std::vector<TargetSurface>& a, const std::vector<TargetSurface>& b)
 {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TargetSurface& x, const TargetSurface& y) {
-    return x.name == y.name && sameTissue(x.tissue, y.tissue) && x.pointsMm == y.pointsMm && x.triangles == y.triangles;
+    return x.name == y.name && sameTissue(x.tissue, y.tissue) && x.pointsMm == y.pointsMm &&
+           x.triangles == y.triangles && x.rodDiameterMm == y.rodDiameterMm;
   });
 }
 

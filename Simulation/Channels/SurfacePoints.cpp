@@ -237,10 +237,10 @@ ChannelPoints surfacePoints(const EchoSetup& setup, const FanPlaces& fan, const 
                       setup.beams.arraySight() });
   }
   ChannelPoints out;
-  if (const TargetPieces* targets = setup.surfaces->targets())
+  for (const TargetGroup& targets : setup.surfaces->targets())
   {
-    forSeenBricks(targets->grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>&) {
-      for (const SurfacePoint& point : targets->brick(brick))
+    forSeenBricks(targets.pieces.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>&) {
+      for (const SurfacePoint& point : targets.pieces.brick(brick))
       {
         walk.addTarget(point, out);
       }

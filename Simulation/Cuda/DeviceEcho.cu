@@ -3,6 +3,7 @@
 #include "Cuda/DevicePieces.cuh"
 #include "Cuda/LineFinish.cuh"
 #include "Cuda/NestedSplat.cuh"
+#include "Cuda/RodRing.cuh"
 #include "Cuda/SplatKernels.cuh"
 #include "Cuda/SurfaceSplat.cuh"
 #include "Cuda/WithKind.cuh"
@@ -111,21 +112,36 @@ void DeviceEcho::splatNested(int first, int count, const TracedOnDevice& traced,
 
 void DeviceEcho::splatSurfaces(int first, int count, const TracedOnDevice& traced, cudaStream_t stream)
 {
-  const auto launchFor = [&](const SurfaceSet& set, const Sight& sight) {
-    return SurfaceLaunch{ splat(sceneBeams_.data() + first, surfaceScale_, sight), traced, set, surfaceSum_.data() };
-  };
   const auto gridFor = [&](const SurfaceSet& set) {
     return dim3(count, std::clamp((set.groupCount + surfaceThreads - 1) / surfaceThreads, 1, surfaceSlices));
   };
+  const auto launchFor = [&](const SurfaceSet& set, const Sight& sight, EchoSum* sums) {
+    return SurfaceLaunch{ splat(sceneBeams_.data() + first, surfaceScale_, sight), traced, set, sums };
+  };
+  const auto splatTargets = [&](const Targets& targets, EchoSum* sums) {
+    withKind(kind_, [&](auto kind) {
+      splatSurfaceGroups<kind.value, SurfacePoint>
+        <<<gridFor(targets.set), surfaceThreads, 0, stream>>>(launchFor(targets.set, targets.sight, sums));
+    });
+  };
   withKind(kind_, [&](auto kind) {
     splatSurfaceGroups<kind.value, SurfacePiece>
-      <<<gridFor(pieceSet_), surfaceThreads, 0, stream>>>(launchFor(pieceSet_, pieceSight_));
-    if (targets_)
-    {
-      splatSurfaceGroups<kind.value, SurfacePoint>
-        <<<gridFor(targetSet_), surfaceThreads, 0, stream>>>(launchFor(targetSet_, targetSight_));
-    }
+      <<<gridFor(pieceSet_), surfaceThreads, 0, stream>>>(launchFor(pieceSet_, pieceSight_, surfaceSum_.data()));
   });
+  for (const Targets& targets : targets_)
+  {
+    const int taps = int(targets.taps.size());
+    if (taps == 0)
+    {
+      splatTargets(targets, surfaceSum_.data());
+      continue;
+    }
+    ringingSum_.resize(2 * std::size_t(count) * sumCount_);
+    ringingSum_.clear(stream);
+    splatTargets(targets, ringingSum_.data());
+    addRungOf<<<dim3(count, (sumCount_ + rungThreads - 1) / rungThreads), rungThreads, 0, stream>>>(
+      { ringingSum_.data(), surfaceSum_.data(), targets.taps.data(), taps, targets.stride, targets.lead, sumCount_ });
+  }
 }
 
 void DeviceEcho::splatPoints(int first, int count, cudaStream_t stream)

@@ -79,6 +79,17 @@ private:
     DeviceArray<std::uint8_t> seen;
     DeviceArray<BeamPiece> pieces; ///< of each chunk
   };
+  /// A group of them.
+  struct Targets
+  {
+    SurfaceSet set{};
+    DeviceArray<SurfacePoint> points;
+    DeviceArray<SurfaceGroup> groups;
+    Sight sight;                     ///< of a field
+    DeviceArray<ComplexWeight> taps; ///< of its ring; empty: it does not
+    int stride = 1;
+    int lead = 0;
+  };
   void uploadCarrier(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   void drawSpeckle(const EchoJob& job, cudaStream_t stream, Traffic& traffic);
   void uploadBeam(const BeamJob& job, cudaStream_t stream, Traffic& traffic);
@@ -156,13 +167,11 @@ private:
   DeviceArray<SurfaceRow> surfaceRows_;
   DeviceArray<float> diffuseL_, diffuseE_;
   SurfaceSet pieceSet_{};
-  SurfaceSet targetSet_{};
-  bool targets_ = false;
-  DeviceArray<SurfacePoint> targetPoints_;
-  DeviceArray<SurfaceGroup> targetGroups_;
-  Sight pieceSight_, targetSight_; ///< of a field
+  std::vector<Targets> targets_;
+  Sight pieceSight_; ///< of a field
   float surfaceScale_ = 1.0f;
-  ZeroedSums<EchoSum> surfaceSum_; ///< lines x sumCount x (re, im)
+  ZeroedSums<EchoSum> surfaceSum_;  ///< lines x sumCount x (re, im)
+  DeviceArray<EchoSum> ringingSum_; ///< the same of targets that ring, without what rings
 
   bool points_ = false;
   std::shared_ptr<const PointTable> table_;

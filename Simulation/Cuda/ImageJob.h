@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Echo/PointTable.h"
+#include "Echo/RodRing.h"
 #include "Echo/ScattererDensity.h"
 #include "Image/Haze.h"
 #include "Kernel/BeamSight.h"
@@ -145,6 +146,7 @@ struct TargetPointJob
   std::vector<Brick> bricks; ///< those with points
   float edgeMm = 1.0f;
   std::optional<SightJob> sight;
+  RodRing ring;
 };
 
 /// Echoes of the boundaries between labels and of targets (see SurfaceEchoes).
@@ -162,8 +164,8 @@ struct SurfaceJob
   std::vector<SurfaceRow> rows;
   std::vector<float> diffuseL;
   std::vector<float> diffuseE;
-  std::optional<SightJob> sight; ///< of the pieces' bricks
-  std::optional<TargetPointJob> targets;
+  std::optional<SightJob> sight;       ///< of the pieces' bricks
+  std::vector<TargetPointJob> targets; ///< groups, see SurfaceEchoes
 };
 
 /// Explicit scatterers, sorted by brick (see PointScatterers).

@@ -264,12 +264,16 @@ SurfaceJob makeSurfaces(const EchoSetup& setup, const std::vector<Beam>& sceneBe
   {
     job.sight = makeSight(*surfaces.pieceSight());
   }
-  if (surfaces.targets() && surfaces.targets()->grid().highMm != surfaces.targets()->grid().lowMm)
+  for (const TargetGroup& group : surfaces.targets())
   {
-    job.targets = makeTargetPoints(*surfaces.targets());
-    if (surfaces.targetSight())
+    if (group.pieces.grid().highMm != group.pieces.grid().lowMm)
     {
-      job.targets->sight = makeSight(*surfaces.targetSight());
+      job.targets.push_back(makeTargetPoints(group.pieces));
+      job.targets.back().ring = group.ring;
+      if (group.sight)
+      {
+        job.targets.back().sight = makeSight(*group.sight);
+      }
     }
   }
   return job;
@@ -362,7 +366,7 @@ EchoJob makeEchoJob(const EchoSetup& setup, int linesPerImage)
   if (setup.surfaces)
   {
     job.surfaces = makeSurfaces(setup, job.sceneBeams);
-    if (job.surfaces->blocks.empty() && !job.surfaces->targets)
+    if (job.surfaces->blocks.empty() && job.surfaces->targets.empty())
     {
       job.surfaces.reset();
     }

@@ -259,25 +259,29 @@ void DeviceEcho::uploadSurfaces(const EchoJob& echo, cudaStream_t stream, Traffi
   pieceSet_.marginMm = 1.5f * job.longestStepMm;
   pieceSet_.seed = job.seed;
   uploadFieldSight(job.sight, pieceSight_, stream, traffic);
-  targets_ = job.targets.has_value();
-  if (targets_)
+  targets_.resize(job.targets.size());
+  for (std::size_t t = 0; t < targets_.size(); ++t)
   {
-    const TargetPointJob& targets = *job.targets;
+    const TargetPointJob& given = job.targets[t];
+    Targets& targets = targets_[t];
     std::vector<SurfaceGroup> groups;
-    for (const TargetPointJob::Brick& brick : targets.bricks)
+    for (const TargetPointJob::Brick& brick : given.bricks)
     {
-      addGroups(targets.points, brick, groups);
+      addGroups(given.points, brick, groups);
     }
-    targetPoints_.upload(targets.points, stream, traffic);
-    targetGroups_.upload(groups, stream, traffic);
-    targetSet_ = pieceSet_;
-    targetSet_.table = withTables(job.targetTable);
-    targetSet_.groups = targetGroups_.data();
-    targetSet_.groupCount = int(groups.size());
-    targetSet_.points = targetPoints_.data();
-    targetSet_.edgeMm = targets.edgeMm;
-    targetSet_.marginMm = 0.0f;
-    uploadFieldSight(targets.sight, targetSight_, stream, traffic);
+    targets.points.upload(given.points, stream, traffic);
+    targets.groups.upload(groups, stream, traffic);
+    targets.taps.upload(given.ring.taps, stream, traffic);
+    targets.stride = given.ring.stride;
+    targets.lead = given.ring.lead;
+    targets.set = pieceSet_;
+    targets.set.table = withTables(job.targetTable);
+    targets.set.groups = targets.groups.data();
+    targets.set.groupCount = int(groups.size());
+    targets.set.points = targets.points.data();
+    targets.set.edgeMm = given.edgeMm;
+    targets.set.marginMm = 0.0f;
+    uploadFieldSight(given.sight, targets.sight, stream, traffic);
   }
   // A perfect mirror across the whole beam echoes 1; a point of it far less.
   surfaceScale_ = 536870912.0f / std::max(1.0f, float(echo.beam.largestWeight));

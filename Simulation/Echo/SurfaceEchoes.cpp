@@ -40,6 +40,10 @@ SurfaceMedia mediaOf(const Scene& scene, const std::vector<TargetSurface>* targe
   SurfaceMedia media{ scene.tissues(), int(scene.tissues().size()), scene.outsideIndex() };
   for (std::size_t t = 0; targets && t < targets->size(); ++t)
   {
+    if (rings(rodOf((*targets)[t].tissue, (*targets)[t].rodDiameterMm)))
+    {
+      media.rods.push_back(int(media.all.size()));
+    }
     media.all.push_back((*targets)[t].tissue);
   }
   return media;
@@ -132,14 +136,32 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
     float(blobPerStep) * std::max({ spacing.x / float(nets_.fewest.x), spacing.y / float(nets_.fewest.y),
                                     spacing.z / float(nets_.fewest.z) });
   rows_ = sharedSurfaceRows(mediaOf(scene, targets), settings, beam, blobMm_, widestMm);
-  if (targets && !targets->empty())
+  std::vector<int> silent;
+  for (std::size_t t = 0; targets && t < targets->size(); ++t)
   {
-    targets_ = std::make_unique<TargetPieces>(scene, *targets, *rows_, edgePerBlob * blobMm_, seed_);
+    const Rod rod = rodOf((*targets)[t].tissue, (*targets)[t].rodDiameterMm);
+    if (rings(rod))
+    {
+      const std::vector<int> alone{ int(t) };
+      targets_.push_back(
+        { { scene, *targets, alone, *rows_, edgePerBlob * blobMm_, seed_ }, rodRing(rod, settings), nullptr });
+    }
+    else
+    {
+      silent.push_back(int(t));
+    }
+  }
+  if (!silent.empty())
+  {
+    targets_.push_back({ { scene, *targets, silent, *rows_, edgePerBlob * blobMm_, seed_ }, {}, nullptr });
   }
   if (settings.field)
   {
     pieceSight_ = std::make_unique<FieldSight>(*settings.field, pieces_.edgeMm());
-    targetSight_ = targets_ ? std::make_unique<FieldSight>(*settings.field, targets_->grid().edgeMm) : nullptr;
+    for (TargetGroup& group : targets_)
+    {
+      group.sight = std::make_unique<FieldSight>(*settings.field, group.pieces.grid().edgeMm);
+    }
   }
 }
 
@@ -252,6 +274,29 @@ SurfaceTable SurfaceEchoes::pieceTable() const
   return rows_->view(std::cbrt(spacing.x * spacing.y * spacing.z));
 }
 
+void SurfaceEchoes::addTargets(const TargetGroup& targets, std::vector<BeamReach> beams, const YieldPoint& brickDone,
+                               Group& group, Room& room) const
+{
+  for (BeamReach& beam : beams)
+  {
+    beam.sight = targets.sight.get();
+    beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
+  }
+  forSeenBricks(targets.pieces.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    brickDone();
+    room.pieces.clear();
+    room.diffuse.clear();
+    for (const SurfacePoint& point : targets.pieces.brick(brick))
+    {
+      room.diffuse.push(point, room.pieces.count);
+      room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
+    }
+    room.coherent = room.diffuse;
+    room.hear(seeing, false, group);
+    room.addTo(seeing, group);
+  });
+}
+
 void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
                         const YieldPoint& brickDone, std::vector<LineSum>& sums) const
 {
@@ -262,26 +307,24 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
     group.grids.push_back(lineGrid(sum));
   }
   Room room;
-  if (targets_)
+  for (const TargetGroup& targets : targets_)
   {
-    for (BeamReach& beam : beams)
+    if (targets.ring.taps.empty())
     {
-      beam.sight = targetSight_.get();
-      beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
+      addTargets(targets, beams, brickDone, group, room);
+      continue;
     }
-    forSeenBricks(targets_->grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
-      brickDone();
-      room.pieces.clear();
-      room.diffuse.clear();
-      for (const SurfacePoint& point : targets_->brick(brick))
-      {
-        room.diffuse.push(point, room.pieces.count);
-        room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
-      }
-      room.coherent = room.diffuse;
-      room.hear(seeing, false, group);
-      room.addTo(seeing, group);
-    });
+    std::vector<LineSum> alone;
+    for (const LineSum& sum : sums)
+    {
+      alone.push_back({ std::vector<float>(sum.iq.size(), 0.0f), sum.sampleMm, sum.radPerMm });
+    }
+    Group ringing{ exact, intensities, alone, group.grids, targetTable() };
+    addTargets(targets, beams, brickDone, ringing, room);
+    for (std::size_t i = 0; i < sums.size(); ++i)
+    {
+      addRung(targets.ring, alone[i].iq, sums[i].iq);
+    }
   }
   beams = seeingPieces(std::move(beams));
   group.table = pieceTable();

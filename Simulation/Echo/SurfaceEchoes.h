@@ -4,6 +4,7 @@
 #include "Echo/BeamModel.h"
 #include "Echo/BrickWalk.h"
 #include "Echo/FieldSight.h"
+#include "Echo/RodRing.h"
 #include "Echo/SurfaceRows.h"
 #include "Echo/TargetPieces.h"
 #include "Scene/Scene.h"
@@ -20,6 +21,14 @@ enum class SurfaceDetail
 {
   Full,
   Coarse ///< into pieces of several voxels and few points (Policy.h): on the CPU alone
+};
+
+/// Targets whose echoes are followed by the same: those that do not ring, or one that does.
+struct TargetGroup
+{
+  TargetPieces pieces;
+  RodRing ring;
+  std::unique_ptr<FieldSight> sight; ///< null where the beam is no field's
 };
 
 /// Echoes of the boundaries between labels and of targets (Data/docs/physics.md section 10), weighted by the beam as
@@ -41,9 +50,8 @@ public:
   // What a device needs to do the same.
   const SurfacePieces& pieces() const { return pieces_; }
   const SurfaceRows& rows() const { return *rows_; }
-  const TargetPieces* targets() const { return targets_.get(); }       ///< null: none
-  const FieldSight* pieceSight() const { return pieceSight_.get(); }   ///< null where the beam is no field's
-  const FieldSight* targetSight() const { return targetSight_.get(); } ///< the same
+  const std::vector<TargetGroup>& targets() const { return targets_; }
+  const FieldSight* pieceSight() const { return pieceSight_.get(); } ///< null where the beam is no field's
   const PieceNets& nets() const { return nets_; }
   BrickGrid pieceGrid() const;
   float longestStepMm() const; ///< between pieces
@@ -58,6 +66,8 @@ private:
 
   /// Faces of a brick that one of the lines may hear become pieces.
   void findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group, Room& room) const;
+  void addTargets(const TargetGroup& targets, std::vector<BeamReach> beams, const YieldPoint& brickDone, Group& group,
+                  Room& room) const;
   /// Pieces that one of the lines hears become points.
   void expand(const std::vector<std::size_t>& seeing, Room& room) const;
 
@@ -66,9 +76,8 @@ private:
   std::uint64_t seed_;
   double blobMm_;
   std::shared_ptr<const SurfaceRows> rows_;
-  std::unique_ptr<TargetPieces> targets_;
+  std::vector<TargetGroup> targets_;
   std::unique_ptr<FieldSight> pieceSight_;
-  std::unique_ptr<FieldSight> targetSight_;
   PieceNets nets_{};
 };
 

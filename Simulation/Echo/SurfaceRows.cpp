@@ -174,7 +174,9 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
       out.coherentReach = -1.0f;
       out.finestReach = -1.0f;
       out.roughCosine = 2.0f;
-      if (a == b || a == surfaceMedia.coupling)
+      const bool isWithinRod =
+        std::find(surfaceMedia.rods.begin(), surfaceMedia.rods.end(), a) != surfaceMedia.rods.end();
+      if (a == b || a == surfaceMedia.coupling || isWithinRod)
       {
         continue;
       }
@@ -267,6 +269,7 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, 
     key.insert(key.end(), { t.impedanceMRayl, t.soundSpeedMPerS, t.attenuationDbPerCmMHz, t.tau, t.gamma, t.roughnessMm,
                             t.correlationMm });
   }
+  key.insert(key.end(), media.rods.begin(), media.rods.end());
   using Kept = std::pair<std::vector<double>, std::shared_ptr<const SurfaceRows>>;
   constexpr std::size_t most = 64; // of a data set's workers some each
   static std::mutex mutex;

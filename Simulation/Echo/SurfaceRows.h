@@ -27,6 +27,8 @@ struct SurfaceMedia
   std::vector<Tissue> all;
   int tissues;  ///< those of the scene
   int coupling; ///< beyond it nothing echoes as seen from there; -1: none
+  /// Numbers of rods that ring: what comes from within them follows the echo of their front (RodRing.h).
+  std::vector<int> rods = {};
 };
 
 /// The table of all boundaries between some media (Data/docs/physics.md sections 10.3 to 10.5).

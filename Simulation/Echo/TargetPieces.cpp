@@ -45,8 +45,8 @@ void cut(const Vec3d& a, const Vec3d& b, const Vec3d& c, double longestMm, const
 
 } // namespace
 
-TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>& targets, const SurfaceRows& rows,
-                           double longestMm, std::uint64_t seed)
+TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>& targets, const std::vector<int>& which,
+                           const SurfaceRows& rows, double longestMm, std::uint64_t seed)
 {
   const Vec3i size = scene.placement().size;
   const Vec3f perMm = 1.0f / Vec3f(scene.placement().spacingMm);
@@ -56,6 +56,10 @@ TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>&
   for (std::size_t t = 0; t < triangles.size(); ++t)
   {
     const BvhTriangle& triangle = triangles[t];
+    if (std::find(which.begin(), which.end(), triangle.target) == which.end())
+    {
+      continue;
+    }
     const Vec3d a(triangle.a);
     const Vec3d b(triangle.b);
     const Vec3d c(triangle.c);

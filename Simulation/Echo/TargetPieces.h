@@ -15,10 +15,10 @@ namespace sono {
 class TargetPieces
 {
 public:
-  /// Media of `rows` are the scene's tissues, then one for each target. Where a triangle lies outside of the volume it
-  /// has no echo.
-  TargetPieces(const Scene& scene, const std::vector<TargetSurface>& targets, const SurfaceRows& rows, double longestMm,
-               std::uint64_t seed);
+  /// Of those targets whose numbers are `which`. Media of `rows` are the scene's tissues, then one for each target.
+  /// Where a triangle lies outside of the volume it has no echo.
+  TargetPieces(const Scene& scene, const std::vector<TargetSurface>& targets, const std::vector<int>& which,
+               const SurfaceRows& rows, double longestMm, std::uint64_t seed);
 
   const BrickGrid& grid() const { return grid_; }
   const std::vector<SurfacePoint>& brick(const Vec3i& brick) const;

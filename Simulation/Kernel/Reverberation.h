@@ -200,7 +200,8 @@ SONO_HD inline Arrival boundaryArrival(const TraceView& view, const StraightWay&
 {
   Arrival arrival;
   const Vec3f& n = boundary.surface.normal;
-  if (path.reflections < 1 || path.amplitude == 0.0f || glm::dot(n, axis.axis) < 0.5f)
+  const TraceMedium& from = view.media[boundary.before.medium];
+  if (path.reflections < 1 || path.amplitude == 0.0f || glm::dot(n, axis.axis) < 0.5f || from.rings)
   {
     return arrival;
   }
@@ -218,7 +219,6 @@ SONO_HD inline Arrival boundaryArrival(const TraceView& view, const StraightWay&
   {
     return arrival;
   }
-  const TraceMedium& from = view.media[boundary.before.medium];
   const TraceMedium& to = view.media[boundary.after.medium];
   const RoughBoundary rough = roughBoundary(view, from, to);
   const float coherent =

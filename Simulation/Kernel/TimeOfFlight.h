@@ -32,7 +32,7 @@ SONO_HD inline float wavelengthMm(const TraceView& view)
 }
 
 /// Where a line's axis runs inside targets, which count instead of the cells there. Not where it does for less than a
-/// wavelength at c0: the beam is wider, and its wave closes behind a wire unchanged.
+/// wavelength at c0, or in a rod that rings: the beam is wider, and its wave closes behind a wire unchanged.
 struct TargetSpans
 {
   static constexpr int most = 8;
@@ -69,7 +69,7 @@ SONO_HD inline TargetSpans targetSpans(const TraceView& view, const Space& space
     {
       break;
     }
-    if (out.t >= shortest)
+    if (out.t >= shortest && !view.media[view.firstTargetMedium + out.target].rings)
     {
       spans.fromMm[spans.count] = from + in;
       spans.toMm[spans.count] = from + in + out.t;

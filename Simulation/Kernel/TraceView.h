@@ -21,6 +21,7 @@ struct TraceMedium
   float roughnessMm = 0.0f;   ///< h, rms height of its surface
   float correlationMm = 1.0f; ///< l, of that height
   float scatter = 0.0f;       ///< amplitude of its speckle against the tissue that reverberation refers to
+  bool rings = false;         ///< of a rod: what comes back from within it has a closed form (Echo/RodRing.h)
 };
 
 /// One main beam (see ScanLine) in the region's local millimetres; the axis is a unit vector. Where paths start apart,

@@ -19,6 +19,7 @@ struct TargetSurface
   Tissue tissue;
   std::vector<Vec3d> pointsMm;
   std::vector<std::array<int, 3>> triangles;
+  double rodDiameterMm = 0.0; ///< of a solid round rod, which rings (Echo/RodRing.h) where it is hard; 0: any shape
 };
 
 /// The targets' triangles in the tracer's local coordinates, turned to run counter-clockwise seen from outside;

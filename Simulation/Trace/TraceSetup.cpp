@@ -6,6 +6,7 @@
 #include "Kernel/TracePath.h"
 #include "Probe/BeamAperture.h"
 #include "Scene/NanoGridStorage.h"
+#include "Trace/Rod.h"
 
 #include <algorithm>
 #include <cmath>
@@ -267,6 +268,7 @@ void TraceSetup::tune(const Scene& scene, const TraceSettings& settings,
   {
     TissueTable().add(target.tissue); // checks the ranges
     media.push_back(makeMedium(target.tissue, settings));
+    media.back().rings = rings(rodOf(target.tissue, target.rodDiameterMm));
   }
   view = makeView(settings, scene);
   view.media = media.data();

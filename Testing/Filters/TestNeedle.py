@@ -99,12 +99,19 @@ class TestPicture(unittest.TestCase):
         half = 0.5 * np.median(strength[over])
         last = np.flatnonzero(strength > half).max()
         self.assertAlmostEqual(x[last], self.TIP, delta=0.8)  # a line's pitch and half a beam's width
-        behind = (z > self.DEPTH + 8) & (z < self.DEPTH + 15)
+        behind = (z > self.DEPTH + 13) & (z < self.DEPTH + 18)  # what rings ends at 12
         beside = x > self.TIP + 6
         rms = lambda e, lines: np.sqrt((e[lines][:, behind] ** 2).mean())
         self.assertLess(rms(shown, over) / rms(bare, over), 0.5)
         self.assertAlmostEqual(rms(shown, beside) / rms(bare, beside), 1, delta=0.15)
-        print(f"shaft {np.mean(top[over]):.2f} mm, tip {x[last]:.2f} mm, shadow {rms(shown, over) / rms(bare, over):.2f}")
+        # A solid needle rings: what follows its echo falls from there, slowly (TestRodRing says how much).
+        mean = np.sqrt((shown[over] ** 2).mean(axis=0))
+        first = mean[near].max()
+        tail = [20 * math.log10(mean[(z > self.DEPTH + a) & (z <= self.DEPTH + a + 1)].max() / first) for a in (0.5, 1.5, 2.5, 4.5)]
+        for level, (low, high) in zip(tail, ((-25, -12), (-31, -19), (-36, -23), (-40, -27))):
+            self.assertTrue(low < level < high, tail)
+        print(f"shaft {np.mean(top[over]):.2f} mm, tip {x[last]:.2f} mm, shadow {rms(shown, over) / rms(bare, over):.2f}, "
+              f"tail {', '.join(f'{level:.0f}' for level in tail)} dB")
 
 
 if __name__ == "__main__":

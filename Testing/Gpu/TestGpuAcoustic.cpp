@@ -195,6 +195,26 @@ TEST(GpuAcoustic, TargetsEcho)
   }
 }
 
+TEST(GpuAcoustic, RodsRing)
+{
+  SONO_GPU_OR_SKIP();
+  const auto scene = ballScene(Echoes::Surfaces, 0.0);
+  Settings s = fanSettings();
+  s.echo.aperture = namedAperture();
+  const auto rods = [](double firstMm, double secondMm) {
+    std::vector<TargetSurface> targets{
+      makeBox("one", makeTissue("steel", 46.0, 5900.0, 0.1), { 12, 18, 9 }, { 20, 26, 10 }),
+      makeBox("two", makeTissue("titanium", 27.0, 6070.0, 0.1), { 22, 18, 6 }, { 30, 26, 7 }),
+      makeBox("box", makeTissue("bone", 4.0, 3000.0, 1.0), { 20, 10, 14 }, { 25, 14, 15 })
+    };
+    targets[0].rodDiameterMm = firstMm;
+    targets[1].rodDiameterMm = secondMm;
+    return targets;
+  };
+  expectSame(*scene, fan(16), s, "two rods that ring", rods(0.8, 1.3));
+  expectSame(*scene, fan(16), s, "one of them", rods(0.0, 1.3));
+}
+
 TEST(GpuAcoustic, ASweepShowsTargets)
 {
   SONO_GPU_OR_SKIP();

@@ -55,7 +55,7 @@ TargetSurface rodAlong(const Tissue& tissue, double fromMm, double toMm, double 
 {
   constexpr int sides = 24;
   const double radiusMm = 0.5 * needleThickMm / std::cos(pi / sides);
-  TargetSurface rod{ "needle", tissue, {}, {} };
+  TargetSurface rod{ "needle", tissue, {}, {}, needleThickMm };
   for (const double x : { fromMm, toMm })
   {
     for (int i = 0; i < sides; ++i)

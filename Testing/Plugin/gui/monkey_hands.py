@@ -11,7 +11,7 @@ LIGHT = {"SpacingMm": (3, 5), "LineCount": (2, 32), "ElevationLineCount": (1, 6)
          "PixelMm": (0.8, 5), "DepthMm": (20, 200), "SamplingMHz": (5, 60), "NumberOfShownPaths": (0, 64),
          "ElementCount": (1, 32), "TransmitCount": (1, 4), "Phases": (1, 3), "MaxCollisions": (0, 8),
          "CompoundFans": (1, 3), "ScattererCellMm": (0.3, 2), "ThicknessMm": (4, 40), "ElementWidthMm": (0.1, 1),
-         "TimeBudgetS": (0, 1), "ClosingMm": (0, 12), "Candidate": (0, 4), "SphereDiameterMm": (5, 30)}
+         "TimeBudgetS": (0, 1), "TransmitFocusMm": (20, 300), "ClosingMm": (0, 12), "Candidate": (0, 4), "SphereDiameterMm": (5, 30)}
 # Of a pulse-echo field, whose cost grows with the depth.
 LIGHT_FIELD = {"DepthMm": (20, 60)}
 
