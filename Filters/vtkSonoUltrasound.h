@@ -116,7 +116,7 @@ public:
   /**
    * What a program that shows the filter as a scanner does with it; they change no image. Freeze: whether the picture
    * stays while the probe moves and is set, default off. StoreFolder: where pictures of it are written, default "":
-   * whoever writes one asks. HeartRate: how many times a minute all time steps are played, 20 to 300 a minute, or 0, the
+   * whoever writes one asks. HeartRate: how many times a minute all time steps are played, 20 to 300, or 0, the
    * default: as many as their times say.
    */
   void SetFreeze(bool frozen) { this->Freeze = frozen; }
