@@ -39,6 +39,14 @@ std::vector<double> besselJ(int count, double x)
     const std::size_t at = std::size_t(n);
     sum += n % 2 == 0 ? 2.0 * j[at] : 0.0;
     j[at - 1] = 2.0 * n / x * j[at] - j[at + 1];
+    if (std::abs(j[at - 1]) > 1.0 / almostNothing)
+    {
+      for (std::size_t k = at - 1; k < j.size(); ++k)
+      {
+        j[k] *= almostNothing; // the highest orders are nothing
+      }
+      sum *= almostNothing;
+    }
   }
   sum += j[0]; // 1 of all even ones
   for (double& value : j)
@@ -63,7 +71,8 @@ std::vector<double> besselN(int count, double x)
 /// Faran's tan alpha_n, -x J_n'(x) / J_n(x), and with the other function tan beta_n.
 double tanOf(const std::vector<double>& of, int n, double x)
 {
-  return x * of[std::size_t(n) + 1] / of[std::size_t(n)] - n;
+  const double value = of[std::size_t(n)];
+  return std::isnormal(value) ? x * of[std::size_t(n) + 1] / value - n : -double(n); // where J_n is nothing
 }
 
 /// Faran's tan Phi_n, by the functions at k a of the two waves within, without the densities.

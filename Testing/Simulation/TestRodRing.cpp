@@ -132,6 +132,23 @@ TEST(RodRing, TheFrontIsASurfacesOwn)
   EXPECT_NEAR(mean.imag(), 0.0, 0.03);
 }
 
+TEST(RodRing, ThinAndThickRodsHaveNumbersToo)
+{
+  for (const double diameterMm : { 0.1, 1.0, 10.0 })
+  {
+    for (const double frequency : { 0.1, 1.0, 10.0, 40.0, 100.0 })
+    {
+      const double level = std::abs(rodEcho(titanium(diameterMm), frequency));
+      EXPECT_TRUE(std::isfinite(level) && level < 100.0) << diameterMm << " mm, " << frequency << " MHz: " << level;
+    }
+  }
+  for (const double frequency : { 20.0, 60.0 })
+  {
+    const Complex exact = backscattered(titanium(1.27), frequency);
+    EXPECT_LT(std::abs(rodEcho(titanium(1.27), frequency) - exact), 1e-6 * std::abs(exact)) << frequency << " MHz";
+  }
+}
+
 TEST(RodRing, OnlyHardRodsRing)
 {
   EXPECT_TRUE(rings(titanium(0.82)));
