@@ -95,6 +95,10 @@ void pqSonoBeat::follow(pqPipelineSource* source)
 {
   play_->setChecked(false);
   ahead_.reset();
+  if (source_)
+  {
+    source_->getProxy()->GetProperty(heartRate)->RemoveObserver(rateSeen_);
+  }
   if (pqTimeKeeper* before = timeKeeperOf(source_))
   {
     before->disconnect(this);
@@ -103,8 +107,8 @@ void pqSonoBeat::follow(pqPipelineSource* source)
   if (pqTimeKeeper* now = timeKeeperOf(source_))
   {
     this->connect(now, SIGNAL(timeStepsChanged()), SLOT(showState()));
-    pqCoreUtilities::connect(source_->getProxy()->GetProperty(heartRate), vtkCommand::ModifiedEvent, this,
-                             SLOT(showState()));
+    rateSeen_ = pqCoreUtilities::connect(source_->getProxy()->GetProperty(heartRate), vtkCommand::ModifiedEvent, this,
+                                         SLOT(showState()));
   }
   this->showState();
 }

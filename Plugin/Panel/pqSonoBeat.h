@@ -49,6 +49,7 @@ private:
   QPointer<pqSonoProbeWidget> widget_; // while it plays
   QPushButton* play_;
   QDoubleSpinBox* rate_;
+  unsigned long rateSeen_ = 0;        // the observer of the source's
   std::unique_ptr<SonoPhases> ahead_; // until all are ready
   bool isPlaying_ = false;
   int phase_ = -1; // that is shown

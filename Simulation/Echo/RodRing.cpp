@@ -1,14 +1,12 @@
 #include "Echo/RodRing.h"
 
+#include "Core/KeptByNumbers.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSettings.h"
 #include "Echo/Pulse.h"
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <mutex>
-#include <utility>
 
 namespace sono {
 
@@ -97,22 +95,22 @@ RodRing makeRing(const Rod& rod, const EchoSettings& settings)
   const double sampleUs = 2.0 * settings.sampleMm() / assumedSoundSpeedMmPerUs;
   const double centre = settings.centreFrequencyMHz;
   // 2 k s of a pulse with s mm of deviation: of its spectrum the deviation is a share of 1 / that.
-  const double sigmaMHz =
-    assumedSoundSpeedMmPerUs / (4.0 * pi * pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth));
+  const double sigmaMHz = assumedSoundSpeedMmPerUs / (4.0 * pi * pulseSigmaMm(centre, settings.fractionalBandwidth));
   RodRing ring;
   ring.stride = std::max(1, int(1.0 / (2.0 * bandReach * sigmaMHz * sampleUs)));
   ring.lead = leadTaps;
   const double tapUs = ring.stride * sampleUs;
   const double bandMHz = 1.0 / tapUs;
+  const auto frequencyMHz = [&](int i) { return centre + bandMHz * ((i + 0.5) / frequencies - 0.5); };
   std::vector<std::complex<double>> spectrum(frequencies);
   for (int i = 0; i < frequencies; ++i)
   {
-    const double offMHz = bandMHz * ((i + 0.5) / frequencies - 0.5);
-    const double beyond = (std::abs(offMHz) / sigmaMHz - bandWhole) / (bandReach - bandWhole);
-    if (beyond < 1.0 && centre + offMHz > lowestShare * centre)
+    const double frequency = frequencyMHz(i);
+    const double beyond = (std::abs(frequency - centre) / sigmaMHz - bandWhole) / (bandReach - bandWhole);
+    if (beyond < 1.0 && frequency > lowestShare * centre)
     {
       const double left = beyond > 0.0 ? 0.5 + 0.5 * std::cos(pi * beyond) : 1.0;
-      std::complex<double> rung = rodEcho(rod, centre + offMHz) - 1.0;
+      std::complex<double> rung = rodEcho(rod, frequency) - 1.0;
       rung *= std::min(1.0, mostRelative / std::max(std::abs(rung), 1e-30));
       spectrum[std::size_t(i)] = left * rung;
     }
@@ -126,8 +124,7 @@ RodRing makeRing(const Rod& rod, const EchoSettings& settings)
     std::complex<double> tap = 0.0;
     for (int i = 0; i < frequencies; ++i)
     {
-      const double frequency = centre + bandMHz * ((i + 0.5) / frequencies - 0.5);
-      tap += spectrum[std::size_t(i)] * std::polar(1.0 / frequencies, 2.0 * pi * frequency * lateUs);
+      tap += spectrum[std::size_t(i)] * std::polar(1.0 / frequencies, 2.0 * pi * frequencyMHz(i) * lateUs);
     }
     const double fades = std::clamp((lateMm - ringsMm + fadesMm) / fadesMm, 0.0, 1.0);
     tap *= 0.5 + 0.5 * std::cos(pi * fades);
@@ -169,21 +166,8 @@ RodRing rodRing(const Rod& rod, const EchoSettings& settings)
   const std::vector<double> key{ rod.radiusMm,        rod.impedanceMRayl,          rod.soundSpeedMPerS,
                                  rod.shearSpeedMPerS, settings.centreFrequencyMHz, settings.fractionalBandwidth,
                                  settings.sampleMm() };
-  constexpr std::size_t most = 16;
-  static std::mutex mutex;
-  static std::deque<std::pair<std::vector<double>, RodRing>> kept;
-  const std::lock_guard<std::mutex> lock(mutex); // who waits wants the same
-  const auto found = std::find_if(kept.begin(), kept.end(), [&](const auto& k) { return k.first == key; });
-  if (found != kept.end())
-  {
-    return found->second;
-  }
-  kept.emplace_front(key, makeRing(rod, settings));
-  if (kept.size() > most)
-  {
-    kept.pop_back();
-  }
-  return kept.front().second;
+  static KeptByNumbers<RodRing> kept(16);
+  return *kept.of(key, [&] { return makeRing(rod, settings); });
 }
 
 void addRung(const RodRing& ring, const std::vector<float>& surface, std::vector<float>& line)

@@ -40,7 +40,7 @@ SurfaceMedia mediaOf(const Scene& scene, const std::vector<TargetSurface>* targe
   SurfaceMedia media{ scene.tissues(), int(scene.tissues().size()), scene.outsideIndex() };
   for (std::size_t t = 0; targets && t < targets->size(); ++t)
   {
-    if (rings(rodOf((*targets)[t].tissue, (*targets)[t].rodDiameterMm)))
+    if (ringingRod((*targets)[t]))
     {
       media.rods.push_back(int(media.all.size()));
     }
@@ -139,12 +139,11 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   std::vector<int> silent;
   for (std::size_t t = 0; targets && t < targets->size(); ++t)
   {
-    const Rod rod = rodOf((*targets)[t].tissue, (*targets)[t].rodDiameterMm);
-    if (rings(rod))
+    if (const auto rod = ringingRod((*targets)[t]))
     {
       const std::vector<int> alone{ int(t) };
       targets_.push_back(
-        { { scene, *targets, alone, *rows_, edgePerBlob * blobMm_, seed_ }, rodRing(rod, settings), nullptr });
+        { { scene, *targets, alone, *rows_, edgePerBlob * blobMm_, seed_ }, rodRing(*rod, settings), nullptr });
     }
     else
     {

@@ -1,13 +1,12 @@
 #include "Echo/SurfaceRows.h"
 
+#include "Core/KeptByNumbers.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/Pulse.h"
 #include "Scene/SurfacePieces.h"
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <mutex>
 #include <utility>
 
 namespace sono {
@@ -257,6 +256,7 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, 
   // All that the constructor looks at.
   std::vector<double> key{ double(media.coupling),
                            double(media.tissues),
+                           double(media.rods.size()),
                            settings.centreFrequencyMHz,
                            settings.fractionalBandwidth,
                            beam.areaMm2,
@@ -270,25 +270,8 @@ std::shared_ptr<const SurfaceRows> sharedSurfaceRows(const SurfaceMedia& media, 
                             t.correlationMm });
   }
   key.insert(key.end(), media.rods.begin(), media.rods.end());
-  using Kept = std::pair<std::vector<double>, std::shared_ptr<const SurfaceRows>>;
-  constexpr std::size_t most = 64; // of a data set's workers some each
-  static std::mutex mutex;
-  static std::deque<Kept> kept;
-  std::unique_lock<std::mutex> lock(mutex);
-  const auto found = std::find_if(kept.begin(), kept.end(), [&](const Kept& k) { return k.first == key; });
-  if (found != kept.end())
-  {
-    return found->second;
-  }
-  lock.unlock(); // who wants others need not wait
-  auto rows = std::make_shared<const SurfaceRows>(media, settings, beam, finestMm, widestMm);
-  lock.lock();
-  kept.emplace_front(std::move(key), rows);
-  if (kept.size() > most)
-  {
-    kept.pop_back();
-  }
-  return rows;
+  static KeptByNumbers<SurfaceRows> kept(64); // of a data set's workers some each
+  return kept.of(std::move(key), [&] { return SurfaceRows(media, settings, beam, finestMm, widestMm); });
 }
 
 } // namespace sono

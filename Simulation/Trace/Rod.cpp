@@ -1,20 +1,19 @@
 #include "Trace/Rod.h"
 
 #include "Core/SoundSpeed.h"
-#include "Labels/TissueTable.h"
+#include "Trace/Targets.h"
 
 namespace sono {
 
-Rod rodOf(const Tissue& tissue, double diameterMm)
-{
-  return { 0.5 * diameterMm, tissue.impedanceMRayl, tissue.soundSpeedMPerS, 0.5 * tissue.soundSpeedMPerS };
-}
-
-bool rings(const Rod& rod)
+std::optional<Rod> ringingRod(const TargetSurface& target)
 {
   constexpr double hard = 2.0; // times soft tissue
-  return rod.radiusMm > 0.0 && rod.soundSpeedMPerS > hard * 1000.0 * assumedSoundSpeedMmPerUs &&
-         rod.impedanceMRayl > hard * aroundRodsMRayl;
+  const Tissue& tissue = target.tissue;
+  const bool rings = target.rodDiameterMm > 0.0 && tissue.soundSpeedMPerS > hard * 1000.0 * assumedSoundSpeedMmPerUs &&
+                     tissue.impedanceMRayl > hard * aroundRodsMRayl;
+  return rings ? std::optional<Rod>(Rod{ 0.5 * target.rodDiameterMm, tissue.impedanceMRayl, tissue.soundSpeedMPerS,
+                                         0.5 * tissue.soundSpeedMPerS })
+               : std::nullopt;
 }
 
 } // namespace sono

@@ -268,7 +268,7 @@ void TraceSetup::tune(const Scene& scene, const TraceSettings& settings,
   {
     TissueTable().add(target.tissue); // checks the ranges
     media.push_back(makeMedium(target.tissue, settings));
-    media.back().rings = rings(rodOf(target.tissue, target.rodDiameterMm));
+    media.back().rings = ringingRod(target).has_value();
   }
   view = makeView(settings, scene);
   view.media = media.data();

@@ -1,6 +1,8 @@
 #include "Echo/EchoSettings.h"
 #include "Echo/Pulse.h"
 #include "Echo/RodRing.h"
+#include "TestScenes.h"
+#include "Trace/Targets.h"
 
 #include <gtest/gtest.h>
 
@@ -151,9 +153,12 @@ TEST(RodRing, ThinAndThickRodsHaveNumbersToo)
 
 TEST(RodRing, OnlyHardRodsRing)
 {
-  EXPECT_TRUE(rings(titanium(0.82)));
-  EXPECT_FALSE(rings(titanium(0.0)));
-  EXPECT_FALSE(rings({ 0.5, 1.7, 1600.0, 800.0 }));
+  const auto target = [](double impedance, double speed, double diameterMm) {
+    return TargetSurface{ "rod", makeTissue("rod", impedance, speed, 0.1), {}, {}, diameterMm };
+  };
+  EXPECT_TRUE(ringingRod(target(27.3, 6070.0, 0.82)));
+  EXPECT_FALSE(ringingRod(target(27.3, 6070.0, 0.0)));
+  EXPECT_FALSE(ringingRod(target(1.7, 1600.0, 1.0)));
 }
 
 /// One point of a surface, its ring by the taps, and the pulse: its envelope is that of the exact spectrum.

@@ -28,12 +28,12 @@ def child(kind, name, inside=main):
     return next(w for w in inside.findChildren(kind, name) if w.isVisible())
 
 
-def press(name, inside=main):
-    child(QtWidgets.QAbstractButton, name, inside).click()
+def press(name):
+    hands.button(name).click()
 
 
 def trigger(name):
-    next(act for act in main.findChildren(QtWidgets.QAction, name) if act.isEnabled()).trigger()
+    hands.act_named(name).trigger()
 
 
 def knob(name):
@@ -49,8 +49,10 @@ def flat_of(ultrasound):
     """The flat picture as rows of greys; none: empty."""
     image = ultrasound.SMProxy.GetClientSideObject().GetOutputDataObject(FLAT_IMAGE)
     grey = image.GetPointData().GetArray("BMode") if image else None
+    if not grey:
+        return np.zeros((8, 8))
     columns, rows, _ = image.GetDimensions()
-    return vtk_to_numpy(grey).reshape(rows, columns).astype(float) if grey else np.zeros((8, 8))
+    return vtk_to_numpy(grey).reshape(rows, columns).astype(float)
 
 
 def settle():
@@ -350,7 +352,8 @@ def keys():
     yield 700
     nameless = [each.objectName() for dock in ("propertiesDock", "pqSonoScannerDock")
                 for each in hands.dock(dock).findChildren((QtWidgets.QLineEdit, QtWidgets.QSlider, QtWidgets.QAbstractSpinBox))
-                if each.isVisible() and each.focusPolicy() & QtCore.Qt.TabFocus and not (each.accessibleName() or each.parentWidget().accessibleName())
+                if each.isVisible() and each.focusPolicy() & QtCore.Qt.TabFocus
+                and not (each.accessibleName() or each.parentWidget().accessibleName())
                 and any(part.objectName() in ("SonoProbe", "SonoScannerControls") for part in ancestors(each))]
     found["nameless"] = nameless
 
