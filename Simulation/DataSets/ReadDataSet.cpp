@@ -1,13 +1,14 @@
 #include "DataSets/DataSet.h"
 #include "DataSets/DataSetSettings.h"
+#include "DataSets/ReadDraw.h"
 #include "DataSets/StrictJson.h"
 #include "Labels/SmoothWarp.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <type_traits>
 
 namespace sono {
 
@@ -17,91 +18,6 @@ namespace fs = std::filesystem;
 using Json = StrictObject::Json;
 
 constexpr double exactWhole = 9007199254740992.0; // 2^53
-
-/// What a number of the file may be.
-struct Allowed
-{
-  Range range;
-  bool whole = false;
-  bool isSwitch = false;
-  std::vector<const char*> choices = {}; ///< of an enumeration
-};
-
-template<class Value>
-Allowed allowedOf(const Parameter& parameter)
-{
-  return { parameter.range, std::is_integral_v<Value> && !std::is_same_v<Value, bool>, std::is_same_v<Value, bool>,
-           parameter.choices };
-}
-
-double readValue(const StrictObject& object, const std::string& key, const Json& value, const Allowed& allowed)
-{
-  if (allowed.isSwitch)
-  {
-    object.require(key, value.is_boolean(), "is no switch; write true or false");
-    return value.get<bool>() ? 1.0 : 0.0;
-  }
-  if (!allowed.choices.empty())
-  {
-    std::string names;
-    for (std::size_t i = 0; i < allowed.choices.size(); ++i)
-    {
-      if (value.is_string() && value.get<std::string>() == allowed.choices[i])
-      {
-        return double(i);
-      }
-      names += (i == 0 ? "\"" : ", \"") + std::string(allowed.choices[i]) + "\"";
-    }
-    object.fail(key, "is no such choice; write one of " + names);
-  }
-  const std::string kind = allowed.whole ? "a whole number " : "a number ";
-  object.require(key, value.is_number(), "is not a number; write " + kind + allowed.range.text());
-  const double number = value.get<double>();
-  object.require(key, allowed.range.contains(number) && (!allowed.whole || number == std::floor(number)),
-                 "is out of range; write " + kind + allowed.range.text());
-  return number;
-}
-
-/// The two ends of a range, under these names.
-Draw readRange(StrictObject& range, const StrictObject& parent, const std::string& key, const char* from,
-               const char* to, const Allowed& allowed)
-{
-  Draw draw{ Draw::Kind::Uniform, {}, allowed.whole };
-  for (const char* end : { from, to })
-  {
-    draw.values.push_back(readValue(range, end, range.take(end), allowed));
-  }
-  range.refuseOthers();
-  parent.require(key, draw.values[0] <= draw.values[1],
-                 std::string("is a range upside down; exchange '") + from + "' and '" + to + "'");
-  return draw;
-}
-
-/// A value, {"from": a, "to": b} or {"oneOf": [...]}.
-Draw readDraw(StrictObject& object, const std::string& key, const Allowed& allowed)
-{
-  const Json& value = object.take(key);
-  if (!value.is_object())
-  {
-    return always(readValue(object, key, value, allowed));
-  }
-  StrictObject drawn = object.object(key);
-  if (drawn.has("oneOf"))
-  {
-    const Json& list = drawn.take("oneOf");
-    drawn.require("oneOf", list.is_array() && !list.empty(), "is not a list; write at least one value in brackets");
-    Draw draw{ Draw::Kind::OneOf, {}, false };
-    for (const Json& one : list)
-    {
-      draw.values.push_back(readValue(drawn, "oneOf", one, allowed));
-    }
-    drawn.refuseOthers();
-    return draw;
-  }
-  object.require(key, !allowed.isSwitch && allowed.choices.empty(),
-                 "has no range; write a value or {\"oneOf\": [...]}");
-  return readRange(drawn, object, key, "from", "to", allowed);
-}
 
 /// A file that the data set names, relative to it.
 std::string pathBeside(const StrictObject& object, const std::string& key, const std::string& name)
@@ -186,7 +102,7 @@ DataSetPatient readPatient(StrictObject object)
     patient.spacingMm = object.numberOr("spacingMm", between(0.5, 5.0), patient.spacingMm);
     if (object.has("drawn"))
     {
-      patient.isDrawn = readValue(object, "drawn", object.take("drawn"), { {}, false, true }) > 0.0;
+      patient.isDrawn = readValue(object, "drawn", { {}, false, true }) > 0.0;
     }
   }
   patient.licence = object.text("licence");

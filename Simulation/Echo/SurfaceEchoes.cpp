@@ -2,6 +2,7 @@
 
 #include "Core/Policy.h"
 #include "Core/SoundSpeed.h"
+#include "Echo/HeardSurfaces.h"
 #include "Echo/SurfaceLoops.h"
 #include "Echo/SurfacePhase.h"
 

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-// A brick's faces, pieces and points, as SurfaceLoops.h takes them: arrays by number, with room up to whole vectors.
+// A brick's faces, pieces and points, as HeardSurfaces.h and SurfaceLoops.h take them: arrays by number, with room up
+// to whole vectors.
 
 namespace sono {
 
@@ -55,6 +56,12 @@ struct PointList
   /// Fills up to whole vectors with what echoes nothing; before it is listened to.
   void pad();
 };
+
+/// Component of the n-th of some vectors along a direction.
+inline float across(const float* x, const float* y, const float* z, int n, const Vec3f& direction)
+{
+  return x[n] * direction.x + y[n] * direction.y + z[n] * direction.z;
+}
 
 /// All points of a piece's net, without phases.
 void addNet(const SurfacePiece& piece, const PieceNet& net, int row, int ofPiece, PointList& points);

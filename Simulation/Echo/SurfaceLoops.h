@@ -1,30 +1,11 @@
 #pragma once
 
+#include "Echo/HeardSurfaces.h"
 #include "Echo/SurfaceLists.h"
 
-#include <cstdint>
-#include <vector>
-
-// The loops over a brick's faces, pieces and points that SurfaceEchoes is made of, in vectors: Kernel/SurfaceEcho.h for
-// many at once.
+// What a brick's points add to a line, in vectors: Kernel/SurfaceEcho.h for many at once.
 
 namespace sono {
-
-/// What a line hears of each piece.
-struct HeardList
-{
-  std::vector<float> diffuse, coherent; ///< the intensity there if it hears such an echo, otherwise 0
-  std::vector<float> most;
-  bool anyDiffuse = false;
-  bool anyCoherent = false;
-};
-
-/// mayHearSurface of each face: `heard`, as long as the list, is 1 where it is so, otherwise 0.
-void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard);
-
-/// hearSurface of each piece whose face the beam may hear; null: of all.
-void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam& beam, const LineGrid& grid,
-                const SurfaceTable& table, const SurfaceIntensity& intensity, HeardList& heard);
 
 /// addDiffuse and addCoherent of each point, to a line's sum.
 void addDiffusePoints(const PointList& points, const HeardList& heard, const Beam& beam, const LineGrid& grid,

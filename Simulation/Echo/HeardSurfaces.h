@@ -1,0 +1,28 @@
+#pragma once
+
+#include "Echo/SurfaceLists.h"
+
+#include <cstdint>
+#include <vector>
+
+// Which of a brick's faces and pieces a line hears, in vectors: Kernel/SurfaceEcho.h for many at once.
+
+namespace sono {
+
+/// What a line hears of each piece.
+struct HeardList
+{
+  std::vector<float> diffuse, coherent; ///< the intensity there if it hears such an echo, otherwise 0
+  std::vector<float> most;
+  bool anyDiffuse = false;
+  bool anyCoherent = false;
+};
+
+/// mayHearSurface of each face: `heard`, as long as the list, is 1 where it is so, otherwise 0.
+void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard);
+
+/// hearSurface of each piece whose face the beam may hear; null: of all.
+void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam& beam, const LineGrid& grid,
+                const SurfaceTable& table, const SurfaceIntensity& intensity, HeardList& heard);
+
+} // namespace sono
