@@ -57,9 +57,10 @@ struct TraceFrom
 struct MovingFrom
 {
   MovingStatistics statistics;
+  MovingPart part;
   std::shared_ptr<const PointScatterers> points;
 
-  bool same(const MovingFrom& o) const { return points == o.points && statistics == o.statistics; }
+  bool same(const MovingFrom& o) const { return points == o.points && statistics == o.statistics && part == o.part; }
 };
 
 /// Of the device's numbers for image formation, which do not depend on traced lines that lie on the device.

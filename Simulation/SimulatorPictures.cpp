@@ -135,7 +135,11 @@ std::vector<SeenPicture> Simulator::pictures(const std::vector<ImageInput>& inpu
       std::transform(group.begin(), group.end(), std::back_inserter(ofGroupInputs),
                      [&](std::size_t i) { return &inputs[i]; });
       const EchoSettings echo = withBeam(first.settings.echo);
-      const auto moving = withMoving(nullptr, echo, first.settings.tracing.model);
+      std::vector<ProbePose> poses;
+      std::transform(group.begin(), group.end(), std::back_inserter(poses),
+                     [&](std::size_t i) { return inputs[i].pose; });
+      const auto moving =
+        withMoving(nullptr, makeScanLines(first.settings.geometry, poses), echo, first.settings.tracing.model);
       std::vector<SeenPicture> ofThese = picturesOnDevice(needScene(), ofGroupInputs, echo, moving.get(), ofGroup);
       for (std::size_t i = 0; i < group.size(); ++i)
       {

@@ -221,7 +221,8 @@ ChannelPoints scenePoints(const EchoSources& sources, const ProbeSettings& probe
   {
     const double perEcho = crossSectionPerEcho(echo);
     const MovingStatistics statistics = movingStatistics(*sources.scene, echo, InterfaceModel::Acoustic);
-    for (const PointScatterer& point : movingScatterers(*sources.scene, statistics, partOf(progress, 0.7, 0.8)))
+    const MovingPart part = movingPart(*sources.scene, statistics, lines, echo, InterfaceModel::Acoustic);
+    for (const PointScatterer& point : movingScatterers(*sources.scene, statistics, part, partOf(progress, 0.7, 0.8)))
     {
       walk.add(walk.frame.fromWorld(point.positionMm), perEcho * double(point.amplitude), out);
     }

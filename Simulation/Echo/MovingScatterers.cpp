@@ -4,13 +4,18 @@
 #include "Core/Policy.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/BeamModel.h"
+#include "Echo/BrickWalk.h"
 #include "Echo/EchoSetup.h"
+#include "Echo/FieldSight.h"
 #include "Echo/NestedScatterers.h"
+#include "Echo/Pulse.h"
 #include "Echo/TissueScatterers.h"
 #include "Kernel/DetailCode.h"
+#include "Scene/VoxelBox.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace sono {
 
@@ -131,7 +136,60 @@ private:
   const MovingStatistics& statistics_;
 };
 
+/// The voxels whose centres lie in a cube.
+VoxelBox voxelsIn(const Scene& scene, const Vec3i& cube)
+{
+  const Vec3d spacing = scene.placement().spacingMm;
+  const auto firstFrom = [&](const Vec3i& c) { return Vec3i(glm::ceil(Vec3d(c) * movingCubeMm / spacing - 0.5)); };
+  const Vec3i size = scene.placement().size;
+  return { glm::clamp(firstFrom(cube), Vec3i(0), size), glm::clamp(firstFrom(cube + 1), Vec3i(0), size) };
+}
+
+Vec3d middleOf(const Scene& scene)
+{
+  return 0.5 * Vec3d(scene.placement().size) * scene.placement().spacingMm;
+}
+
+/// Of the bricks into which a part's scatterers are sorted: some hundred in one.
+double sortingEdgeMm(const MovingStatistics& statistics)
+{
+  return std::max(1.0, 4.0 * statistics.cellMm);
+}
+
 } // namespace
+
+MovingPart movingPart(const Scene& scene, const MovingStatistics& statistics, const std::vector<ScanLine>& lines,
+                      const EchoSettings& settings, InterfaceModel model)
+{
+  MovingPart part;
+  part.isAll = statistics.cellMm >= smallMovingCellMm;
+  if (part.isAll)
+  {
+    return part;
+  }
+  const BeamModel beams(settings, model);
+  const BrickGrid grid{ float(movingCubeMm), Vec3f(0.0f),
+                        Vec3f(Vec3d(scene.placement().size) * scene.placement().spacingMm) };
+  // Half a voxel beyond the cube lie its scatterers, and so far reaches a brick in which they are sorted.
+  const double marginMm = 0.5 * glm::length(scene.placement().spacingMm) + std::sqrt(3.0) * sortingEdgeMm(statistics);
+  std::optional<FieldSight> sight;
+  if (settings.field)
+  {
+    sight.emplace(*settings.field, float(movingCubeMm + 2.0 * marginMm));
+  }
+  const double depthMm =
+    (settings.sampleCount() + PulseKernel(settings).half()) * settings.sampleMm() * deepestPerRange;
+  std::vector<BeamReach> reaches;
+  for (const ScanLine& line : lines)
+  {
+    BeamReach reach{ beams.beamOf(line, scene.localFromWorld(line.originMm), scene.rotationToLocal()), float(depthMm),
+                     sight ? &*sight : nullptr, beams.reachTable(), beams.arraySight() };
+    reach.marginMm = float(marginMm);
+    reaches.push_back(reach);
+  }
+  forSeenBricks(grid, reaches, [&](const Vec3i& cube, const std::vector<std::size_t>&) { part.cubes.push_back(cube); });
+  return part;
+}
 
 MovingStatistics movingStatistics(const Scene& scene, const EchoSettings& settings, InterfaceModel model)
 {
@@ -171,40 +229,57 @@ MovingStatistics movingStatistics(const Scene& scene, const EchoSettings& settin
 }
 
 std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingStatistics& statistics,
-                                             const Progress& progress)
+                                             const MovingPart& part, const Progress& progress)
 {
   const InVoxel inVoxel(scene, statistics);
   const TissueMotion& motion = *scene.motion();
   const Vec3i size = scene.placement().size;
-  std::vector<std::vector<PointScatterer>> ofSlices(std::size_t(size.z));
-  parallelFor(size.z, progress, [&](int k) {
-    std::size_t at = std::size_t(k) * std::size_t(size.x) * std::size_t(size.y);
-    for (int j = 0; j < size.y; ++j)
+  const auto addBox = [&](const VoxelBox& box, std::vector<PointScatterer>& points) {
+    for (int k = box.first.z; k < box.last.z; ++k)
     {
-      for (int i = 0; i < size.x; ++i, ++at)
+      for (int j = box.first.y; j < box.last.y; ++j)
       {
-        const int tissue = scene.tissueVoxels()[at];
-        if (statistics.probability[std::size_t(tissue)] > 0.0f && motion.moves(scene.volume().voxels[at]))
+        std::size_t at =
+          std::size_t(box.first.x) + std::size_t(size.x) * (std::size_t(j) + std::size_t(size.y) * std::size_t(k));
+        for (int i = box.first.x; i < box.last.x; ++i, ++at)
         {
-          const float factor = scene.detail().empty() ? 1.0f : detailFactor(scene.detail()[at]);
-          inVoxel.add({ i, j, k }, tissue, factor, ofSlices[std::size_t(k)]);
+          const int tissue = scene.tissueVoxels()[at];
+          if (statistics.probability[std::size_t(tissue)] > 0.0f && motion.moves(scene.volume().voxels[at]))
+          {
+            const float factor = scene.detail().empty() ? 1.0f : detailFactor(scene.detail()[at]);
+            inVoxel.add({ i, j, k }, tissue, factor, points);
+          }
         }
       }
     }
+  };
+  // Slice by slice, or cube by cube.
+  std::vector<std::vector<PointScatterer>> ofBoxes(part.isAll ? std::size_t(size.z) : part.cubes.size());
+  parallelFor(int(ofBoxes.size()), progress, [&](int n) {
+    addBox(part.isAll ? VoxelBox{ { 0, 0, n }, { size.x, size.y, n + 1 } }
+                      : voxelsIn(scene, part.cubes[std::size_t(n)]),
+           ofBoxes[std::size_t(n)]);
   });
   std::vector<PointScatterer> points;
   std::size_t count = 0;
-  for (const auto& slice : ofSlices)
+  for (const auto& box : ofBoxes)
   {
-    count += slice.size();
+    count += box.size();
   }
   points.reserve(count);
-  for (auto& slice : ofSlices)
+  for (auto& box : ofBoxes)
   {
-    points.insert(points.end(), slice.begin(), slice.end());
-    slice = {};
+    points.insert(points.end(), box.begin(), box.end());
+    box = {};
   }
   return points;
+}
+
+PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
+                             const std::vector<PointScatterer>& points)
+{
+  return part.isAll ? PointScatterers(points)
+                    : PointScatterers(points, scene.worldFromLocal(middleOf(scene)), sortingEdgeMm(statistics));
 }
 
 } // namespace sono

@@ -4,6 +4,7 @@
 #include "Echo/EchoSettings.h"
 #include "Echo/PointScatterers.h"
 #include "Kernel/Scatterer.h"
+#include "Probe/ScanGeometry.h"
 #include "Scene/Scene.h"
 #include "Trace/TraceSettings.h"
 
@@ -35,11 +36,33 @@ struct MovingStatistics
 /// stand still. Throws Error for settings out of range.
 MovingStatistics movingStatistics(const Scene& scene, const EchoSettings& settings, InterfaceModel model);
 
+/// Which of a scene's moving scatterers are made. Where cells are small, as of a probe for what lies near the skin, all
+/// of a heart's would be some 10^8: then those that lines may hear, by cubes of movingCubeMm.
+struct MovingPart
+{
+  bool isAll = true;
+  std::vector<Vec3i> cubes; ///< in the scene's coordinates, ascending: cube c fills [c, c + 1) * movingCubeMm
+
+  bool operator==(const MovingPart& o) const { return isAll == o.isAll && cubes == o.cubes; }
+};
+
+constexpr double movingCubeMm = 8.0;
+constexpr double smallMovingCellMm = 0.3; ///< chosen: cells below it are small
+
+/// Of lines in the world. `statistics` are those of the same arguments. Throws Error for settings out of range.
+MovingPart movingPart(const Scene& scene, const MovingStatistics& statistics, const std::vector<ScanLine>& lines,
+                      const EchoSettings& settings, InterfaceModel model);
+
 /// The scatterers of the scene's moving labels, where its motion brings them: a hash of the cell in the reference phase
 /// places each there, at X, and x = X + u(x) is where it is now. A scatterer whose label is not a moving one at x is
 /// left out. Where the field folds, there are none. The order depends on nothing but the arguments. The scene has a
 /// motion.
 std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingStatistics& statistics,
-                                             const Progress& progress = {});
+                                             const MovingPart& part = {}, const Progress& progress = {});
+
+/// These and the user's, sorted. Of a part in bricks that do not depend on which part it is, each of which is whole
+/// where a line of it hears one: another part gives the same lines, to the bit.
+PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
+                             const std::vector<PointScatterer>& points);
 
 } // namespace sono

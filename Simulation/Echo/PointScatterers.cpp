@@ -58,16 +58,28 @@ int indexOf(const PointTable& table, const Vec3i& brick)
 PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
 {
   requireValid(points);
+  for (const PointScatterer& p : points)
+  {
+    originMm_ += p.positionMm / double(points.size());
+  }
+  sort(points, std::nullopt);
+}
+
+PointScatterers::PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm)
+  : originMm_(originMm)
+{
+  requireValid(points);
+  sort(points, edgeMm);
+}
+
+void PointScatterers::sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm)
+{
   auto table = std::make_shared<PointTable>();
   table_ = table;
   if (points.empty())
   {
     table->begin.assign(1, 0);
     return;
-  }
-  for (const PointScatterer& p : points)
-  {
-    originMm_ += p.positionMm / double(points.size());
   }
   Vec3d low(std::numeric_limits<double>::max());
   Vec3d high(-std::numeric_limits<double>::max());
@@ -76,7 +88,7 @@ PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
     low = glm::min(low, p.positionMm - originMm_);
     high = glm::max(high, p.positionMm - originMm_);
   }
-  grid_.edgeMm = table->edgeMm = float(brickEdge(high - low, points.size()));
+  grid_.edgeMm = table->edgeMm = float(edgeMm ? *edgeMm : brickEdge(high - low, points.size()));
   const double edge = grid_.edgeMm;
   table->firstBrick = Vec3i(glm::floor(low / edge));
   table->bricks = Vec3i(glm::floor(high / edge)) - table->firstBrick + 1;

@@ -1,11 +1,14 @@
+#include "Echo/ComputedBeam.h"
 #include "Echo/MovingScatterers.h"
 #include "EchoScenes.h"
 #include "ErrorText.h"
+#include "Probe/ArrayField.h"
 #include "Simulator.h"
 #include "TestScenes.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -246,6 +249,44 @@ TEST(TissueMotion, APhaseThatComesBackHasItsScatterersAsBefore)
   Simulator fresh(moved);
   simulator.setScene(moved);
   EXPECT_EQ(samplesOf(simulator), samplesOf(fresh));
+}
+
+TEST(TissueMotion, OfSmallCellsThoseThatALineMayHearAreMade)
+{
+  const std::function<Vec3d(const Vec3d&)> wave = [](const Vec3d& p) {
+    return Vec3d(std::sin(0.2 * p.z), 0.0, std::cos(0.1 * p.x));
+  };
+  const auto scene = block(everywhere, &wave);
+  EchoSettings s = settings();
+  s.centreFrequencyMHz = 4.0;
+  for (const BeamForm beam : { BeamForm::Gaussian, BeamForm::Computed })
+  {
+    s.beam = beam;
+    s.aperture = ProbeSettings().aperture();
+    s.arrayField = beam == BeamForm::Computed ? std::make_shared<const ArrayField>(elementsOf(s), s.depthMm) : nullptr;
+    const MovingStatistics statistics = movingStatistics(*scene, s, InterfaceModel::Acoustic);
+    const std::vector<PointScatterer> all = movingScatterers(*scene, statistics);
+    const auto partOf = [&](const std::vector<ScanLine>& lines) {
+      return movingPart(*scene, statistics, lines, s, InterfaceModel::Acoustic);
+    };
+    const std::vector<ScanLine> two = { fan()[3], makeLine({ 30.0, 4.0, 0.0 }, { -0.6, 0.0, 0.8 }) };
+    const MovingPart part = partOf(two);
+    ASSERT_FALSE(part.isAll);
+    const std::vector<PointScatterer> some = movingScatterers(*scene, statistics, part);
+    EXPECT_LT(some.size(), all.size() * 9 / 10);
+    const auto samplesOf = [&](const std::vector<PointScatterer>& points) {
+      const PointScatterers sorted = sortedMoving(*scene, statistics, part, points);
+      return formRf({ nullptr, nullptr, &sorted, InterfaceModel::Acoustic, nullptr }, two, s, {}).iq;
+    };
+    const auto wanted = samplesOf(all);
+    EXPECT_EQ(samplesOf(some), wanted);
+    EXPECT_EQ(samplesOf(movingScatterers(*scene, statistics, partOf({ two[0], two[1], fan()[15] }))), wanted);
+    EXPECT_GT(std::count_if(wanted.begin(), wanted.end(), [](const auto& v) { return std::norm(v) > 0.0f; }), 1000);
+  }
+  s.centreFrequencyMHz = 2.5;
+  EXPECT_TRUE(
+    movingPart(*scene, movingStatistics(*scene, s, InterfaceModel::Acoustic), fan(), s, InterfaceModel::Acoustic)
+      .isAll);
 }
 
 TEST(TissueMotion, OnlyMovingLabelsRide)
