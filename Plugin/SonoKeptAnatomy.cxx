@@ -1,6 +1,7 @@
 #include "SonoKeptAnatomy.h"
 
 #include "SonoTell.h"
+#include "SonoUltrasoundHere.h"
 
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
@@ -12,7 +13,6 @@
 #include "vtkSonoUltrasound.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace {
 
@@ -26,7 +26,7 @@ bool isAnatomy(const pqDataRepresentation* shown, vtkSMProxy* source)
 
 SonoKeptAnatomy::SonoKeptAnatomy(vtkSMProxy* source)
 {
-  if (std::strcmp(source->GetXMLName(), "SonoUltrasound") != 0)
+  if (!sonoIsUltrasound(source))
   {
     return;
   }

@@ -2,6 +2,7 @@
 
 #include "SonoLayout.h"
 #include "SonoPipelineItem.h"
+#include "SonoUltrasoundHere.h"
 
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
@@ -22,7 +23,6 @@
 #include "vtkSonoUltrasound.h"
 
 #include <algorithm>
-#include <cstring>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -126,7 +126,8 @@ std::vector<pqPipelineSource*> ultrasounds()
 {
   const auto all = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
   std::vector<pqPipelineSource*> found;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(found), sonoIsUltrasound);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(found),
+               [](const pqPipelineSource* source) { return sonoIsUltrasound(source->getProxy()); });
   return found;
 }
 
@@ -165,11 +166,6 @@ SonoSplit sonoSplitScreen(pqPipelineSource* first)
   return show("Split Screen", first, second);
 }
 
-bool sonoIsUltrasound(const pqPipelineSource* source)
-{
-  return std::strcmp(source->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
-}
-
 std::vector<std::vector<vtkSMProxy*>> sonoProbeSharers()
 {
   std::map<std::pair<vtkSMProxy*, int>, std::vector<vtkSMProxy*>> groups;
@@ -197,7 +193,7 @@ SonoPlanes sonoPlanesOf(const pqPipelineSource* source)
   bool isIn = false;
   for (pqPipelineSource* each : ultrasounds())
   {
-    if (sonoIsUltrasound(source) && inputOf(each) == inputOf(source))
+    if (sonoIsUltrasound(source->getProxy()) && inputOf(each) == inputOf(source))
     {
       pqPipelineSource** place = planeOf(each) == vtkSonoProbeSource::FIRST_PLANE    ? &planes.first
                                  : planeOf(each) == vtkSonoProbeSource::SECOND_PLANE ? &planes.second

@@ -13,8 +13,6 @@ struct SonoSplit
   pqView* body = nullptr; ///< in which the probe stands
 };
 
-bool sonoIsUltrasound(const pqPipelineSource* source);
-
 /// Makes a second Simulate Ultrasound of the same input, with the settings of the first, and shows the flat images of
 /// both side by side. Both share a probe; all else is each one's own.
 SonoSplit sonoSplitScreen(pqPipelineSource* first);

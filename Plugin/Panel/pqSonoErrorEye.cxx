@@ -1,6 +1,7 @@
 #include "pqSonoErrorEye.h"
 
 #include "SonoFlatView.h"
+#include "SonoUltrasoundHere.h"
 
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
@@ -29,8 +30,7 @@ pqDataRepresentation* shownIn(pqView* view, pqPipelineSource* ultrasound, int po
 bool isOf(pqDataRepresentation* shown, int port)
 {
   pqOutputPort* output = shown->getOutputPortFromInput();
-  return output && output->getPortNumber() == port &&
-         std::strcmp(output->getSource()->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+  return output && output->getPortNumber() == port && sonoIsUltrasound(output->getSource()->getProxy());
 }
 
 void makeMap(vtkSMProxy* ultrasound, vtkSMProxy* shown)

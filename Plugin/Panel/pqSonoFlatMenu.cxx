@@ -5,6 +5,7 @@
 #include "SonoOutputFilter.h"
 #include "SonoPipelineItem.h"
 #include "SonoSplitScreen.h"
+#include "SonoUltrasoundHere.h"
 #include "pqSonoCaliperFollow.h"
 #include "pqSonoKeptAlike.h"
 
@@ -84,8 +85,7 @@ bool isShown(pqRenderView* view, const char* kind)
 pqPipelineSource* ultrasoundOf(pqRenderView* view)
 {
   const SonoShownImage image = view ? sonoFlatImageOf(view->getProxy()) : SonoShownImage();
-  return image.source && std::strcmp(image.source->GetXMLName(), "SonoUltrasound") == 0 ? sonoPipelineItem(image.source)
-                                                                                        : nullptr;
+  return sonoIsUltrasound(image.source) ? sonoPipelineItem(image.source) : nullptr;
 }
 
 /// Where it can be read and dragged, each a line below the `before` others.

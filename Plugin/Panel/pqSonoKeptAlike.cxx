@@ -1,6 +1,7 @@
 #include "pqSonoKeptAlike.h"
 
 #include "SonoSplitScreen.h"
+#include "SonoUltrasoundHere.h"
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
@@ -45,7 +46,7 @@ pqSonoKeptAlike::~pqSonoKeptAlike() = default;
 
 void pqSonoKeptAlike::watch(pqPipelineSource* source)
 {
-  if (sonoIsUltrasound(source))
+  if (sonoIsUltrasound(source->getProxy()))
   {
     for (const char* name : { property_, "Input" })
     {

@@ -4,6 +4,7 @@
 #include "SonoFreeze.h"
 #include "SonoMovingViews.h"
 #include "SonoTell.h"
+#include "SonoUltrasoundHere.h"
 #include "SonoWaiting.h"
 #include "SonoWindows.h"
 #include "vtkSonoProbeRepresentation.h"
@@ -40,7 +41,7 @@ const std::array<const char*, 4> pqSonoProbeWidget::PoseFunctions{ "PositionMm",
 /// Which has an anatomy.
 bool pqSonoProbeWidget::isUltrasound() const
 {
-  return this->proxy()->GetXMLName() == std::string("SonoUltrasound");
+  return sonoIsUltrasound(this->proxy());
 }
 
 pqSonoProbeWidget::~pqSonoProbeWidget() = default;

@@ -4,6 +4,7 @@
 #include "SonoScannerSettings.h"
 #include "SonoSplitScreen.h"
 #include "SonoStore.h"
+#include "SonoUltrasoundHere.h"
 #include "pqSonoBeat.h"
 #include "pqSonoCine.h"
 #include "pqSonoKeptAlike.h"
@@ -19,6 +20,7 @@
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "vtkCommand.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
@@ -214,7 +216,7 @@ void pqSonoScannerDock::say(const QString& sentence)
 
 void pqSonoScannerDock::follow(pqPipelineSource* selected)
 {
-  const bool isOurs = selected && std::strcmp(selected->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+  const bool isOurs = selected && sonoIsUltrasound(selected->getProxy());
   if (isOurs && selected != source_) // another selection leaves it as it is
   {
     source_ = selected;
@@ -225,6 +227,14 @@ void pqSonoScannerDock::follow(pqPipelineSource* selected)
 void pqSonoScannerDock::fill()
 {
   delete settings_;
+  for (const auto& [property, observer] : watched_)
+  {
+    if (property)
+    {
+      property->RemoveObserver(observer);
+    }
+  }
+  watched_.clear();
   firstAxial_.clear();
   firstLateral_.clear();
   cine_->follow(source_);
@@ -236,16 +246,18 @@ void pqSonoScannerDock::fill()
       source_->getProxy(), [this] { markChanged(); }, controls_);
     rows_->insertWidget(rows_->count() - 1, settings_);
     scroll_->setMinimumWidth(controls_->minimumSizeHint().width() + scroll_->verticalScrollBar()->sizeHint().width());
-    for (const char* name : { "Lateral", "ScanKind" })
-    {
-      pqCoreUtilities::connect(source_->getProxy()->GetProperty(name), vtkCommand::ModifiedEvent, this,
-                               SLOT(showPlane()));
-    }
-    pqCoreUtilities::connect(source_->getProxy()->GetProperty(sonoFreeze), vtkCommand::ModifiedEvent, this,
-                             SLOT(showFrozen()));
+    this->watch("Lateral", SLOT(showPlane()));
+    this->watch("ScanKind", SLOT(showPlane()));
+    this->watch(sonoFreeze, SLOT(showFrozen()));
   }
   this->say(source_ ? QString() : tr("Select a Simulate Ultrasound in the pipeline browser; this panel then sets it."));
   this->enable();
+}
+
+void pqSonoScannerDock::watch(const char* property, const char* slot)
+{
+  vtkSMProperty* watched = source_->getProxy()->GetProperty(property);
+  watched_.emplace_back(watched, pqCoreUtilities::connect(watched, vtkCommand::ModifiedEvent, this, slot));
 }
 
 /// Keys act while the panel can be seen.

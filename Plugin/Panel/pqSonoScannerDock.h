@@ -1,9 +1,12 @@
 #pragma once
 
+#include "vtkWeakPointer.h"
+
 #include <QDockWidget>
 #include <QPointer>
 #include <QStringList>
 
+#include <utility>
 #include <vector>
 
 class QAction;
@@ -16,6 +19,7 @@ class pqSonoBeat;
 class pqSonoCine;
 class pqSonoPath;
 class pqSonoProbeWidget;
+class vtkSMProperty;
 
 /// The scanner's panel: the properties of the Simulate Ultrasound that was selected last that a sonographer knows, in
 /// ParaView's own widgets, and freeze, cine loop, store, flip and the other plane. Like the properties panel it changes
@@ -37,6 +41,7 @@ private:
   void addNudge(const char* name, const QString& text, const QKeySequence& key, const char* property, double step);
   void follow(pqPipelineSource* selected);
   void fill();
+  void watch(const char* property, const char* slot);
   void enable();
   void markChanged();
   void nudge(const char* property, double step);
@@ -61,6 +66,8 @@ private:
   QWidget* controls_;
   QVBoxLayout* rows_;
   QPointer<QWidget> settings_; // of the source
+  /// Properties of the source, and who looks at them.
+  std::vector<std::pair<vtkWeakPointer<vtkSMProperty>, unsigned long>> watched_;
   pqSonoCine* cine_;
   pqSonoPath* path_;
   pqSonoBeat* beat_;

@@ -3,6 +3,7 @@
 #include "SonoExamples.h"
 #include "SonoLayout.h"
 #include "SonoMenu.h"
+#include "SonoUltrasoundHere.h"
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
 #include "pqSonoLoading.h"
@@ -34,13 +35,11 @@
 #include <QTimer>
 #include <QToolButton>
 
-#include <cstring>
-
 namespace {
 
 bool isUltrasound(pqPipelineSource* source)
 {
-  return source && std::strcmp(source->getProxy()->GetXMLName(), "SonoUltrasound") == 0;
+  return source && sonoIsUltrasound(source->getProxy());
 }
 
 /// Whether Simulate Ultrasound takes it.
