@@ -1,9 +1,11 @@
 #include "SonoDisplayDefaults.h"
 
 #include "SonoFirstPose.h"
+#include "SonoGreyColors.h"
 #include "SonoLabelColors.h"
 #include "SonoLayout.h"
 #include "SonoPythonRecord.h"
+#include "SonoUltrasoundHere.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
@@ -37,7 +39,7 @@ bool equal(const char* a, const char* b)
 /// Whether an output is that of a stage, be it the stage's own or the one that Simulate Ultrasound passes on.
 bool isOutput(vtkSMSourceProxy* source, unsigned int port, const char* stage, unsigned int portOfAll)
 {
-  return equal(source->GetXMLName(), stage) || (equal(source->GetXMLName(), "SonoUltrasound") && port == portOfAll);
+  return equal(source->GetXMLName(), stage) || (sonoIsUltrasound(source) && port == portOfAll);
 }
 
 void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsigned int port)
@@ -59,7 +61,7 @@ void showTranslucent(vtkSMProxy* representation, vtkSMSourceProxy* scene, unsign
 void hideUnscanned(vtkSMSessionProxyManager* manager)
 {
   vtkNew<vtkSMTransferFunctionManager> tables;
-  vtkSMProxy* colors = tables->GetColorTransferFunction("BMode", manager);
+  vtkSMProxy* colors = sonoGreyColors("BMode", manager);
   vtkSMProxy* opacity = tables->GetOpacityTransferFunction("BMode", manager);
   const double points[] = { 0.0, 0.0, 0.5, 0.0, 1.0, 1.0, 0.5, 0.0, 255.0, 1.0, 0.5, 0.0 };
   vtkSMPropertyHelper(opacity, "Points").Set(points, 12);
@@ -92,8 +94,7 @@ bool isRays(vtkSMSourceProxy* source, unsigned int port)
   {
     return port >= 2;
   }
-  return equal(source->GetXMLName(), "SonoUltrasound") &&
-         (port == vtkSonoUltrasound::RAY_PATHS || port == vtkSonoUltrasound::BOUNDARY_HITS);
+  return sonoIsUltrasound(source) && (port == vtkSonoUltrasound::RAY_PATHS || port == vtkSonoUltrasound::BOUNDARY_HITS);
 }
 
 void showRays(vtkSMProxy* representation)
@@ -228,7 +229,7 @@ public:
       return;
     }
     auto* source = vtkSMSourceProxy::SafeDownCast(registered->Proxy);
-    if (source && equal(registered->GroupName, "sources") && equal(source->GetXMLName(), "SonoUltrasound"))
+    if (equal(registered->GroupName, "sources") && sonoIsUltrasound(source))
     {
       sonoSetFirstPose(source);
     }

@@ -1,7 +1,9 @@
 #include "SonoLayout.h"
 
 #include "SonoDrawNow.h"
+#include "SonoGreyColors.h"
 #include "SonoOutputFilter.h"
+#include "SonoUltrasoundHere.h"
 
 #include "vtkNew.h"
 #include "vtkSMPVRepresentationProxy.h"
@@ -14,7 +16,6 @@
 #include "vtkSMSettingsProxy.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
-#include "vtkSMTransferFunctionManager.h"
 #include "vtkSMTransferFunctionProxy.h"
 #include "vtkSMViewLayoutProxy.h"
 #include "vtkSmartPointer.h"
@@ -22,7 +23,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -137,8 +137,7 @@ void showPlainly(vtkSMSourceProxy* source, unsigned int port, std::initializer_l
 void showOpaque(vtkSMProxy* representation)
 {
   SM_SCOPED_TRACE(PropertiesModified).arg("proxy", representation);
-  vtkNew<vtkSMTransferFunctionManager> tables;
-  vtkSMProxy* greys = tables->GetColorTransferFunction("BModeFlat", representation->GetSessionProxyManager());
+  vtkSMProxy* greys = sonoGreyColors("BModeFlat", representation->GetSessionProxyManager());
   vtkSMTransferFunctionProxy::RescaleTransferFunction(greys, 0.0, 255.0);
   vtkSMPropertyHelper(representation, "LookupTable").Set(greys);
   representation->UpdateVTKObjects();
@@ -343,8 +342,7 @@ void sonoDrawEasily(vtkSMSessionProxyManager* manager)
     for (unsigned int i = 0; i < shown.GetNumberOfElements(); ++i)
     {
       const vtkSMPropertyHelper input(shown.GetAsProxy(i), "Input", true);
-      if (input.GetAsProxy() && std::strcmp(input.GetAsProxy()->GetXMLName(), "SonoUltrasound") == 0 &&
-          input.GetOutputPort() == vtkSonoUltrasound::ANATOMY)
+      if (sonoIsUltrasound(input.GetAsProxy()) && input.GetOutputPort() == vtkSonoUltrasound::ANATOMY)
       {
         drawEasily(views->GetProxy());
       }

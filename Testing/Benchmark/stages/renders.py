@@ -9,7 +9,7 @@ if "DISPLAY" not in os.environ:
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1400x900x24", "pvpython", sys.argv[0]])
 
 from paraview import simple
-from paraview.servermanager import Fetch
+from paraview.servermanager import CreateProxy, Fetch
 from sonovdb.vtkSonoFilters import vtkSonoUltrasound
 from sonovdb.vtkSonoWidgets import vtkSonoProbeRepresentation
 
@@ -41,8 +41,8 @@ def view_of(filter, ports, position, up):
     view = simple.CreateView("RenderView", ViewSize=SIZE, UseFXAA=0, UseLight=0)
     shown = {port: simple.Show(simple.OutputPort(filter, port), view) for port in ports}
     if vtkSonoUltrasound.FLAT_IMAGE in shown:  # without opacity, as the layout's
-        greys = simple.GetColorTransferFunction("BModeFlat")
-        greys.RescaleTransferFunction(0, 255)
+        greys = CreateProxy("lookup_tables", "SonoColorTable")
+        greys.RGBPoints = [0, 0, 0, 0, 255, 1, 1, 1]
         shown[vtkSonoUltrasound.FLAT_IMAGE].LookupTable = greys
     simple.ResetCamera(view)
     camera = view.GetActiveCamera()

@@ -1,0 +1,43 @@
+#include "SonoGreyColors.h"
+
+#include "vtkNew.h"
+#include "vtkSMParaViewPipelineController.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMTransferFunctionManager.h"
+#include "vtkSMTransferFunctionProxy.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+
+namespace {
+
+constexpr const char* kind = "SonoColorTable";
+
+/// ParaView finds a colour map by this name, whatever its kind.
+std::string nameOf(const char* array)
+{
+  return std::string(array) + "." + kind;
+}
+
+bool hasColors(const char* array, vtkSMSessionProxyManager* manager)
+{
+  return manager->GetProxy("lookup_tables", nameOf(array).c_str()) ||
+         manager->GetProxy("lookup_tables", (std::string(array) + ".PVLookupTable").c_str());
+}
+
+} // namespace
+
+vtkSMProxy* sonoGreyColors(const char* array, vtkSMSessionProxyManager* manager)
+{
+  if (!hasColors(array, manager))
+  {
+    auto colors = vtkSmartPointer<vtkSMProxy>::Take(manager->NewProxy("lookup_tables", kind));
+    vtkNew<vtkSMParaViewPipelineController> controller;
+    controller->InitializeProxy(colors);
+    vtkSMTransferFunctionProxy::ApplyPreset(colors, "Grayscale", false);
+    controller->RegisterColorTransferFunctionProxy(colors, nameOf(array).c_str());
+    colors->UpdateVTKObjects();
+  }
+  vtkNew<vtkSMTransferFunctionManager> tables;
+  return tables->GetColorTransferFunction(array, manager);
+}
