@@ -27,8 +27,8 @@ LAST = 20
 LEAVING_S = 60
 
 DANGLING = r"Input port 0 of algorithm vtkSono\w+ \(0x[0-9a-f]+\) has 0 connections but is not optional"
-# What follows it, where the filter is shown.
-AFTER_DANGLING = r"vtkPVGeometryFilter .* returned failure for request.*REQUEST_DATA_OBJECT"
+# What follows it, where the filter is shown or another one's input.
+AFTER_DANGLING = r"vtkPV(GeometryFilter|Threshold) .* returned failure for request.*REQUEST_DATA_OBJECT"
 # What ParaView itself says, each with its reason. Ours comes from Filters/SonoStage.cxx and need not be here.
 KNOWN = {
     # So says the Slice of a Wavelet, too, when somebody clicks on it with the right button after its source was changed and

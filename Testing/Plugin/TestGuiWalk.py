@@ -58,7 +58,7 @@ class TestGuiWalk(GuiCase):
                         person.click(*place)
                         person.move(*AWAY)
                     greys.append(self.await_picture(person))
-                    time.sleep(2)
+                    self.await_still(person)
                     save_screen(pathlib.Path.cwd() / "walk.png", self.frame_buffer, WINDOW, "100%")
                 except Exception as failure:  # to be told by the test, not by the thread
                     failures.append(failure)
@@ -118,6 +118,16 @@ class TestGuiWalk(GuiCase):
             if len(greys) > 40 or person.ended.wait(0.2):
                 break
         return len(greys)
+
+    @staticmethod
+    def await_still(person, looks=30):
+        """Until the body has been drawn, too: nothing on the screen changes for two seconds."""
+        before = None
+        for _ in range(looks):
+            now = read_screen(person.frame_buffer)
+            if now == before or person.ended.wait(2):
+                break
+            before = now
 
 
 if __name__ == "__main__":

@@ -22,8 +22,9 @@ UNTOUCHED = ("Help", "AdvancedButton", "SearchLineEdit", "ViewSaveAsDefaults")
 
 
 def choose(hands):
-    if hands.heavy:
-        hands.heavy = False
+    # Not twice in a row: what stays slow may be what no setting makes lighter.
+    hands.lightened = hands.heavy and not hands.lightened
+    if hands.lightened:
         return lighten
     if hands.number % 200 == 150:
         return start_anew

@@ -46,7 +46,8 @@ class Hands:
         self.rng = None
         self.number = 0
         self.attempts = 0
-        self.heavy = False
+        self.heavy = False  # whether what was done last took long
+        self.lightened = False  # and was to make it light
 
     def note(self, text):
         """What is about to be done."""
