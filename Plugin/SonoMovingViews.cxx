@@ -1,9 +1,13 @@
 #include "SonoMovingViews.h"
 
+#include "SonoFlatView.h"
 #include "SonoTell.h"
+#include "SonoUltrasoundHere.h"
 
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "pqView.h"
@@ -23,6 +27,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 namespace {
 
@@ -65,6 +70,17 @@ bool isSlow(pqView* view)
 {
   auto* render = vtkSMRenderViewProxy::SafeDownCast(view->getProxy());
   return render && render->GetRenderer()->GetLastRenderTimeInSeconds() > slowS;
+}
+
+/// Whether an output is another one for other greys.
+bool showsGrey(vtkSMProxy* source, unsigned int port, bool withScale)
+{
+  const std::string name = source->GetXMLName();
+  if (sonoIsUltrasound(source))
+  {
+    return sonoImageKind(source, port) != SonoImageKind::None;
+  }
+  return name == "SonoFlatScale" ? withScale : name != "SonoALine";
 }
 
 void drawOnInteraction(pqView* view, bool wanted)
@@ -162,11 +178,27 @@ void SonoMovingViews::unmute()
   this->Muted.clear();
 }
 
+bool SonoMovingViews::isMarked(const pqDataRepresentation* shown, Marked which) const
+{
+  if (which == Marked::All)
+  {
+    return true;
+  }
+  if (this->Anatomy->holds(shown))
+  {
+    return false;
+  }
+  const pqOutputPort* output = shown->getOutputPortFromInput();
+  return which == Marked::ButAnatomy || !output ||
+         showsGrey(output->getSource()->getProxy(), static_cast<unsigned int>(output->getPortNumber()),
+                   which == Marked::GreyAndScale);
+}
+
 void SonoMovingViews::markModified(pqView* view, Marked which)
 {
   for (const auto& shown : this->Shown.value(view))
   {
-    if (shown && (which == Marked::All || !this->Anatomy->holds(shown)))
+    if (shown && this->isMarked(shown, which))
     {
       sonoTell(shown->getProxy(), "MarkModified");
     }
@@ -244,14 +276,14 @@ void SonoMovingViews::drawInFull()
 }
 
 /// The views that are no slow ones; false: there are none.
-bool SonoMovingViews::drawQuick()
+bool SonoMovingViews::drawQuick(Marked which)
 {
   bool isAny = false;
   for (pqView* view : this->Views)
   {
     if (view && !this->Slow.contains(view) && vtkSMRenderViewProxy::SafeDownCast(view->getProxy()))
     {
-      this->markModified(view, Marked::ButAnatomy);
+      this->markModified(view, which);
       view->forceRender();
       isAny = true;
     }
@@ -259,9 +291,9 @@ bool SonoMovingViews::drawQuick()
   return isAny;
 }
 
-void SonoMovingViews::drawGrey()
+void SonoMovingViews::drawGrey(bool withScale)
 {
-  if (!this->drawQuick())
+  if (!this->drawQuick(withScale ? Marked::GreyAndScale : Marked::Grey))
   {
     return this->draw();
   }

@@ -48,8 +48,9 @@ public:
 
   /// Runs the pipeline and shows a picture on the way.
   void draw();
-  /// The same of another grey: slow views wait until all rests, unless there are no others.
-  void drawGrey();
+  /// The same of another grey: slow views wait until all rests, unless there are no others, and what does not show
+  /// greys stays as it is. `withScale`: the bar beside a flat image has changed, too.
+  void drawGrey(bool withScale);
   /// Has the picture of the probe that rests on the screen, in slow views as on the way, so that it need not wait until
   /// these are drawn in full; then drawInFull.
   void drawRested();
@@ -65,10 +66,13 @@ private:
   enum class Marked
   {
     All,
-    ButAnatomy
+    ButAnatomy,
+    GreyAndScale,
+    Grey
   };
+  bool isMarked(const pqDataRepresentation* shown, Marked which) const;
   void markModified(pqView* view, Marked which);
-  bool drawQuick();
+  bool drawQuick(Marked which = Marked::ButAnatomy);
   void lighten();
   void makeLamp();
 

@@ -22,11 +22,13 @@
 
 #include <QGuiApplication>
 
+#include <algorithm>
 #include <utility>
 
 namespace {
 
 constexpr int settledMs = 300;
+constexpr int burstMs = 100;
 
 /// Of a probe, what no scan line stands by: how it is scanned while it moves.
 bool isOfMoving(const std::string& name)
@@ -130,7 +132,7 @@ bool pqSonoLiveSettings::isLive() const
 /// Before a panel marks the source as one that waits for Apply.
 void pqSonoLiveSettings::begin()
 {
-  if (!this->Frame.isActive() && !this->Rest.isActive() && !this->Shown)
+  if (!this->IsAsked && !this->Frame.isActive() && !this->Rest.isActive() && !this->Shown)
   {
     this->NothingWaits = !sonoAnyWaits();
     this->Before.clear();
@@ -142,8 +144,26 @@ void pqSonoLiveSettings::displayChanged()
   if (!this->IsSetting && this->isLive())
   {
     this->begin();
-    this->Frame.start();
+    this->askForStep();
   }
+}
+
+/// A first step before the window is painted for the slider that has moved: in software that takes as long as the
+/// picture, and would be done twice. One of many waits until all has been heard that has come meanwhile.
+void pqSonoLiveSettings::askForStep()
+{
+  if (this->IsAsked || (this->SinceStep.isValid() && this->SinceStep.elapsed() < burstMs))
+  {
+    return this->Frame.start();
+  }
+  this->IsAsked = true;
+  QMetaObject::invokeMethod(
+    this,
+    [this] {
+      this->IsAsked = false;
+      this->showStep();
+    },
+    Qt::QueuedConnection); // Qt paints after what is queued, and fires timers after that
 }
 
 void pqSonoLiveSettings::scanChanged()
@@ -179,7 +199,11 @@ void pqSonoLiveSettings::showStep()
     SCOPED_UNDO_EXCLUDE();
     this->set(next);
   }
-  this->Shown->drawGrey();
+  // Gain and its slope over the depth are on no scale.
+  this->Shown->drawGrey(std::any_of(next.begin(), next.end(), [](const auto& setting) {
+    return setting.first != "GainDb" && setting.first.compare(0, 3, "Tgc") != 0;
+  }));
+  this->SinceStep.start();
   this->Rest.start(); // however long that took
 }
 

@@ -1,6 +1,7 @@
 #ifndef pqSonoLiveSettings_h
 #define pqSonoLiveSettings_h
 
+#include <QElapsedTimer>
 #include <QObject>
 #include <QTimer>
 
@@ -46,6 +47,7 @@ private:
 
   bool isLive() const;
   void begin();
+  void askForStep();
   /// Of these properties, what waits for Apply.
   Settings waiting(const Settings& among) const;
   Settings applied(const Settings& among) const;
@@ -57,9 +59,11 @@ private:
   std::function<bool()> IsLive;
   std::function<bool()> MayScan;
   std::function<void()> BeforePicture;
-  Settings Display; // its values do not count
-  Settings Scan;    // nor do these
-  QTimer Frame;
+  Settings Display;        // its values do not count
+  Settings Scan;           // nor do these
+  QTimer Frame;            // fires when there is nothing else to do
+  bool IsAsked = false;    // for a step before all else
+  QElapsedTimer SinceStep; // was shown
   QTimer Rest;
   bool NothingWaits = false; // beside
   bool IsSetting = false;
