@@ -2,6 +2,7 @@
 
 #include "SonoFlatView.h"
 #include "SonoFreeze.h"
+#include "SonoHeldPanels.h"
 #include "SonoMovingViews.h"
 #include "SonoTell.h"
 #include "SonoUltrasoundHere.h"
@@ -132,6 +133,7 @@ void pqSonoProbeWidget::grip()
   this->start();
   if (this->Shown)
   {
+    this->Panels = std::make_unique<SonoHeldPanels>();
     this->Ahead.restart(this->pose());
   }
 }
@@ -291,6 +293,10 @@ void pqSonoProbeWidget::showMoving()
       this->push(drawn, true);
     }
     this->Shown->draw();
+    if (this->Panels)
+    {
+      this->Panels->paintOnce();
+    }
   }
   if (this->Ahead.isWaiting())
   {
@@ -310,6 +316,7 @@ void pqSonoProbeWidget::rest()
     this->Rest.start();
     return;
   }
+  this->Panels.reset();
   this->Frame.stop();
   this->Look.stop();
   this->Ahead.restart();

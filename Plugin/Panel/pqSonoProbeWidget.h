@@ -18,6 +18,7 @@ class QCheckBox;
 class QDoubleSpinBox;
 class QGridLayout;
 class QLabel;
+class SonoHeldPanels;
 class SonoMovingViews;
 class vtkSMPropertyGroup;
 class vtkSonoProbeRepresentation;
@@ -115,6 +116,7 @@ private:
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests
+  std::unique_ptr<SonoHeldPanels> Panels; // the same, of a hand in a view
   SonoShownSurfaces Surfaces;
   SonoAhead Ahead;
   SonoRefining Refining;
