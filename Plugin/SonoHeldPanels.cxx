@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 #include <QDockWidget>
 #include <QEvent>
+#include <QGuiApplication>
 #include <QStatusBar>
 #include <QToolBar>
 
@@ -39,7 +40,9 @@ SonoHeldPanels::SonoHeldPanels()
   take(window->findChildren<QToolBar*>());
   take(window->findChildren<QStatusBar*>());
   this->paint(false);
-  this->SincePainted.start();
+  this->Look.setInterval(paintedMs);
+  QObject::connect(&this->Look, &QTimer::timeout, this, [this] { look(); });
+  this->Look.start();
 }
 
 SonoHeldPanels::~SonoHeldPanels()
@@ -58,14 +61,15 @@ void SonoHeldPanels::paint(bool wanted)
   }
 }
 
-void SonoHeldPanels::paintOnce()
+void SonoHeldPanels::look()
 {
-  if (this->SincePainted.elapsed() >= paintedMs)
+  this->paint(true);
+  if (QGuiApplication::mouseButtons() == Qt::NoButton)
   {
-    this->paint(true);
-    QCoreApplication::postEvent(this, new QEvent(painted()), afterPainting);
-    this->SincePainted.start();
+    this->Look.stop(); // however the drag has ended
+    return;
   }
+  QCoreApplication::postEvent(this, new QEvent(painted()), afterPainting);
 }
 
 bool SonoHeldPanels::event(QEvent* happened)
@@ -74,6 +78,6 @@ bool SonoHeldPanels::event(QEvent* happened)
   {
     return QObject::event(happened);
   }
-  this->paint(false);
+  this->paint(!this->Look.isActive());
   return true;
 }

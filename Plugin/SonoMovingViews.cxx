@@ -78,7 +78,7 @@ bool showsGrey(vtkSMProxy* source, unsigned int port, bool withScale)
   const std::string name = source->GetXMLName();
   if (sonoIsUltrasound(source))
   {
-    return sonoImageKind(source, port) != SonoImageKind::None;
+    return sonoImageKind(source, port) != SonoImageKind::None || port == vtkSonoUltrasound::BMODE_LINES;
   }
   return name == "SonoFlatScale" ? withScale : name != "SonoALine";
 }

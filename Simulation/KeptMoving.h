@@ -16,7 +16,7 @@ namespace sono {
 class KeptMoving
 {
 public:
-  /// Those of a scene, which `make` makes where they are not kept.
+  /// Those of a scene, or more of them, which `make` makes where they are not kept.
   template<class Make>
   std::shared_ptr<const PointScatterers> get(const std::shared_ptr<const Scene>& scene, const MovingFrom& from,
                                              Make&& make)
@@ -32,7 +32,7 @@ public:
     std::size_t bytes = 0;
     for (auto entry = entries_.begin(); entry != entries_.end();)
     {
-      bytes += std::size_t(entry->made->count()) * bytesEach;
+      bytes += std::size_t(entry->made->count()) * bytesEach + entry->made->table()->begin.size() * sizeof(int);
       const bool isTooMuch = entry != entries_.begin() && bytes > keptMovingBytes;
       entry = isTooMuch ? entries_.erase(entry) : std::next(entry);
     }
@@ -51,7 +51,7 @@ private:
     const std::lock_guard<std::mutex> lock(mutex_);
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
     {
-      if (entry->scene.lock() == scene && entry->from.same(from))
+      if (entry->scene.lock() == scene && entry->from.holds(from))
       {
         entries_.splice(entries_.begin(), entries_, entry);
         return entry->made;

@@ -60,7 +60,11 @@ struct MovingFrom
   MovingPart part;
   std::shared_ptr<const PointScatterers> points;
 
-  bool same(const MovingFrom& o) const { return points == o.points && statistics == o.statistics && part == o.part; }
+  /// Whether what was made from this does for another.
+  bool holds(const MovingFrom& o) const
+  {
+    return points == o.points && statistics == o.statistics && part.holds(o.part);
+  }
 };
 
 /// Of the device's numbers for image formation, which do not depend on traced lines that lie on the device.

@@ -133,7 +133,11 @@ void pqSonoProbeWidget::grip()
   this->start();
   if (this->Shown)
   {
-    this->Panels = std::make_unique<SonoHeldPanels>();
+    if (QGuiApplication::mouseButtons() != Qt::NoButton)
+    {
+      this->Panels.reset(); // which lets go first
+      this->Panels = std::make_unique<SonoHeldPanels>();
+    }
     this->Ahead.restart(this->pose());
   }
 }
@@ -150,6 +154,7 @@ void pqSonoProbeWidget::move()
 
 void pqSonoProbeWidget::finish()
 {
+  this->Panels.reset();
   this->showMessage();
   this->Rest.start();
 }
@@ -293,10 +298,6 @@ void pqSonoProbeWidget::showMoving()
       this->push(drawn, true);
     }
     this->Shown->draw();
-    if (this->Panels)
-    {
-      this->Panels->paintOnce();
-    }
   }
   if (this->Ahead.isWaiting())
   {
@@ -316,7 +317,6 @@ void pqSonoProbeWidget::rest()
     this->Rest.start();
     return;
   }
-  this->Panels.reset();
   this->Frame.stop();
   this->Look.stop();
   this->Ahead.restart();

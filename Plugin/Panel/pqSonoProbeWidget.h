@@ -116,7 +116,7 @@ private:
   bool WasApplied = false;
   QList<QPair<QString, QVector<double>>> PoseBefore;
   std::unique_ptr<SonoMovingViews> Shown; // from the first picture on the way until the probe rests
-  std::unique_ptr<SonoHeldPanels> Panels; // the same, of a hand in a view
+  std::unique_ptr<SonoHeldPanels> Panels; // while a mouse drags it
   SonoShownSurfaces Surfaces;
   SonoAhead Ahead;
   SonoRefining Refining;

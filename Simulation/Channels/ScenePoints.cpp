@@ -15,6 +15,7 @@ namespace sono {
 
 namespace {
 
+constexpr int denseLines = 64;
 constexpr double slabSigmas = 2.5; ///< of the two-way beam, to either side of the image plane
 
 /// How far across the image plane points are taken, by depth.
@@ -221,7 +222,10 @@ ChannelPoints scenePoints(const EchoSources& sources, const ProbeSettings& probe
   {
     const double perEcho = crossSectionPerEcho(echo);
     const MovingStatistics statistics = movingStatistics(*sources.scene, echo, InterfaceModel::Acoustic);
-    const MovingPart part = movingPart(*sources.scene, statistics, lines, echo, InterfaceModel::Acoustic);
+    // What lies between lines far apart is none of their beams', but in the fan.
+    const MovingPart part = probe.geometry.lineCount >= denseLines
+                              ? movingPart(*sources.scene, statistics, lines, echo, InterfaceModel::Acoustic)
+                              : MovingPart{};
     for (const PointScatterer& point : movingScatterers(*sources.scene, statistics, part, partOf(progress, 0.7, 0.8)))
     {
       walk.add(walk.frame.fromWorld(point.positionMm), perEcho * double(point.amplitude), out);

@@ -179,7 +179,6 @@ private:
   DeviceArray<int> begin_;
   DeviceArray<Beam> pointBeams_;
   Sight pointSight_;
-  float largestPoint_ = 0.0f;
   float pointScale_ = 1.0f;
 
   DeviceArray<float> givenIntensity_, givenAttenuation_, givenDepthOffset_, givenReverberation_, givenReverberationNp_;

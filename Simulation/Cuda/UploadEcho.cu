@@ -422,16 +422,11 @@ void DeviceEcho::prepare(const EchoJob& job, cudaStream_t stream, Traffic& traff
       z_.upload(points.table->z, stream, traffic);
       amplitude_.upload(points.table->amplitude, stream, traffic);
       begin_.upload(points.table->begin, stream, traffic);
-      largestPoint_ = 0.0f;
-      for (const float a : points.table->amplitude)
-      {
-        largestPoint_ = std::max(largestPoint_, std::fabs(a));
-      }
       table_ = points.table;
     }
     pointBeams_.upload(points.beams, stream, traffic);
     uploadSight(points.sight, points.beams, table_->edgeMm, pointSight_, stream, traffic);
-    pointScale_ = scaleFor(largestPoint_ * std::max(1.0f, float(job.beam.largestWeight)));
+    pointScale_ = scaleFor(table_->loudest * std::max(1.0f, float(job.beam.largestWeight)));
   }
 
   given_ = {};

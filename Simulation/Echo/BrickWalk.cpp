@@ -313,7 +313,8 @@ void forBrickRows(const BrickGrid& grid, const std::vector<BeamReach>& group,
       {
         s.besideMm = besideAxis(s, near[0] - s.axial, near[1] + s.axial);
       }
-      const Vec3f radius = s.reach.table && part[0] <= part[1] ? seenRadius(s.reach, edge, part[0], part[1]) : s.radius;
+      const Vec3f radius =
+        s.reach.table && part[0] <= part[1] ? seenRadius(s.reach, edge, part[0], part[1]) + s.reach.marginMm : s.radius;
       // Between the two ends of the part the axis is straight: its bounds are theirs.
       for (int end = 0; end < 2 && part[0] <= part[1]; ++end)
       {

@@ -11,7 +11,6 @@
 #include "Echo/Pulse.h"
 #include "Echo/TissueScatterers.h"
 #include "Kernel/DetailCode.h"
-#include "Scene/VoxelBox.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +21,10 @@ namespace sono {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double closeMm = 1e-5;    // to where a scatterer belongs
-constexpr double leastVolume = 0.1; // of what stood there before, over that of a voxel: below it, the field folds
+constexpr double closeMm = 1e-5; // to where a scatterer belongs
+constexpr double mostSortingBricks = 5e8;
+constexpr float strongestSigmas = 6.5f; // no deviate is larger
+constexpr double leastVolume = 0.1;     // of what stood there before, over that of a voxel: below it, the field folds
 
 /// Of the power along fibres that echo exp(-2 (scale cos)^2) of it: its mean over all directions.
 double meanOverDirections(double scale)
@@ -136,14 +137,43 @@ private:
   const MovingStatistics& statistics_;
 };
 
-/// The voxels whose centres lie in a cube.
-VoxelBox voxelsIn(const Scene& scene, const Vec3i& cube)
+/// Whether a voxel's centre lies in a cube of a part.
+class CubesWanted
 {
-  const Vec3d spacing = scene.placement().spacingMm;
-  const auto firstFrom = [&](const Vec3i& c) { return Vec3i(glm::ceil(Vec3d(c) * movingCubeMm / spacing - 0.5)); };
-  const Vec3i size = scene.placement().size;
-  return { glm::clamp(firstFrom(cube), Vec3i(0), size), glm::clamp(firstFrom(cube + 1), Vec3i(0), size) };
-}
+public:
+  CubesWanted(const Scene& scene, const MovingPart& part)
+    : isAll_(part.isAll)
+  {
+    const GridPlacement& grid = scene.placement();
+    count_ = cubeOf(Vec3d(grid.size), grid.spacingMm) + 1;
+    wanted_.assign(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z), 0);
+    for (const Vec3i& cube : part.cubes)
+    {
+      if (glm::all(glm::lessThan(cube, count_)))
+      {
+        wanted_[indexOf(cube)] = 1;
+      }
+    }
+    perVoxel_ = grid.spacingMm / movingCubeMm;
+  }
+  bool hold(const Vec3i& voxel) const
+  {
+    return isAll_ || wanted_[indexOf(Vec3i((Vec3d(voxel) + 0.5) * perVoxel_))] != 0;
+  }
+
+private:
+  static Vec3i cubeOf(const Vec3d& index, const Vec3d& spacingMm) { return Vec3i(index * spacingMm / movingCubeMm); }
+  std::size_t indexOf(const Vec3i& cube) const
+  {
+    return std::size_t(cube.x) +
+           std::size_t(count_.x) * (std::size_t(cube.y) + std::size_t(count_.y) * std::size_t(cube.z));
+  }
+
+  bool isAll_;
+  Vec3i count_{ 0 };
+  Vec3d perVoxel_{ 0.0 };
+  std::vector<std::uint8_t> wanted_;
+};
 
 Vec3d middleOf(const Scene& scene)
 {
@@ -187,7 +217,21 @@ MovingPart movingPart(const Scene& scene, const MovingStatistics& statistics, co
     reach.marginMm = float(marginMm);
     reaches.push_back(reach);
   }
-  forSeenBricks(grid, reaches, [&](const Vec3i& cube, const std::vector<std::size_t>&) { part.cubes.push_back(cube); });
+  forBrickRows(grid, reaches, [&](const BrickRow& row) {
+    for (int n = 0; n < row.count(); ++n)
+    {
+      bool isSeen = false;
+      for (std::size_t line = 0; line < reaches.size() && !isSeen; ++line)
+      {
+        isSeen = row.sees(line, n);
+      }
+      if (isSeen)
+      {
+        part.cubes.push_back(row.brick(n));
+      }
+    }
+  });
+  std::sort(part.cubes.begin(), part.cubes.end(), MovingPart::isBefore); // the walk's order depends on the lines
   return part;
 }
 
@@ -234,43 +278,35 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
   const InVoxel inVoxel(scene, statistics);
   const TissueMotion& motion = *scene.motion();
   const Vec3i size = scene.placement().size;
-  const auto addBox = [&](const VoxelBox& box, std::vector<PointScatterer>& points) {
-    for (int k = box.first.z; k < box.last.z; ++k)
+  const CubesWanted wanted(scene, part);
+  std::vector<std::vector<PointScatterer>> ofSlices(std::size_t(size.z));
+  parallelFor(size.z, progress, [&](int k) {
+    std::size_t at = std::size_t(k) * std::size_t(size.x) * std::size_t(size.y);
+    for (int j = 0; j < size.y; ++j)
     {
-      for (int j = box.first.y; j < box.last.y; ++j)
+      for (int i = 0; i < size.x; ++i, ++at)
       {
-        std::size_t at =
-          std::size_t(box.first.x) + std::size_t(size.x) * (std::size_t(j) + std::size_t(size.y) * std::size_t(k));
-        for (int i = box.first.x; i < box.last.x; ++i, ++at)
+        const int tissue = scene.tissueVoxels()[at];
+        if (statistics.probability[std::size_t(tissue)] > 0.0f && motion.moves(scene.volume().voxels[at]) &&
+            wanted.hold({ i, j, k }))
         {
-          const int tissue = scene.tissueVoxels()[at];
-          if (statistics.probability[std::size_t(tissue)] > 0.0f && motion.moves(scene.volume().voxels[at]))
-          {
-            const float factor = scene.detail().empty() ? 1.0f : detailFactor(scene.detail()[at]);
-            inVoxel.add({ i, j, k }, tissue, factor, points);
-          }
+          const float factor = scene.detail().empty() ? 1.0f : detailFactor(scene.detail()[at]);
+          inVoxel.add({ i, j, k }, tissue, factor, ofSlices[std::size_t(k)]);
         }
       }
     }
-  };
-  // Slice by slice, or cube by cube.
-  std::vector<std::vector<PointScatterer>> ofBoxes(part.isAll ? std::size_t(size.z) : part.cubes.size());
-  parallelFor(int(ofBoxes.size()), progress, [&](int n) {
-    addBox(part.isAll ? VoxelBox{ { 0, 0, n }, { size.x, size.y, n + 1 } }
-                      : voxelsIn(scene, part.cubes[std::size_t(n)]),
-           ofBoxes[std::size_t(n)]);
   });
   std::vector<PointScatterer> points;
   std::size_t count = 0;
-  for (const auto& box : ofBoxes)
+  for (const auto& slice : ofSlices)
   {
-    count += box.size();
+    count += slice.size();
   }
   points.reserve(count);
-  for (auto& box : ofBoxes)
+  for (auto& slice : ofSlices)
   {
-    points.insert(points.end(), box.begin(), box.end());
-    box = {};
+    points.insert(points.end(), slice.begin(), slice.end());
+    slice = {};
   }
   return points;
 }
@@ -278,8 +314,23 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
 PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
                              const std::vector<PointScatterer>& points)
 {
-  return part.isAll ? PointScatterers(points)
-                    : PointScatterers(points, scene.worldFromLocal(middleOf(scene)), sortingEdgeMm(statistics));
+  const Vec3d middle = scene.worldFromLocal(middleOf(scene));
+  const double edgeMm = sortingEdgeMm(statistics);
+  // As far and as strong as the user's, and any of the scene's may be.
+  double farthestMm = 0.0;
+  float loudest = 0.0f;
+  for (const PointScatterer& point : points)
+  {
+    farthestMm = std::max(farthestMm, glm::length(point.positionMm - middle));
+    loudest = std::max(loudest, std::fabs(point.amplitude));
+  }
+  const float detail = scene.detail().empty() ? 1.0f : largestDetailFactor;
+  for (std::size_t t = 0; t < statistics.mean.size(); ++t)
+  {
+    loudest = std::max(loudest, detail * (std::fabs(statistics.mean[t]) + strongestSigmas * statistics.sigma[t]));
+  }
+  const bool fit = std::pow(2.0 * farthestMm / edgeMm + 1.0, 3.0) < mostSortingBricks;
+  return part.isAll || !fit ? PointScatterers(points) : PointScatterers(points, middle, edgeMm, loudest);
 }
 
 } // namespace sono

@@ -8,8 +8,10 @@
 #include "Scene/Scene.h"
 #include "Trace/TraceSettings.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace sono {
@@ -41,9 +43,13 @@ MovingStatistics movingStatistics(const Scene& scene, const EchoSettings& settin
 struct MovingPart
 {
   bool isAll = true;
-  std::vector<Vec3i> cubes; ///< in the scene's coordinates, ascending: cube c fills [c, c + 1) * movingCubeMm
+  std::vector<Vec3i> cubes; ///< in the scene's coordinates, by z, y and x: cube c fills [c, c + 1) * movingCubeMm
 
-  bool operator==(const MovingPart& o) const { return isAll == o.isAll && cubes == o.cubes; }
+  bool holds(const MovingPart& o) const
+  {
+    return isAll == o.isAll && std::includes(cubes.begin(), cubes.end(), o.cubes.begin(), o.cubes.end(), isBefore);
+  }
+  static bool isBefore(const Vec3i& a, const Vec3i& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
 };
 
 constexpr double movingCubeMm = 8.0;
@@ -61,7 +67,7 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
                                              const MovingPart& part = {}, const Progress& progress = {});
 
 /// These and the user's, sorted. Of a part in bricks that do not depend on which part it is, each of which is whole
-/// where a line of it hears one: another part gives the same lines, to the bit.
+/// where a line of it hears one: any part that holds what some lines hear gives these lines the same, to the bit.
 PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
                              const std::vector<PointScatterer>& points);
 

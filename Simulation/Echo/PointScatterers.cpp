@@ -62,19 +62,26 @@ PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
   {
     originMm_ += p.positionMm / double(points.size());
   }
-  sort(points, std::nullopt);
+  float loudest = 0.0f;
+  for (const PointScatterer& p : points)
+  {
+    loudest = std::max(loudest, std::fabs(p.amplitude));
+  }
+  sort(points, std::nullopt, loudest);
 }
 
-PointScatterers::PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm)
+PointScatterers::PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm,
+                                 float loudest)
   : originMm_(originMm)
 {
   requireValid(points);
-  sort(points, edgeMm);
+  sort(points, edgeMm, loudest);
 }
 
-void PointScatterers::sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm)
+void PointScatterers::sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm, float loudest)
 {
   auto table = std::make_shared<PointTable>();
+  table->loudest = loudest;
   table_ = table;
   if (points.empty())
   {

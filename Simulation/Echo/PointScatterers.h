@@ -24,12 +24,12 @@ class PointScatterers
 public:
   /// Throws Error naming the scatterer whose position is beyond 10^6 mm or not finite, or whose amplitude is not.
   explicit PointScatterers(const std::vector<PointScatterer>& points);
-  /// In bricks of this edge from this origin on, however many there are.
-  PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm);
+  /// In bricks of this edge from this origin on, however many there are; `loudest` is at least the largest amplitude.
+  PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm, float loudest);
 
   int count() const { return int(table_->x.size()); }
   /// The centroid where no other was given, where the scatterers' own coordinates are 0; their axes are the world's.
-  /// Single precision carries them far from the world's origin.
+  /// Single precision about it carries them far from the world's origin.
   const Vec3d& originMm() const { return originMm_; }
   const BrickGrid& grid() const { return grid_; }
   std::shared_ptr<const PointTable> table() const { return table_; }
@@ -40,7 +40,7 @@ public:
 
 private:
   /// By bricks of this edge; without one, of as many as do.
-  void sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm);
+  void sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm, float loudest);
 
   Vec3d originMm_{ 0.0 };
   BrickGrid grid_;

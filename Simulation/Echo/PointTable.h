@@ -15,6 +15,7 @@ struct PointTable
   Vec3i firstBrick{ 0 };
   Vec3i bricks{ 0 }; ///< along x, y, z
   float edgeMm = 1.0f;
+  float loudest = 0.0f; ///< no amplitude is larger
 };
 
 } // namespace sono

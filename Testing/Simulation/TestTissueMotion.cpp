@@ -280,7 +280,16 @@ TEST(TissueMotion, OfSmallCellsThoseThatALineMayHearAreMade)
     };
     const auto wanted = samplesOf(all);
     EXPECT_EQ(samplesOf(some), wanted);
-    EXPECT_EQ(samplesOf(movingScatterers(*scene, statistics, partOf({ two[0], two[1], fan()[15] }))), wanted);
+    // Of lines that mostly go elsewhere, too.
+    std::vector<ScanLine> more = two;
+    for (const double z : { 30.0, 35.0, 40.0, 45.0 })
+    {
+      more.push_back(makeLine({ 2.0, 12.0, z }, { 1.0, 0.0, 0.0 }));
+    }
+    const MovingPart larger = partOf(more);
+    EXPECT_TRUE(larger.holds(part));
+    EXPECT_FALSE(part.holds(larger));
+    EXPECT_EQ(samplesOf(movingScatterers(*scene, statistics, larger)), wanted);
     EXPECT_GT(std::count_if(wanted.begin(), wanted.end(), [](const auto& v) { return std::norm(v) > 0.0f; }), 1000);
   }
   s.centreFrequencyMHz = 2.5;
