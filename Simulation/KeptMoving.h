@@ -32,7 +32,7 @@ public:
     std::size_t bytes = 0;
     for (auto entry = entries_.begin(); entry != entries_.end();)
     {
-      bytes += std::size_t(entry->made->count()) * bytesEach + entry->made->table()->begin.size() * sizeof(int);
+      bytes += entry->made->table()->bytes();
       const bool isTooMuch = entry != entries_.begin() && bytes > keptMovingBytes;
       entry = isTooMuch ? entries_.erase(entry) : std::next(entry);
     }
@@ -66,8 +66,6 @@ private:
     MovingFrom from;
     std::shared_ptr<const PointScatterers> made;
   };
-  static constexpr std::size_t bytesEach = 4 * sizeof(float); // PointTable
-
   std::mutex mutex_;
   std::list<Entry> entries_; // the last used first
 };

@@ -242,7 +242,7 @@ EchoSettings Simulator::withBeam(EchoSettings settings, const Progress& progress
 }
 
 std::shared_ptr<const PointScatterers> Simulator::withMoving(const std::shared_ptr<const PointScatterers>& points,
-                                                             const std::vector<ScanLine>& lines,
+                                                             const std::function<std::vector<ScanLine>()>& lines,
                                                              const EchoSettings& settings, InterfaceModel model,
                                                              const Progress& progress)
 {
@@ -251,7 +251,7 @@ std::shared_ptr<const PointScatterers> Simulator::withMoving(const std::shared_p
     return points;
   }
   const MovingStatistics statistics = movingStatistics(*scene_, settings, model);
-  const MovingPart part = movingPart(*scene_, statistics, lines, settings, model);
+  const MovingPart part = movingPart(*scene_, statistics, lines(), settings, model);
   return keptMoving().get(scene_, { statistics, part, points }, [&] {
     std::vector<PointScatterer> all = movingScatterers(*scene_, statistics, part, progress);
     if (points)
@@ -270,7 +270,8 @@ RfResult Simulator::formRf(const std::vector<ScanLine>& lines, const TracedResul
   const EchoSettings settings = withBeam(wantedSettings, partOf(wholeProgress, 0.0, 0.1));
   const Progress progress = partOf(wholeProgress, 0.2, 1.0);
   const InterfaceModel model = traced ? traced.layout().model : InterfaceModel::Acoustic;
-  const auto points = withMoving(userPoints, lines, settings, model, partOf(wholeProgress, 0.1, 0.2));
+  const auto points = withMoving(
+    userPoints, [&] { return lines; }, settings, model, partOf(wholeProgress, 0.1, 0.2));
   const EchoJobFrom from{ lines, settings, points, model, traced ? traced.layout().targets : nullptr };
   return last_->rf.get({ from, traced }, [&] {
     EchoSources sources{ scene_.get(), nullptr, points.get(), model, from.targets.get() };

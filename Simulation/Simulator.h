@@ -137,10 +137,11 @@ public:
 private:
   /// With the computed beam where it is asked for.
   EchoSettings withBeam(EchoSettings settings, const Progress& progress = {});
-  /// `points` with those of the scene that move, as far as lines may hear them.
+  /// `points` with those of the scene that move, as far as lines may hear them, which are asked for where some do.
   std::shared_ptr<const PointScatterers> withMoving(const std::shared_ptr<const PointScatterers>& points,
-                                                    const std::vector<ScanLine>& lines, const EchoSettings& settings,
-                                                    InterfaceModel model, const Progress& progress = {});
+                                                    const std::function<std::vector<ScanLine>()>& lines,
+                                                    const EchoSettings& settings, InterfaceModel model,
+                                                    const Progress& progress = {});
   struct LabelsWanted;
   ScanPicture makePicture(const ImageResult& image, const LabelsWanted* wanted);
 

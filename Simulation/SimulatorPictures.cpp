@@ -28,6 +28,14 @@ bool canGoTogether(const Scene& scene, const ImageInput& input)
          scene.sharesRegion(fanBox(scene, makeScanLines(settings.geometry, input.pose), settings.tracing));
 }
 
+std::vector<ProbePose> posesOf(const Inputs& inputs)
+{
+  std::vector<ProbePose> poses;
+  std::transform(inputs.begin(), inputs.end(), std::back_inserter(poses),
+                 [](const ImageInput* input) { return input->pose; });
+  return poses;
+}
+
 /// But for what each image of a group may have to itself.
 bool sameStages(ImageSettings a, const ImageSettings& b)
 {
@@ -57,11 +65,10 @@ std::vector<SeenPicture> picturesOnDevice(const Scene& scene, const Inputs& grou
   const ImageSettings& settings = group.front()->settings;
   const int perImage = settings.geometry.totalLineCount();
   const auto count = int(group.size());
-  std::vector<ProbePose> poses;
+  const std::vector<ProbePose> poses = posesOf(group);
   std::vector<std::uint64_t> seeds;
   for (const ImageInput* input : group)
   {
-    poses.push_back(input->pose);
     seeds.push_back(input->settings.tracing.seed);
   }
   const std::vector<ScanLine> lines = makeScanLines(settings.geometry, poses);
@@ -135,11 +142,8 @@ std::vector<SeenPicture> Simulator::pictures(const std::vector<ImageInput>& inpu
       std::transform(group.begin(), group.end(), std::back_inserter(ofGroupInputs),
                      [&](std::size_t i) { return &inputs[i]; });
       const EchoSettings echo = withBeam(first.settings.echo);
-      std::vector<ProbePose> poses;
-      std::transform(group.begin(), group.end(), std::back_inserter(poses),
-                     [&](std::size_t i) { return inputs[i].pose; });
-      const auto moving =
-        withMoving(nullptr, makeScanLines(first.settings.geometry, poses), echo, first.settings.tracing.model);
+      const auto lines = [&] { return makeScanLines(first.settings.geometry, posesOf(ofGroupInputs)); };
+      const auto moving = withMoving(nullptr, lines, echo, first.settings.tracing.model);
       std::vector<SeenPicture> ofThese = picturesOnDevice(needScene(), ofGroupInputs, echo, moving.get(), ofGroup);
       for (std::size_t i = 0; i < group.size(); ++i)
       {

@@ -125,8 +125,9 @@ void Simulator::sweep(const std::vector<ProbePose>& poses, const ImageSettings& 
   if (onDevice && settings.tracing.imagingMode == ImagingMode::Fundamental && !settings.tracing.refines())
   {
     wanted.echo = withBeam(settings.echo, partOf(progress, 0.0, 0.1));
-    const auto moving = withMoving(nullptr, makeScanLines(settings.geometry, poses), wanted.echo,
-                                   settings.tracing.model, partOf(progress, 0.1, 0.2));
+    const auto moving = withMoving(
+      nullptr, [&] { return makeScanLines(settings.geometry, poses); }, wanted.echo, settings.tracing.model,
+      partOf(progress, 0.1, 0.2));
     sweepOnDevice(needScene(), poses, wanted, withLabels, sink, partOf(progress, 0.2, 1.0), targets, moving.get());
   }
   else

@@ -233,8 +233,7 @@ ChannelPoints surfacePoints(const EchoSetup& setup, const FanPlaces& fan, const 
   std::vector<BeamReach> beams;
   for (int line = 0; line < int(setup.lines.size()); ++line)
   {
-    beams.push_back({ setup.sceneBeam(line), setup.finisher.reachMm(line), nullptr, setup.beams.reachTable(),
-                      setup.beams.arraySight() });
+    beams.push_back(setup.beams.reachOf(setup.sceneBeam(line), setup.finisher.reachMm(line)));
   }
   ChannelPoints out;
   for (const TargetGroup& targets : setup.surfaces->targets())

@@ -161,8 +161,7 @@ std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sce
   const auto beamsOf = [&](int step) {
     std::vector<BeamReach> beams;
     const auto add = [&](int l) {
-      beams.push_back({ sceneBeams[std::size_t(l)], setup.finisher.reachMm(l), nullptr, setup.beams.reachTable(),
-                        setup.beams.arraySight() });
+      beams.push_back(setup.beams.reachOf(sceneBeams[std::size_t(l)], setup.finisher.reachMm(l)));
     };
     for (int l = 0; l < lineCount - 1; l += step)
     {

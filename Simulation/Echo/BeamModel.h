@@ -45,6 +45,12 @@ public:
   /// In coordinates that are turned by `rotation`, from `origin` there. For lookups while this lives.
   Beam beamOf(const ScanLine& line, const Vec3d& origin, const Mat3d& rotation) const;
 
+  /// One of these beams and the depth to which it is needed; `sight` is a field's, as above for lookups while it lives.
+  BeamReach reachOf(const Beam& beam, float depthMm, const FieldSight* sight = nullptr) const
+  {
+    return { beam, depthMm, sight, reachTable(), arraySight() };
+  }
+
 private:
   void tabulateReach();
 

@@ -150,8 +150,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       std::vector<BeamReach> made;
       for (int l = first; l < last; ++l)
       {
-        made.push_back({ beamOf(l), setup.finisher.reachMm(l), sight ? &*sight : nullptr, setup.beams.reachTable(),
-                         setup.beams.arraySight() });
+        made.push_back(setup.beams.reachOf(beamOf(l), setup.finisher.reachMm(l), sight ? &*sight : nullptr));
       }
       return made;
     };

@@ -145,7 +145,8 @@ public:
     : isAll_(part.isAll)
   {
     const GridPlacement& grid = scene.placement();
-    count_ = cubeOf(Vec3d(grid.size), grid.spacingMm) + 1;
+    perVoxel_ = grid.spacingMm / movingCubeMm;
+    count_ = Vec3i(Vec3d(grid.size) * perVoxel_) + 1;
     wanted_.assign(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z), 0);
     for (const Vec3i& cube : part.cubes)
     {
@@ -154,7 +155,6 @@ public:
         wanted_[indexOf(cube)] = 1;
       }
     }
-    perVoxel_ = grid.spacingMm / movingCubeMm;
   }
   bool hold(const Vec3i& voxel) const
   {
@@ -162,7 +162,6 @@ public:
   }
 
 private:
-  static Vec3i cubeOf(const Vec3d& index, const Vec3d& spacingMm) { return Vec3i(index * spacingMm / movingCubeMm); }
   std::size_t indexOf(const Vec3i& cube) const
   {
     return std::size_t(cube.x) +
@@ -212,8 +211,8 @@ MovingPart movingPart(const Scene& scene, const MovingStatistics& statistics, co
   std::vector<BeamReach> reaches;
   for (const ScanLine& line : lines)
   {
-    BeamReach reach{ beams.beamOf(line, scene.localFromWorld(line.originMm), scene.rotationToLocal()), float(depthMm),
-                     sight ? &*sight : nullptr, beams.reachTable(), beams.arraySight() };
+    BeamReach reach = beams.reachOf(beams.beamOf(line, scene.localFromWorld(line.originMm), scene.rotationToLocal()),
+                                    float(depthMm), sight ? &*sight : nullptr);
     reach.marginMm = float(marginMm);
     reaches.push_back(reach);
   }
@@ -314,6 +313,10 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
 PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
                              const std::vector<PointScatterer>& points)
 {
+  if (part.isAll)
+  {
+    return PointScatterers(points);
+  }
   const Vec3d middle = scene.worldFromLocal(middleOf(scene));
   const double edgeMm = sortingEdgeMm(statistics);
   // As far and as strong as the user's, and any of the scene's may be.
@@ -330,7 +333,7 @@ PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statist
     loudest = std::max(loudest, detail * (std::fabs(statistics.mean[t]) + strongestSigmas * statistics.sigma[t]));
   }
   const bool fit = std::pow(2.0 * farthestMm / edgeMm + 1.0, 3.0) < mostSortingBricks;
-  return part.isAll || !fit ? PointScatterers(points) : PointScatterers(points, middle, edgeMm, loudest);
+  return fit ? PointScatterers(points, middle, edgeMm, loudest) : PointScatterers(points);
 }
 
 } // namespace sono

@@ -58,13 +58,10 @@ int indexOf(const PointTable& table, const Vec3i& brick)
 PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
 {
   requireValid(points);
-  for (const PointScatterer& p : points)
-  {
-    originMm_ += p.positionMm / double(points.size());
-  }
   float loudest = 0.0f;
   for (const PointScatterer& p : points)
   {
+    originMm_ += p.positionMm / double(points.size());
     loudest = std::max(loudest, std::fabs(p.amplitude));
   }
   sort(points, std::nullopt, loudest);

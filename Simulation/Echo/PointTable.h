@@ -2,6 +2,7 @@
 
 #include "Kernel/Vec.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace sono {
@@ -16,6 +17,8 @@ struct PointTable
   Vec3i bricks{ 0 }; ///< along x, y, z
   float edgeMm = 1.0f;
   float loudest = 0.0f; ///< no amplitude is larger
+
+  std::size_t bytes() const { return 4 * x.size() * sizeof(float) + begin.size() * sizeof(int); }
 };
 
 } // namespace sono

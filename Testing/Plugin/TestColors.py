@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from paraview import servermanager, simple, smstate
+from paraview import simple, smstate
 from paraview.modules.vtkRemotingViews import vtkPVDiscretizableColorTransferFunction
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
