@@ -2,6 +2,7 @@
 
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineController.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionManager.h"
 #include "vtkSMTransferFunctionProxy.h"
@@ -29,15 +30,18 @@ bool hasColors(const char* array, vtkSMSessionProxyManager* manager)
 
 vtkSMProxy* sonoGreyColors(const char* array, vtkSMSessionProxyManager* manager)
 {
+  vtkNew<vtkSMTransferFunctionManager> tables;
   if (!hasColors(array, manager))
   {
     auto colors = vtkSmartPointer<vtkSMProxy>::Take(manager->NewProxy("lookup_tables", kind));
     vtkNew<vtkSMParaViewPipelineController> controller;
     controller->InitializeProxy(colors);
     vtkSMTransferFunctionProxy::ApplyPreset(colors, "Grayscale", false);
+    // As ParaView does for its own: its Color Map Editor crashes where a map has none of both.
+    vtkSMPropertyHelper(colors, "ScalarOpacityFunction").Set(tables->GetOpacityTransferFunction(array, manager));
+    vtkSMPropertyHelper(colors, "TransferFunction2D").Set(tables->GetTransferFunction2D(array, manager));
     controller->RegisterColorTransferFunctionProxy(colors, nameOf(array).c_str());
     colors->UpdateVTKObjects();
   }
-  vtkNew<vtkSMTransferFunctionManager> tables;
   return tables->GetColorTransferFunction(array, manager);
 }

@@ -66,6 +66,8 @@ class TestColors(unittest.TestCase):
         self.assertEqual(colors.SMProxy, simple.GetColorTransferFunction("BMode").SMProxy)
         self.assertEqual(colors.GetClientSideObject().GetClassName(), "vtkSonoColorTable")
         self.assertEqual([colors.RGBPoints[0], colors.RGBPoints[-4]], [0, 255])
+        for part in ("ScalarOpacityFunction", "TransferFunction2D"):  # as ParaView's own has them
+            self.assertIsNotNone(getattr(colors, part))
         levels = np.arange(256, dtype=np.uint8)
         grey = mapped(colors.GetClientSideObject(), np.tile(levels, 2), 4)[:256]
         np.testing.assert_allclose(grey[:, 0], levels, atol=1)  # steps of 256 colours

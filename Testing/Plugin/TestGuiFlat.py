@@ -8,7 +8,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from events import MAIN, PROBE, click, event, menu, pause, save_state, select, undo, view, write
+from events import MAIN, PROBE, check, click, event, menu, pause, save_state, select, undo, view, write
 from guicase import PLAYBACKS, GuiCase, bytes_of
 
 ACCEPT = f"{MAIN}/propertiesDock/propertiesPanel/Accept"
@@ -146,6 +146,21 @@ class TestGuiFlat(GuiCase):
         self.assertLess(math.dist(ends[0][:2], wanted), 2.5)
         self.assertAlmostEqual(measured["caliper"][0], math.dist(*ends), places=3)
         self.assertEqual(measured["caliper"][1], f"{math.dist(*ends):.1f} mm")
+
+    def test_its_colour_map_opens_in_the_editor(self):
+        """Which crashes where a map has no opacity function."""
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            played = write(folder / "editor.xml", click(ACCEPT), click(f"{MAIN}/SonoToolBar/actionSonoSimulate"), pause(1000),
+                           click(f"{MAIN}/variableToolbar/actionEditColorMap"), pause(1000),
+                           check(f"{MAIN}/colorMapEditorDock", "visible", "true"), save_state("edited"))
+            self.assertEqual(self.play(played, folder, f"--data={self.label_map(folder)}"), [])
+            maps = proxies(folder / "edited.pvsm", "SonoColorTable")
+            opacities = [texts(one, "ScalarOpacityFunction") or
+                         [element.get("value") for element in one.findall("Property[@name='ScalarOpacityFunction']/Proxy")]
+                         for one in maps]
+        self.assertEqual(len(opacities), 2)  # of the body and of the flat view
+        self.assertEqual(len({opacity for each in opacities for opacity in each}), 2)
 
     def test_an_annotation_is_written_dragged_and_undone(self):
         """What is cancelled or empty writes nothing. An ellipse and an angle beside it have values of their own."""
