@@ -326,10 +326,11 @@ const std::string notColors =
   "CentreFrequencyMHz|CompoundFans|CompoundSpanDeg|DepthMm|DepthOffsetMm|DynamicRangeDb|"
   "ElementCount|ElementWidthMm|ElevationApertureMm|ElevationFocusMm|ElevationLineCount|"
   "ElevationSectorDeg|FacePressureKPa|FractionalBandwidth|GainDb|ImagingMode|IsCatheter|IsVolume|"
-  "KerfMm|LabelColors|LabelIds|LabelNames|LabelTissues|LineCount|LinesApart|PrepareInteraction|Preview|"
+  "FrameOfReference|KerfMm|LabelCodes|LabelColors|LabelIds|LabelNames|LabelTissues|LineCount|LinesApart|"
+  "Modality|MovingLabels|PoseAxial|PoseLateral|PosePositionMm|PrepareInteraction|Preview|"
   "ProbeAxial|ProbeLateral|ProbePositionMm|RadialBinMm|RadiusMm|ReferenceAmplitude|Reverberation|"
-  "ReverberationError|ReverberationNpPerMHz|SamplingMHz|ScanKind|SectorDeg|SonoResult|SonoScene|"
-  "TgcDbPerCm|TracedPaths|TransmitFocusMm|WidthMm|ErrorDb|PixelMm)$";
+  "ReverberationError|ReverberationNpPerMHz|RodDiameterMm|SamplingMHz|ScanKind|SectorDeg|SonoResult|SonoScene|"
+  "TgcDbPerCm|Text|Tissue|TracedPaths|TransmitFocusMm|WidthMm|ErrorDb|PixelMm)$";
 
 /// ParaView takes settings when it starts; what is loaded later has to tell the list itself.
 void hideFromColors(const std::string& expression)

@@ -1,16 +1,14 @@
 #include "pqSonoBeat.h"
 
+#include "SonoAnatomyTime.h"
 #include "SonoPhases.h"
 #include "pqSonoProbeWidget.h"
 
 #include "pqCoreUtilities.h"
 #include "pqPipelineSource.h"
-#include "pqServer.h"
 #include "pqTimeKeeper.h"
 #include "pqUndoStack.h"
 #include "vtkCommand.h"
-#include "vtkNew.h"
-#include "vtkSMParaViewPipelineController.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
 #include "vtkSMTrace.h"
@@ -34,12 +32,6 @@ constexpr double usualPerMin = 60.0;
 // Times of a heart that are in seconds; those of files are mere numbers.
 constexpr double shortestCycleS = 0.3;
 constexpr double longestCycleS = 2.0;
-
-/// None while its server is being left.
-pqTimeKeeper* timeKeeperOf(const pqPipelineSource* source)
-{
-  return source && source->getServer() ? source->getServer()->getTimeKeeper() : nullptr;
-}
 
 /// How many beats a minute equidistant phases of one cycle make.
 double rateOf(const QList<double>& times)
@@ -99,12 +91,12 @@ void pqSonoBeat::follow(pqPipelineSource* source)
   {
     source_->getProxy()->GetProperty(heartRate)->RemoveObserver(rateSeen_);
   }
-  if (pqTimeKeeper* before = timeKeeperOf(source_))
+  if (pqTimeKeeper* before = sonoTimeKeeperOf(source_))
   {
     before->disconnect(this);
   }
   source_ = source;
-  if (pqTimeKeeper* now = timeKeeperOf(source_))
+  if (pqTimeKeeper* now = sonoTimeKeeperOf(source_))
   {
     this->connect(now, SIGNAL(timeStepsChanged()), SLOT(showState()));
     rateSeen_ = pqCoreUtilities::connect(source_->getProxy()->GetProperty(heartRate), vtkCommand::ModifiedEvent, this,
@@ -113,9 +105,14 @@ void pqSonoBeat::follow(pqPipelineSource* source)
   this->showState();
 }
 
+void pqSonoBeat::end()
+{
+  play_->setChecked(false);
+}
+
 QList<double> pqSonoBeat::times() const
 {
-  const pqTimeKeeper* keeper = timeKeeperOf(source_);
+  const pqTimeKeeper* keeper = sonoTimeKeeperOf(source_);
   return keeper ? keeper->getTimeSteps() : QList<double>();
 }
 
@@ -171,12 +168,7 @@ void pqSonoBeat::stop()
   }
   if (phase_ >= 0)
   {
-    SCOPED_UNDO_EXCLUDE();
-    // What ParaView shows as its time.
-    vtkNew<vtkSMParaViewPipelineController> controller;
-    vtkSMProxy* scene = controller->FindAnimationScene(widget_->proxy()->GetSession());
-    vtkSMPropertyHelper(scene, "AnimationTime").Set(this->times().value(phase_));
-    scene->UpdateVTKObjects();
+    sonoKeepTime(source_);
   }
   widget_->hold(false);
 }
@@ -229,9 +221,6 @@ void pqSonoBeat::step()
     return;
   }
   phase_ = phase;
-  {
-    SCOPED_UNDO_EXCLUDE();
-    timeKeeperOf(source_)->setTime(times[phase]);
-  }
+  sonoSetTime(source_, times[phase]);
   widget_->showAgain();
 }

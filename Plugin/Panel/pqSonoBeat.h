@@ -29,6 +29,8 @@ public:
 
   /// Whose phases are played; none: nobody's.
   void follow(pqPipelineSource* source);
+  /// As the button does while it plays.
+  void end();
 
 Q_SIGNALS:
   /// What a person should know, one sentence.

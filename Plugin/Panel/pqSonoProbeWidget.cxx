@@ -98,6 +98,7 @@ void pqSonoProbeWidget::showAgain()
   this->Asked = true;
   this->IsOtherMoment = true;
   this->start();
+  this->Frame.stop(); // where the probe has moved as well, this shows it
   this->showMoving();
 }
 

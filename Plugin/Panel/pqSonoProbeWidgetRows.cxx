@@ -80,7 +80,7 @@ pqSonoProbeWidget::pqSonoProbeWidget(vtkSMProxy* smproxy, vtkSMPropertyGroup* gr
   show->setChecked(true);
   show->setToolTip(tr(
     "Shows the transducer in the view. Drag it along the skin; its balls and its ring turn it; the violet ball at the "
-    "far end of the fan sets the depth. While the pointer is over it, the arrow keys walk by 1 mm, with Shift they "
+    "far end of the fan sets the depth. Where that view has the keyboard, the arrow keys walk by 1 mm, with Shift they "
     "rock and tilt, with Ctrl they rotate and change the depth."));
   this->Live = new QCheckBox(tr("Live"), this);
   this->Live->setObjectName("Live");

@@ -135,10 +135,20 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
   rows_->addWidget(beat_);
   QObject::connect(beat_, &pqSonoBeat::said, this, [this](const QString& sentence) { say(sentence); });
   QObject::connect(path_, &pqSonoPath::said, this, [this](const QString& sentence) { say(sentence); });
-  QObject::connect(cine_, &pqSonoCine::scrubbed, this, [this](const SonoWindow& at) {
+  QObject::connect(cine_, &pqSonoCine::scrubbed, this, [this](const SonoWindow& at, bool isOtherMoment) {
     if (pqSonoProbeWidget* widget = probeWidget())
     {
       widget->goTo(at);
+      if (isOtherMoment)
+      {
+        widget->showAgain();
+      }
+    }
+  });
+  QObject::connect(cine_, &pqSonoCine::played, this, [this](bool isPlaying) {
+    if (pqSonoProbeWidget* widget = probeWidget())
+    {
+      widget->hold(isPlaying);
     }
   });
   rows_->addStretch();
@@ -277,6 +287,10 @@ void pqSonoScannerDock::showFrozen()
   const QSignalBlocker quiet(freezeAct_);
   freezeAct_->setChecked(source_ && sonoIsFrozen(source_->getProxy()));
   cine_->setFrozen(freezeAct_->isChecked());
+  if (freezeAct_->isChecked())
+  {
+    beat_->end();
+  }
 }
 
 /// As the properties panel does with each change of its own.

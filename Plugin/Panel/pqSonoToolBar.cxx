@@ -8,6 +8,7 @@
 #include "pqSonoFlatMenu.h"
 #include "pqSonoLoading.h"
 #include "pqSonoLostViews.h"
+#include "pqSonoNeedleFollow.h"
 #include "pqSonoUndoing.h"
 
 #include "vtkDataObjectTypes.h"
@@ -79,6 +80,7 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   new pqSonoDelete(this);
   new pqSonoLoading(this);
   new pqSonoLostViews(this);
+  new pqSonoNeedleFollow(this);
   new pqSonoUndoing(this);
   auto* active = &pqActiveObjects::instance();
   QObject::connect(active, &pqActiveObjects::portChanged, this, [this] { updateActions(); });

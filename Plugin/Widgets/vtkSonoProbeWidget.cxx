@@ -166,7 +166,7 @@ void vtkSonoProbeWidget::Nudge(vtkAbstractWidget* widget)
   auto* self = static_cast<vtkSonoProbeWidget*>(widget);
   vtkSonoProbeRepresentation* probe = self->GetProbeRepresentation();
   const char* key = self->Interactor->GetKeySym();
-  if (self->Moving || !key || !isArrow(key) || probe->GetInteractionState() == vtkSonoProbeRepresentation::OUTSIDE)
+  if (self->Moving || !key || !isArrow(key))
   {
     return;
   }

@@ -70,11 +70,11 @@ struct EchoSettings
     visitor(self.lateralSigmaMm,
             Parameter{ "lateralSigmaMm", "Lateral Sigma (mm)", aboveUpTo(0, 50),
                        "Standard deviation of the Gaussian beam along the array in mm, above 0 up to 50; of probes "
-                       "that do not name their aperture, and of Amadou2024." });
+                       "that do not name their aperture, and of Amadou 2024." });
     visitor(self.elevationalSigmaMm,
             Parameter{ "elevationalSigmaMm", "Elevational Sigma (mm)", aboveUpTo(0, 50),
                        "Standard deviation of the Gaussian beam across the image plane in mm, above 0 up to 50; of "
-                       "probes that do not name their aperture, and of Amadou2024." });
+                       "probes that do not name their aperture, and of Amadou 2024." });
     visitor(self.scattererLevelDb,
             Parameter{ "scattererLevelDb", "Scatterer Level (dB)", between(-200, 200),
                        "RMS echo of a tissue full of scatterers against a perfect plane reflector in dB, -200 to "

@@ -106,6 +106,28 @@ class TestGuiPanel(GuiCase):
         self.assertLess(math.dist(*moved["hub"]), 1e-6)
         self.assertGreater(math.dist(*moved["tip"]), 2)
         self.assertNotEqual(moved["picture"], found["with"]["picture"])
+        # The picture follows the hand, nothing waits for Apply, and one undo takes the needle back.
+        self.assertGreaterEqual(len(set(found["on the way"])), 3)
+        self.assertFalse(moved["waits"])
+        self.assertLess(math.dist(found["put back"]["tip"], moved["tip"][0]), 1e-6)
+        self.assertEqual(found["put back"]["picture"], found["with"]["picture"])
+
+    def test_cine_loop_is_played(self):
+        """Again and again, the pictures as they were, of a probe that was turned; and of a heart that beat, at each moment."""
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("cine", folder)
+        loop = [picture for picture, *_ in found["turned"]]
+        played = [picture for picture, *_ in found["played"]]
+        self.assertEqual(len(set(loop)), len(loop))
+        self.assertGreater(len(played), len(loop))
+        for one, other in zip(played, played[1:]):
+            self.assertIn(one, loop)
+            self.assertEqual(loop.index(other), (loop.index(one) + 1) % len(loop))
+        self.assertFalse(found["stopped"]["waits"])
+        self.assertFalse(found["beats on"])
+        beat = [one for one, other in zip(found["beat"], [None, *found["beat"]]) if other is None or one[1:] != other[1:]]
+        self.assertGreater(len({moment for *_, moment in beat}), 2)
+        self.assertEqual(found["back"], [beat[-1 - back] for back in (1, 2, 3)])
 
     def test_keys(self):
         """Alt+U, arrows and Return do what the tool bar's buttons do; what takes keys in our panels has a name to be read out."""
@@ -115,6 +137,7 @@ class TestGuiPanel(GuiCase):
             self.assertIn(name, found["menu"])
         self.assertGreater(max(found["simulated"]["bands"]), 10)
         self.assertEqual(found["calipers"], 1)
+        self.assertAlmostEqual(math.dist(found["walked"]["position"], found["once"]["position"]), 1, delta=0.2)
         self.assertEqual(found["nameless"], [])
 
 

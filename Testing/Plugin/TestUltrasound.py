@@ -149,14 +149,18 @@ class TestUltrasound(unittest.TestCase):
     def test_pictures_are_coloured_by_what_their_points_hold(self):
         """And not by one of the many field arrays that say how they were made."""
         ultrasound = make_ultrasound()
-        for port, wanted in ((0, {"BMode", "Labels", "Mask"}), (7, {"BMode", "Labels", "Mask"}), (1, {"BMode"}),
-                             (2, {"Envelope", "IQ", "RF"}), (3, {"AttenuationNpPerMHz", "Intensity", "StandardError"})):
-            simple.OutputPort(ultrasound, port).UpdatePipeline()
-            image = servermanager.ProxyManager().NewProxy("representations", "UniformGridRepresentation")
-            image.GetProperty("Input").SetInputConnection(0, ultrasound.SMProxy, port)
-            image.UpdateVTKObjects()
-            arrays = image.GetProperty("ColorArrayName").FindDomain("vtkSMRepresentedArrayListDomain")
-            arrays.Update(image.GetProperty("ColorArrayName"))
+        beating = simple.ThoraxPhantom(Spacingmm=4, Phases=2)
+        for source, port, kind, wanted in (
+                (ultrasound, 0, "UniformGrid", {"BMode", "Labels", "Mask"}), (ultrasound, 7, "UniformGrid", {"BMode", "Labels", "Mask"}),
+                (ultrasound, 1, "UniformGrid", {"BMode"}), (ultrasound, 2, "UniformGrid", {"Envelope", "IQ", "RF"}),
+                (ultrasound, 3, "UniformGrid", {"AttenuationNpPerMHz", "Intensity", "StandardError"}),
+                (beating, 0, "UniformGrid", {"DisplacementMm", "Labels"}), (simple.Needle(), 0, "Geometry", {"Normals"})):
+            simple.OutputPort(source, port).UpdatePipeline()
+            shown = servermanager.ProxyManager().NewProxy("representations", kind + "Representation")
+            shown.GetProperty("Input").SetInputConnection(0, source.SMProxy, port)
+            shown.UpdateVTKObjects()
+            arrays = shown.GetProperty("ColorArrayName").FindDomain("vtkSMRepresentedArrayListDomain")
+            arrays.Update(shown.GetProperty("ColorArrayName"))
             self.assertEqual({arrays.GetString(i) for i in range(arrays.GetNumberOfStrings())}, wanted)
 
     def test_a_named_preset_survives_states_and_traces(self):

@@ -253,7 +253,7 @@ def set_property(hands, _):
 def set_by_script(hands, _):
     """As a macro or the Python shell does, past the panel."""
     proxy = hands.any_of(hands.ours())
-    numbers = [name for name in sorted(proxy.ListProperties())
+    numbers = [name for name in sorted(hands.properties(proxy))
                if not name.endswith("Info") and proxy.GetProperty(name) is not None and
                "VectorProperty" in type(proxy.GetProperty(name)).__name__ or name in LIGHT]
     name = hands.any_of(numbers)

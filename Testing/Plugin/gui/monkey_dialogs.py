@@ -101,7 +101,7 @@ class Dialogs:
     def choose_reader(dialog):
         """Ours: ParaView's own of NRRD ends the process when a header promises more than there is memory."""
         names = dialog.findChild(QtWidgets.QListWidget)
-        ours = [names.item(row) for row in range(names.count()) if "SonoVDB" in names.item(row).text()]
+        ours = [names.item(row) for row in range(names.count()) if "Label Map Reader" in names.item(row).text()]
         if ours:
             names.setCurrentItem(ours[0])
             dialog.accept()

@@ -74,10 +74,19 @@ class Hands:
         return f"{proxy.SMProxy.GetLogName() or ''} ({proxy.GetXMLName()})" if proxy else "nothing"
 
     @staticmethod
+    def properties(proxy):
+        """Names as in XML; ListProperties makes them of labels, where there are any."""
+        iterator = proxy.SMProxy.NewPropertyIterator()
+        iterator.Begin()
+        while not iterator.IsAtEnd():
+            yield iterator.GetKey()
+            iterator.Next()
+
+    @staticmethod
     def lighten(proxy):
         """Puts settings that would take long to compute within what is light."""
         limits = dict(LIGHT, **(LIGHT_FIELD if proxy.GetXMLName() == "SonoPulseEchoField" else {}))
-        names = set(proxy.ListProperties())
+        names = set(Hands.properties(proxy))
         for name, (least, most) in limits.items():
             property = proxy.GetProperty(name) if name in names else None
             if property is None or len(property) != 1:

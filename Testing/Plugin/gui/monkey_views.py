@@ -19,7 +19,7 @@ MOST_VIEWS, MOST_LAYOUTS = 6, 4
 def probe_at(hands, view):
     """Where the probe of the selected source is on the screen, or nothing."""
     source, proxy = simple.GetActiveSource(), simple.GetActiveView()
-    if not source or not proxy or "PositionMm" not in source.ListProperties() or not hasattr(proxy, "GetRenderer"):
+    if not source or not proxy or "PositionMm" not in hands.properties(source) or not hasattr(proxy, "GetRenderer"):
         return None
     renderer = proxy.GetRenderer()
     renderer.SetWorldPoint(*source.GetProperty("PositionMm"), 1)

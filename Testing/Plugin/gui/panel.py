@@ -17,6 +17,7 @@ sys.path.insert(0, os.environ["PANEL_SCRIPTS"])
 from monkey_hands import Hands  # noqa: E402
 
 FLAT_IMAGE = 7
+PICTURE_SHOWN = 1532  # SonoMovingViews's event
 LONGEST_S = 60
 QUIET_MS = 900  # longer than what a probe or a setting waits for before it counts as resting
 hands = Hands(pathlib.Path.cwd())
@@ -263,7 +264,7 @@ def choose_target(name):
 
 
 def needle():
-    """A needle that is made a target by the dialog and moved by its handles."""
+    """A needle that is made a target by the dialog, moved by its handles and put back by an undo."""
     ultrasound = yield from begin()
     note("without", ultrasound)
     position, axial = np.array(ultrasound.PositionMm), np.array(ultrasound.Axial)
@@ -290,17 +291,70 @@ def needle():
     yield 700
     widget = max(hands.views(), key=lambda each: each.height())
     x, y = on_screen(view, widget, stick.Tipmm)
+    on_the_way = watch(ultrasound)
     for step in range(5):
         hands.move(x + 8 * step, y + 4 * step)
         yield 200
         if step == 0:
             hands.press(1)
             yield 300
+        yield 700  # of which a picture needs some
+    found["on the way"] = [picture for picture, *_ in on_the_way]
     hands.let_go()
-    yield 700
-    press("Accept")
     yield from settle()
     note("moved", ultrasound, hub=[hub, list(stick.Hubmm)], tip=[tip, list(stick.Tipmm)])
+    trigger("actionEditUndo")
+    yield from settle()
+    note("put back", ultrasound, tip=list(stick.Tipmm))
+
+
+def watch(ultrasound):
+    """A list that grows with each picture on the way: the picture, the probe's lateral direction and the moment."""
+    shown = []
+    ultrasound.SMProxy.AddObserver(PICTURE_SHOWN, lambda *_: shown.append(
+        (hashlib.md5(flat_of(ultrasound).tobytes()).hexdigest(), list(ultrasound.Lateral), GetActiveView().ViewTime)))
+    return shown
+
+
+def cine():
+    """A loop of a turned probe and then of a heart that beats, played and gone back to."""
+    ultrasound = yield from begin()
+    FindSource("thorax").Phases = 3
+    RenderAllViews()
+    yield from settle()
+    hands.dock("pqSonoScannerDock").show()
+    yield 500
+    shown = watch(ultrasound)
+    for _ in range(4):
+        press("RotatePlus")
+        yield 400
+    yield from settle()
+    found["turned"] = list(shown)
+    press("Freeze")
+    yield 700
+    shown.clear()
+    press("CinePlay")
+    yield 6000
+    press("CinePlay")
+    found["played"] = list(shown)
+    yield from settle()
+    note("stopped", ultrasound)
+    press("Freeze")
+    yield from settle()
+    SetActiveSource(ultrasound)
+    shown.clear()
+    press("Beat")
+    while len({moment for _, _, moment in shown}) < 3:
+        yield 200
+    press("Freeze")
+    yield from settle()
+    found["beat"], found["beats on"] = list(shown), child(QtWidgets.QAbstractButton, "Beat").isChecked()
+    shown.clear()
+    scrubber = child(QtWidgets.QSlider, "Scrubber")
+    for back in (1, 2, 3):
+        scrubber.setValue(scrubber.maximum() - back)
+        yield 1500
+    found["back"] = list(shown)
 
 
 def type_keys(*names):
@@ -350,6 +404,13 @@ def keys():
     SetActiveSource(ultrasound)
     hands.dock("pqSonoScannerDock").show()
     yield 700
+    drawn = next(each for each in max(hands.views(), key=lambda view: view.height()).findChildren(QtWidgets.QWidget)
+                 if each.focusPolicy() & QtCore.Qt.TabFocus)
+    drawn.setFocus(QtCore.Qt.TabFocusReason)  # the pointer is elsewhere
+    for name in ("once", "walked"):  # the first step leads onto the skin of so coarse a body
+        type_keys("Right")
+        yield from settle()
+        note(name, ultrasound)
     nameless = [each.objectName() for dock in ("propertiesDock", "pqSonoScannerDock")
                 for each in hands.dock(dock).findChildren((QtWidgets.QLineEdit, QtWidgets.QSlider, QtWidgets.QAbstractSpinBox))
                 if each.isVisible() and each.focusPolicy() & QtCore.Qt.TabFocus
@@ -386,4 +447,4 @@ def fail(*failure):
 
 
 sys.excepthook = fail
-play = Play({"pose": pose, "scanner": scanner, "views": views, "needle": needle, "keys": keys}[os.environ["PANEL_SCENE"]]())
+play = Play({"pose": pose, "scanner": scanner, "views": views, "needle": needle, "cine": cine, "keys": keys}[os.environ["PANEL_SCENE"]]())
