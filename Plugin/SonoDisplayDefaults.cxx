@@ -327,10 +327,10 @@ const std::string notColors =
   "ElementCount|ElementWidthMm|ElevationApertureMm|ElevationFocusMm|ElevationLineCount|"
   "ElevationSectorDeg|FacePressureKPa|FractionalBandwidth|GainDb|ImagingMode|IsCatheter|IsVolume|"
   "FrameOfReference|KerfMm|LabelCodes|LabelColors|LabelIds|LabelNames|LabelTissues|LineCount|LinesApart|"
-  "Modality|MovingLabels|PoseAxial|PoseLateral|PosePositionMm|PrepareInteraction|Preview|"
+  "MovingLabels|PoseAxial|PoseLateral|PosePositionMm|PrepareInteraction|Preview|"
   "ProbeAxial|ProbeLateral|ProbePositionMm|RadialBinMm|RadiusMm|ReferenceAmplitude|Reverberation|"
   "ReverberationError|ReverberationNpPerMHz|RodDiameterMm|SamplingMHz|ScanKind|SectorDeg|SonoResult|SonoScene|"
-  "TgcDbPerCm|Text|Tissue|TracedPaths|TransmitFocusMm|WidthMm|ErrorDb|PixelMm)$";
+  "TgcDbPerCm|TracedPaths|TransmitFocusMm|WidthMm|ErrorDb|PixelMm)$";
 
 /// ParaView takes settings when it starts; what is loaded later has to tell the list itself.
 void hideFromColors(const std::string& expression)

@@ -26,6 +26,17 @@ bool hasColors(const char* array, vtkSMSessionProxyManager* manager)
          manager->GetProxy("lookup_tables", (std::string(array) + ".PVLookupTable").c_str());
 }
 
+/// With a part that it has not yet.
+void complete(vtkSMProxy* colors, const char* property, vtkSMProxy* part)
+{
+  vtkSMPropertyHelper helper(colors, property);
+  if (!helper.GetAsProxy())
+  {
+    helper.Set(part);
+    colors->UpdateVTKObjects();
+  }
+}
+
 } // namespace
 
 vtkSMProxy* sonoGreyColors(const char* array, vtkSMSessionProxyManager* manager)
@@ -37,11 +48,12 @@ vtkSMProxy* sonoGreyColors(const char* array, vtkSMSessionProxyManager* manager)
     vtkNew<vtkSMParaViewPipelineController> controller;
     controller->InitializeProxy(colors);
     vtkSMTransferFunctionProxy::ApplyPreset(colors, "Grayscale", false);
-    // As ParaView does for its own: its Color Map Editor crashes where a map has none of both.
-    vtkSMPropertyHelper(colors, "ScalarOpacityFunction").Set(tables->GetOpacityTransferFunction(array, manager));
-    vtkSMPropertyHelper(colors, "TransferFunction2D").Set(tables->GetTransferFunction2D(array, manager));
     controller->RegisterColorTransferFunctionProxy(colors, nameOf(array).c_str());
     colors->UpdateVTKObjects();
   }
-  return tables->GetColorTransferFunction(array, manager);
+  vtkSMProxy* shown = tables->GetColorTransferFunction(array, manager);
+  // As ParaView does for its own: its Color Map Editor crashes where a map has no opacity.
+  complete(shown, "ScalarOpacityFunction", tables->GetOpacityTransferFunction(array, manager));
+  complete(shown, "TransferFunction2D", tables->GetTransferFunction2D(array, manager));
+  return shown;
 }

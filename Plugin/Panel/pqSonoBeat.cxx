@@ -133,6 +133,7 @@ void pqSonoBeat::play(bool wanted)
 {
   if (wanted && (widget_ = find_()) && widget_->isLive())
   {
+    Q_EMIT this->begins();
     phase_ = -1;
     isPlaying_ = true;
     clock_.start();
@@ -148,7 +149,7 @@ void pqSonoBeat::play(bool wanted)
   }
   else if (wanted)
   {
-    Q_EMIT this->said(tr("Tick Live in the properties of Simulate Ultrasound, so that it scans without Apply."));
+    Q_EMIT this->said(pqSonoProbeWidget::tickLive());
     play_->setChecked(false);
   }
 }

@@ -35,6 +35,8 @@ public:
 Q_SIGNALS:
   /// What a person should know, one sentence.
   void said(const QString& sentence);
+  /// It holds the probe from now on.
+  void begins();
 
 private Q_SLOTS:
   void step();

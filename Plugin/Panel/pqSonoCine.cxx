@@ -91,8 +91,12 @@ void pqSonoCine::follow(pqPipelineSource* source)
   {
     source_->getProxy()->RemoveObserver(shown_);
   }
-  play_->setChecked(false);
-  settled_.stop();
+  this->end();
+  if (settled_.isActive())
+  {
+    settled_.stop();
+    sonoKeepTime(source_);
+  }
   source_ = source;
   pictures_.clear();
   times_.clear();
@@ -108,9 +112,14 @@ void pqSonoCine::setFrozen(bool frozen)
   frozen_ = frozen;
   if (!frozen_)
   {
-    play_->setChecked(false);
+    this->end();
   }
   this->showState();
+}
+
+void pqSonoCine::end()
+{
+  play_->setChecked(false);
 }
 
 void pqSonoCine::goTo(int place)

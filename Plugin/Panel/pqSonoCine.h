@@ -28,6 +28,8 @@ public:
   /// Whose poses are kept from now on; those of another are forgotten. None: nobody's.
   void follow(pqPipelineSource* source);
   void setFrozen(bool frozen);
+  /// As the button does while it plays.
+  void end();
 
 Q_SIGNALS:
   /// To a pose and its depth, and maybe to another moment of the anatomy, which is set by then.

@@ -4,6 +4,8 @@
 #include "SonoMovingViews.h"
 #include "SonoUltrasoundHere.h"
 #include "SonoWaiting.h"
+#include "pqSonoProbeWidget.h"
+#include "pqSonoStop.h"
 
 #include "pqActiveObjects.h"
 #include "pqCoreUtilities.h"
@@ -17,6 +19,7 @@
 
 #include <QGuiApplication>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -26,31 +29,22 @@ constexpr int settledMs = 300;
 constexpr std::array<const char*, 2> endNames{ "HubMm", "TipMm" };
 constexpr std::array<const char*, 2> handleNames{ "Point1WorldPosition", "Point2WorldPosition" };
 
-/// The handles that the panel shows of a source.
-pqInteractivePropertyWidget* handlesOf(const pqPropertiesPanel* panel, const pqPipelineSource* source)
+/// What the panel has made for a source, if it has.
+template<class Widget>
+Widget* widgetOf(const pqPropertiesPanel* panel, const pqPipelineSource* source)
 {
-  for (auto* widget : panel->findChildren<pqInteractivePropertyWidget*>())
-  {
-    if (widget->proxy() == source->getProxy())
-    {
-      return widget;
-    }
-  }
-  return nullptr;
+  const auto widgets = panel->findChildren<Widget*>();
+  const auto found = std::find_if(widgets.begin(), widgets.end(),
+                                  [source](const Widget* widget) { return widget->proxy() == source->getProxy(); });
+  return found == widgets.end() ? nullptr : *found;
 }
 
-/// The Simulate Ultrasounds that have it among their targets and show what they scan.
-QList<QPointer<pqPipelineSource>> picturesOf(const pqPipelineSource* needle)
+/// Whether a source shows what it scans as soon as it is scanned.
+bool isLive(const pqPropertiesPanel* panel, const pqPipelineSource* source)
 {
-  QList<QPointer<pqPipelineSource>> pictures;
-  for (pqPipelineSource* consumer : needle->getAllConsumers())
-  {
-    if (sonoIsUltrasound(consumer->getProxy()) && !sonoIsFrozen(consumer->getProxy()))
-    {
-      pictures.append(consumer);
-    }
-  }
-  return pictures;
+  const auto* probe = widgetOf<pqSonoProbeWidget>(panel, source);
+  return sonoIsUltrasound(source->getProxy()) && !sonoIsFrozen(source->getProxy()) && !pqSonoStop::waits(source) &&
+         (!probe || probe->isLive());
 }
 
 } // namespace
@@ -61,48 +55,73 @@ pqSonoNeedleFollow::pqSonoNeedleFollow(QObject* parent)
   soon_.setSingleShot(true);
   rest_.setSingleShot(true);
   rest_.setInterval(settledMs);
-  QObject::connect(&soon_, &QTimer::timeout, this, [this] { follow(); });
+  QObject::connect(&soon_, &QTimer::timeout, this, &pqSonoNeedleFollow::follow);
   QObject::connect(&rest_, &QTimer::timeout, this, [this] { rest(); });
-  // The panel is made after the toolbars.
-  QTimer::singleShot(0, this, [this] {
-    panel_ = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
-    if (panel_)
-    {
-      QObject::connect(panel_, &pqPropertiesPanel::modified, &soon_, QOverload<>::of(&QTimer::start));
-    }
-  });
+  // The panel is made after the toolbars, and what it shows after a source was chosen.
+  QObject::connect(
+    &pqActiveObjects::instance(), &pqActiveObjects::sourceChanged, this, [this] { watch(); }, Qt::QueuedConnection);
 }
 
 pqSonoNeedleFollow::~pqSonoNeedleFollow() = default;
 
-/// Whether a needle is dragged, or was and does not rest yet.
-bool pqSonoNeedleFollow::begin()
+/// The handles of the active needle; those before are let go when they rest.
+void pqSonoNeedleFollow::watch()
 {
-  if (shown_)
-  {
-    return needle_ && handles_;
-  }
   pqPipelineSource* active = pqActiveObjects::instance().activeSource();
-  const bool isNeedle = active && std::strcmp(active->getProxy()->GetXMLName(), "SonoNeedle") == 0 &&
-                        active->modifiedState() == pqProxy::MODIFIED && !sonoAnyWaits(active->getProxy());
-  pqInteractivePropertyWidget* handles = isNeedle ? handlesOf(panel_, active) : nullptr;
-  if (!handles || QGuiApplication::mouseButtons() == Qt::NoButton)
+  if (!active || std::strcmp(active->getProxy()->GetXMLName(), "SonoNeedle") != 0)
   {
-    return false; // what is typed waits for Apply
+    return;
   }
-  pictures_ = picturesOf(active);
-  if (pictures_.isEmpty())
+  panel_ = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
+  auto* handles = panel_ ? widgetOf<pqInteractivePropertyWidget>(panel_, active) : nullptr;
+  if (handles == handles_)
   {
-    return false;
+    return;
+  }
+  if (isMoving_)
+  {
+    this->rest();
+  }
+  if (handles_)
+  {
+    handles_->disconnect(this);
   }
   needle_ = active;
   handles_ = handles;
+  if (handles_)
+  {
+    this->connect(handles_, SIGNAL(startInteraction()), SLOT(grip()));
+    this->connect(handles_, SIGNAL(interaction()), &soon_, SLOT(start()));
+    this->connect(handles_, SIGNAL(endInteraction()), SLOT(finish()));
+  }
+}
+
+/// Before anything of it has been changed.
+bool pqSonoNeedleFollow::mayFollow() const
+{
+  const QList<pqPipelineSource*> consumers = needle_->getAllConsumers();
+  return needle_->modifiedState() == pqProxy::UNMODIFIED && !sonoAnyWaits() && !consumers.isEmpty() &&
+         std::all_of(consumers.begin(), consumers.end(),
+                     [this](const pqPipelineSource* consumer) { return isLive(panel_, consumer); });
+}
+
+void pqSonoNeedleFollow::grip()
+{
+  rest_.stop();
+  if (isMoving_ || !needle_ || !panel_ || !this->mayFollow())
+  {
+    return;
+  }
+  pictures_.clear();
+  for (pqPipelineSource* consumer : needle_->getAllConsumers())
+  {
+    pictures_.append(consumer);
+  }
   for (std::size_t end = 0; end < before_.size(); ++end)
   {
-    vtkSMPropertyHelper(active->getProxy(), endNames[end]).Get(before_[end].data(), 3);
+    vtkSMPropertyHelper(needle_->getProxy(), endNames[end]).Get(before_[end].data(), 3);
   }
-  shown_ = std::make_unique<SonoMovingViews>(pictures_.front()->getProxy());
-  return true;
+  isMoving_ = true;
 }
 
 pqSonoNeedleFollow::Ends pqSonoNeedleFollow::endsOfWidget() const
@@ -115,10 +134,8 @@ pqSonoNeedleFollow::Ends pqSonoNeedleFollow::endsOfWidget() const
   return ends;
 }
 
-/// No step of undo.
-void pqSonoNeedleFollow::push(const Ends& ends, bool preview)
+void pqSonoNeedleFollow::setPreview(bool preview)
 {
-  SCOPED_UNDO_EXCLUDE();
   for (const auto& picture : pictures_)
   {
     if (picture)
@@ -127,6 +144,10 @@ void pqSonoNeedleFollow::push(const Ends& ends, bool preview)
       picture->getProxy()->UpdateVTKObjects();
     }
   }
+}
+
+void pqSonoNeedleFollow::setEnds(const Ends& ends)
+{
   for (std::size_t end = 0; end < ends.size(); ++end)
   {
     vtkSMPropertyHelper(needle_->getProxy(), endNames[end]).Set(ends[end].data(), 3);
@@ -136,7 +157,7 @@ void pqSonoNeedleFollow::push(const Ends& ends, bool preview)
 
 void pqSonoNeedleFollow::follow()
 {
-  if (!panel_ || !this->begin())
+  if (!isMoving_ || !needle_ || !handles_ || !pictures_.front())
   {
     return;
   }
@@ -145,46 +166,62 @@ void pqSonoNeedleFollow::follow()
     soon_.start(); // not while something runs
     return;
   }
-  const Ends now = this->endsOfWidget();
-  this->push(now, true);
+  if (!shown_)
+  {
+    shown_ = std::make_unique<SonoMovingViews>(pictures_.front()->getProxy());
+  }
+  {
+    SCOPED_UNDO_EXCLUDE();
+    this->setPreview(true);
+    this->setEnds(this->endsOfWidget());
+  }
   shown_->draw();
+}
+
+void pqSonoNeedleFollow::finish()
+{
   rest_.start();
 }
 
 void pqSonoNeedleFollow::rest()
 {
-  if (QGuiApplication::mouseButtons() != Qt::NoButton ||
-      (needle_ && needle_->getProxy()->GetSession()->GetPendingProgress()))
+  if (!isMoving_)
+  {
+    return;
+  }
+  const bool isPending = needle_ && needle_->getProxy()->GetSession()->GetPendingProgress();
+  if (isPending || QGuiApplication::mouseButtons() != Qt::NoButton)
   {
     rest_.start();
     return;
   }
+  isMoving_ = false;
+  soon_.stop();
   const std::unique_ptr<SonoMovingViews> shown = std::move(shown_);
-  if (!needle_)
+  if (!needle_ || !handles_ || !panel_)
   {
-    return;
-  }
-  if (!handles_) // another source was selected meanwhile: it stays where the hand has left it
-  {
-    Ends last{};
-    for (std::size_t end = 0; end < last.size(); ++end)
-    {
-      vtkSMPropertyHelper(needle_->getProxy(), endNames[end]).Get(last[end].data(), 3);
-    }
-    this->push(last, false);
+    SCOPED_UNDO_EXCLUDE();
+    this->setPreview(false);
     return;
   }
   const Ends after = this->endsOfWidget();
-  shown->drawInFull();
+  if (shown)
+  {
+    shown->drawInFull();
+  }
   const SonoKeptAnatomy anatomy(pictures_.front() ? pictures_.front()->getProxy() : nullptr);
-  this->push(before_, false); // so that undo finds where it was, not a place on the way
+  {
+    // So that undo finds where it was, not a place on the way.
+    SCOPED_UNDO_EXCLUDE();
+    this->setPreview(false);
+    this->setEnds(before_);
+  }
   vtkSMProxy* widget = handles_->widgetProxy();
   for (std::size_t end = 0; end < after.size(); ++end)
   {
     vtkSMPropertyHelper(widget, handleNames[end]).Set(after[end].data(), 3);
   }
   widget->UpdateVTKObjects();
-  Q_EMIT handles_->changeAvailable();
+  needle_->setModifiedState(pqProxy::MODIFIED);
   panel_->apply();
-  needle_ = nullptr;
 }

@@ -14,9 +14,10 @@ class pqInteractivePropertyWidget;
 class pqPipelineSource;
 class pqPropertiesPanel;
 
-/// Shows a needle that is dragged in the pictures that have it among their targets, as pictures of a moving probe; when
-/// it rests, it is as if its ends had been typed and applied. Unless something else waits for Apply. A frozen picture
-/// stays as it is.
+/// Shows a needle that is dragged by its handles in the pictures that have it among their targets, as pictures of a
+/// moving probe; when it rests, it is as if its ends had been typed and applied. It waits for Apply, as ever, where
+/// something else does, where one of those pictures is frozen, was stopped or is not live, and where another filter
+/// takes it as well.
 class pqSonoNeedleFollow : public QObject
 {
   Q_OBJECT
@@ -25,21 +26,28 @@ public:
   explicit pqSonoNeedleFollow(QObject* parent = nullptr);
   ~pqSonoNeedleFollow() override;
 
+private Q_SLOTS:
+  void grip();
+  void follow();
+  void finish();
+
 private:
   using Ends = std::array<std::array<double, 3>, 2>;
 
-  bool begin();
-  void follow();
+  void watch();
   void rest();
-  void push(const Ends& ends, bool preview);
+  bool mayFollow() const;
+  void setPreview(bool preview);
+  void setEnds(const Ends& ends);
   Ends endsOfWidget() const;
 
   QTimer soon_; // once for all that a hand does meanwhile
   QTimer rest_;
   QPointer<pqPropertiesPanel> panel_;
-  QPointer<pqPipelineSource> needle_;             // while it moves
-  QPointer<pqInteractivePropertyWidget> handles_; // of it
-  QList<QPointer<pqPipelineSource>> pictures_;    // that show it
+  QPointer<pqPipelineSource> needle_;             // whose handles are watched
+  QPointer<pqInteractivePropertyWidget> handles_; // these
+  bool isMoving_ = false;                         // and has not come to rest
+  QList<QPointer<pqPipelineSource>> pictures_;    // that show it while it moves
   Ends before_{};
   std::unique_ptr<SonoMovingViews> shown_;
 };

@@ -153,6 +153,7 @@ void pqSonoPath::play(bool wanted)
   pqPipelineSource* path = this->lastPath();
   if (wanted && path && (widget_ = find_()))
   {
+    Q_EMIT this->begins();
     poses_ = sonoPathOf(path);
     clock_.start();
     widget_->hold(true);
@@ -167,6 +168,11 @@ void pqSonoPath::play(bool wanted)
     }
   }
   this->showState();
+}
+
+void pqSonoPath::end()
+{
+  play_->setChecked(false);
 }
 
 void pqSonoPath::step()

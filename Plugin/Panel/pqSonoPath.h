@@ -27,10 +27,14 @@ public:
 
   /// Whose probe is recorded and moved; none: nobody's.
   void follow(pqPipelineSource* source);
+  /// No longer plays.
+  void end();
 
 Q_SIGNALS:
   /// What a person should know, one sentence.
   void said(const QString& sentence);
+  /// It holds the probe from now on.
+  void begins();
 
 private Q_SLOTS:
   void take();

@@ -59,6 +59,11 @@ bool pqSonoProbeWidget::isLive() const
   return this->Live->isChecked() && source && source->modifiedState() != pqProxy::UNINITIALIZED;
 }
 
+QString pqSonoProbeWidget::tickLive()
+{
+  return tr("Tick Live in the properties of Simulate Ultrasound, so that it scans without Apply.");
+}
+
 /// While it is frozen, only what the scanner's panel asks for.
 bool pqSonoProbeWidget::mayScan() const
 {

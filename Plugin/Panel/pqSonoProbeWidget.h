@@ -62,6 +62,8 @@ public:
   void hold(bool held);
   /// Whether it scans without Apply.
   bool isLive() const;
+  /// What to tell a person who needs that.
+  static QString tickLive();
   /// A picture on the way of where it stands, while it is held: of another moment.
   void showAgain();
 

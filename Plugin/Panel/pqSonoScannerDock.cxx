@@ -135,21 +135,16 @@ pqSonoScannerDock::pqSonoScannerDock(QWidget* parent)
   rows_->addWidget(beat_);
   QObject::connect(beat_, &pqSonoBeat::said, this, [this](const QString& sentence) { say(sentence); });
   QObject::connect(path_, &pqSonoPath::said, this, [this](const QString& sentence) { say(sentence); });
-  QObject::connect(cine_, &pqSonoCine::scrubbed, this, [this](const SonoWindow& at, bool isOtherMoment) {
-    if (pqSonoProbeWidget* widget = probeWidget())
-    {
-      widget->goTo(at);
-      if (isOtherMoment)
-      {
-        widget->showAgain();
-      }
-    }
+  QObject::connect(cine_, &pqSonoCine::scrubbed, this, &pqSonoScannerDock::scrub);
+  QObject::connect(cine_, &pqSonoCine::played, this, &pqSonoScannerDock::playCine);
+  // One alone moves the probe.
+  QObject::connect(beat_, &pqSonoBeat::begins, this, [this] {
+    path_->end();
+    cine_->end();
   });
-  QObject::connect(cine_, &pqSonoCine::played, this, [this](bool isPlaying) {
-    if (pqSonoProbeWidget* widget = probeWidget())
-    {
-      widget->hold(isPlaying);
-    }
+  QObject::connect(path_, &pqSonoPath::begins, this, [this] {
+    beat_->end();
+    cine_->end();
   });
   rows_->addStretch();
 
@@ -278,6 +273,10 @@ void pqSonoScannerDock::enable()
   {
     act->setEnabled(source_ && this->isVisible());
   }
+  if (!this->isVisible())
+  {
+    cine_->end(); // which nobody could stop
+  }
   this->showFrozen();
   this->showPlane();
 }
@@ -285,11 +284,49 @@ void pqSonoScannerDock::enable()
 void pqSonoScannerDock::showFrozen()
 {
   const QSignalBlocker quiet(freezeAct_);
-  freezeAct_->setChecked(source_ && sonoIsFrozen(source_->getProxy()));
-  cine_->setFrozen(freezeAct_->isChecked());
-  if (freezeAct_->isChecked())
+  const bool isFrozen = source_ && sonoIsFrozen(source_->getProxy());
+  if (isFrozen && !freezeAct_->isChecked())
+  {
+    beat_->end(); // by an undo, say
+  }
+  freezeAct_->setChecked(isFrozen);
+  cine_->setFrozen(isFrozen);
+}
+
+void pqSonoScannerDock::scrub(const SonoWindow& at, bool isOtherMoment)
+{
+  pqSonoProbeWidget* widget = played_ ? played_.data() : this->probeWidget();
+  if (!widget || !widget->isLive())
+  {
+    cine_->end();
+    return;
+  }
+  widget->goTo(at);
+  if (isOtherMoment)
+  {
+    widget->showAgain();
+  }
+}
+
+void pqSonoScannerDock::playCine(bool isPlaying)
+{
+  if (isPlaying && (played_ = this->probeWidget()) && played_->isLive())
   {
     beat_->end();
+    path_->end();
+    played_->hold(true);
+    return;
+  }
+  if (isPlaying)
+  {
+    played_ = nullptr;
+    this->say(pqSonoProbeWidget::tickLive());
+    cine_->end();
+  }
+  else if (played_)
+  {
+    played_->hold(false);
+    played_ = nullptr;
   }
 }
 
@@ -312,6 +349,10 @@ void pqSonoScannerDock::nudge(const char* property, double step)
 
 void pqSonoScannerDock::freeze(bool frozen)
 {
+  if (frozen)
+  {
+    beat_->end();
+  }
   {
     SCOPED_UNDO_SET(frozen ? tr("Freeze") : tr("Unfreeze"));
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source_->getProxy());

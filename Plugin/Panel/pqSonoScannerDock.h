@@ -20,6 +20,7 @@ class pqSonoCine;
 class pqSonoPath;
 class pqSonoProbeWidget;
 class vtkSMProperty;
+struct SonoWindow;
 
 /// The scanner's panel: the properties of the Simulate Ultrasound that was selected last that a sonographer knows, in
 /// ParaView's own widgets, and freeze, cine loop, store, flip and the other plane. Like the properties panel it changes
@@ -52,6 +53,8 @@ private:
   void storeIn(const QString& folder);
   void turnPlane();
   void toggleBiplane();
+  void playCine(bool isPlaying);
+  void scrub(const SonoWindow& at, bool isOtherMoment);
   bool isPlaneTurned() const;
   pqSonoProbeWidget* probeWidget() const;
   void say(const QString& sentence);
@@ -69,6 +72,7 @@ private:
   /// Properties of the source, and who looks at them.
   std::vector<std::pair<vtkWeakPointer<vtkSMProperty>, unsigned long>> watched_;
   pqSonoCine* cine_;
+  QPointer<pqSonoProbeWidget> played_; // that its loop moves
   pqSonoPath* path_;
   pqSonoBeat* beat_;
   QString folder_;                 // where pictures were stored last

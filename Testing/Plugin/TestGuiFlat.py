@@ -60,6 +60,7 @@ for (name, _), source in GetSources().items():
                          int(image.GetPointData().GetArray("BMode").GetValue(at))]
 view = next(v for v in GetViews() if v.GetXMLName() == "RenderView" and v.InteractionMode == "2D")
 SaveScreenshot(sys.argv[2] + ".png", view, ImageResolution=[416, 313], FontScaling="Do not scale fonts")
+SaveAnimation(sys.argv[2] + "-clip.png", view, ImageResolution=[416, 313], FontScaling="Do not scale fonts", FrameWindow=[0, 0])
 with open(sys.argv[2] + ".json", "w", encoding="utf-8") as file:
     json.dump(said, file)
 """
@@ -120,6 +121,8 @@ class TestGuiFlat(GuiCase):
     def ask(self, state, folder, place=(0.0, 50.0)):
         to = pathlib.Path(folder, state.stem + "-asked")
         self.run_script(ASK, folder, state, to, *place)
+        (clip,) = pathlib.Path(folder).glob(f"{to.name}-clip.*.png")
+        self.assertEqual(pixels(clip), pixels(to.with_suffix(".png")))  # exported clips have what screenshots have
         return json.loads(to.with_suffix(".json").read_text(encoding="utf-8")), pixels(to.with_suffix(".png"))
 
     def test_text_outlines_and_caliper(self):

@@ -7,10 +7,19 @@ import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from guicase import PLAYBACKS, GuiCase
+from guicase import PLAYBACKS, GuiCase, bytes_of
 from person import Person, while_acting
 
 THORAX = (85, 197)  # its row in the pipeline browser
+WIDTH, HEIGHT = 416, 313
+# The flat view of a state, and the fullest other one, as pictures.
+DRAW = f"""
+LoadState(sys.argv[1])
+views = [v for v in GetViews() if v.GetXMLName() == "RenderView"]
+for name, mode in (("flat", "2D"), ("body", "3D")):
+    view = max((v for v in views if v.InteractionMode == mode), key=lambda v: sum(r.Visibility for r in v.Representations))
+    SaveScreenshot(sys.argv[2] + name + ".png", view, ImageResolution=[{WIDTH}, {HEIGHT}])
+"""
 
 
 class TestGuiStop(GuiCase):
@@ -66,11 +75,27 @@ class TestGuiStop(GuiCase):
             stopped, whole = ([p.get("type") for p in ElementTree.parse(pathlib.Path(folder, name)).iter("Proxy")
                                if p.get("group") in ("views", "sources", "filters")]
                               for name in ("stopped.pvsm", "whole.pvsm"))
+            self.run_script(DRAW, folder, pathlib.Path(folder, "whole.pvsm"), f"{folder}/")
+            flat, body = (bytes_of(pathlib.Path(folder, f"{name}.png"), 3 * WIDTH * HEIGHT) for name in ("flat", "body"))
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertNotIn("ERR|", done.stdout)
         self.assertIn("SonoUltrasound", stopped)
         self.assertEqual([types.count("XYChartView") for types in (stopped, whole)], [0, 1])
         self.assertEqual(whole.count("RenderView"), stopped.count("RenderView") + 2)
+        # The flat image is grey, and the body is there.
+        bright, coloured = self.shares(flat)
+        self.assertGreater(bright, 0.05)
+        self.assertLess(coloured, 0.01)
+        side = 3 * WIDTH * HEIGHT // 2  # the middle of the left border
+        filled = sum(max(abs(a - b) for a, b in zip(body[i:i + 3], body[side:side + 3])) > 10 for i in range(0, len(body), 3))
+        self.assertGreater(filled, 0.08 * WIDTH * HEIGHT)
+
+    @staticmethod
+    def shares(picture):
+        """Of the pixels that are not dark, and of those that have a colour."""
+        pixels = [picture[i:i + 3] for i in range(0, len(picture), 3)]
+        return (sum(max(each) > 60 for each in pixels) / len(pixels),
+                sum(max(each) - min(each) > 60 for each in pixels) / len(pixels))
 
     @staticmethod
     def setting(state, name):

@@ -154,7 +154,7 @@ class TestUltrasound(unittest.TestCase):
                 (ultrasound, 0, "UniformGrid", {"BMode", "Labels", "Mask"}), (ultrasound, 7, "UniformGrid", {"BMode", "Labels", "Mask"}),
                 (ultrasound, 1, "UniformGrid", {"BMode"}), (ultrasound, 2, "UniformGrid", {"Envelope", "IQ", "RF"}),
                 (ultrasound, 3, "UniformGrid", {"AttenuationNpPerMHz", "Intensity", "StandardError"}),
-                (beating, 0, "UniformGrid", {"DisplacementMm", "Labels"}), (simple.Needle(), 0, "Geometry", set())):
+                (beating, 0, "UniformGrid", {"DisplacementMm", "Labels"}), (simple.Needle(), 0, "Geometry", {"Tissue"})):
             simple.OutputPort(source, port).UpdatePipeline()
             shown = servermanager.ProxyManager().NewProxy("representations", kind + "Representation")
             shown.GetProperty("Input").SetInputConnection(0, source.SMProxy, port)

@@ -1,11 +1,11 @@
 """Watches whether a window of ParaView answers. Needs python3-xlib.
 
 As a desktop does, it pings the window (_NET_WM_PING of the window managers' specification), and the monkey within notes when the
-ping comes through, with all other events, and when its timers fire. A window hangs that has not looked at its events for more
-than 5 s on a machine like that of the figures (Speed); what its threads waited for a processor that other processes had does
-not count. A simulation that can be
-stopped looks at events as it goes, though no timer fires meanwhile: after 5 s of that Escape is pressed, as a person would,
-and a run that is not over 5 s later cannot be stopped, which counts as a hang, too."""
+ping comes through, with all other events, and when its timers fire or a run or a picture has ended. A window hangs that has not
+looked at its events for more than 5 s on a machine like that of the figures (Speed); what its threads waited for a processor that
+other processes had does not count. A simulation that can be stopped looks at events as it goes, though no timer fires meanwhile:
+after 5 s of that Escape is pressed, as a person would, and a run that is not over 5 s later cannot be stopped, which counts as a
+hang, too."""
 import collections
 import mmap
 import os

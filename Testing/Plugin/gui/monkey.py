@@ -52,6 +52,9 @@ class Driver:
         with open("heart", "r+b") as file:
             self.heart = mmap.mmap(file.fileno(), 16)
         self.beats = 0
+        # The end of a run or of a picture is a beat, too: none of them alone may last.
+        self.runs = simple.servermanager.ActiveConnection.Session.GetProgressHandler()
+        self.ended = self.runs.AddObserver("EndEvent", lambda *_: self.note_beat())
         self.pings = Pings(self.heart, self.hands.x.intern_atom("_NET_WM_PING"))
         self.hands.app.installNativeEventFilter(self.pings)
         self.dialogs = monkey_dialogs.Dialogs(self.hands)
@@ -65,9 +68,12 @@ class Driver:
 
     def beat(self):
         """The event loop turns."""
+        self.note_beat()
+        self.dialogs.serve()
+
+    def note_beat(self):
         self.beats += 1
         self.heart[:8] = self.beats.to_bytes(8, "little")
-        self.dialogs.serve()
 
     def step(self):
         """One step of the action, or the next one."""
@@ -115,6 +121,7 @@ class Driver:
         self.settling = SETTLING_TICKS
         if self.number >= self.count:
             say("END")
+            self.runs.RemoveObserver(self.ended)
             for timer in self.timers:
                 timer.stop()
             QtCore.QTimer.singleShot(0, QtWidgets.QApplication.instance().quit)
