@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/Require.h"
+#include "Core/Simd.h"
 #include "Image/Haze.h"
 #include "Image/ReceiverNoise.h"
 #include "Kernel/GreyLevel.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 namespace sono {
@@ -30,6 +32,27 @@ double sliderGainDb(const GainSliders& sliders, double share)
   return sliders[i] + (position - double(i)) * (sliders[i + 1] - sliders[i]);
 }
 
+constexpr int chunk = 512; // samples whose bits are found together
+
+SONO_SIMD_CLONES __attribute__((flatten)) void bitsOf(const float* __restrict envelope, const float* __restrict factor,
+                                                      int count, std::uint32_t* __restrict bits)
+{
+  for (int s = 0; s < count; ++s)
+  {
+    bits[s] = gainedBits(envelope[s], factor[s]);
+  }
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void compress(const float* __restrict envelope,
+                                                        const float* __restrict offsetDb, float lineDb, float rangeDb,
+                                                        float rejectDb, int count, float* __restrict grey)
+{
+  for (int s = 0; s < count; ++s)
+  {
+    grey[s] = compressedLevel(envelope[s], offsetDb[s] + lineDb, rangeDb, rejectDb);
+  }
+}
+
 /// Exact order statistic in two passes: the upper bits of the floats are counted, then the values that share the
 /// wanted upper bits are sorted out. Counts and order statistics do not depend on who counted.
 class RankSearch
@@ -43,11 +66,11 @@ public:
     , lineCount_(lineCount)
   {
     tbb::enumerable_thread_specific<Histogram> partial([] { return Histogram(binCount, 0u); });
-    forEachLine([&](const float* line) {
+    forEachChunk([&](const std::uint32_t* bits, int count) {
       auto& counts = partial.local();
-      for (std::size_t s = first_; s < factor_.size(); ++s)
+      for (int s = 0; s < count; ++s)
       {
-        ++counts[gainedBits(line[s], factor_[s]) >> lowBits];
+        ++counts[bits[s] >> lowBits];
       }
     });
     for (const auto& counts : partial)
@@ -77,25 +100,29 @@ private:
   static constexpr int lowBits = 16;
   static constexpr std::size_t binCount = std::size_t(1) << (31 - lowBits);
 
+  /// `work` is given the gained bits of some samples of a line, and how many these are.
   template<class Work>
-  void forEachLine(const Work& work) const
+  void forEachChunk(const Work& work) const
   {
-    parallelFor(lineCount_, {}, [&](int l) { work(envelope_.data() + std::size_t(l) * factor_.size()); });
+    parallelFor(lineCount_, {}, [&](int l) {
+      const float* line = envelope_.data() + std::size_t(l) * factor_.size();
+      std::uint32_t bits[chunk];
+      for (std::size_t first = first_; first < factor_.size(); first += chunk)
+      {
+        const int count = int(std::min<std::size_t>(chunk, factor_.size() - first));
+        bitsOf(line + first, factor_.data() + first, count, bits);
+        work(bits, count);
+      }
+    });
   }
 
   std::vector<std::uint32_t> collect(std::uint32_t bin) const
   {
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> partial;
-    forEachLine([&](const float* line) {
+    forEachChunk([&](const std::uint32_t* bits, int count) {
       auto& found = partial.local();
-      for (std::size_t s = first_; s < factor_.size(); ++s)
-      {
-        const std::uint32_t bits = gainedBits(line[s], factor_[s]);
-        if (bits >> lowBits == bin)
-        {
-          found.push_back(bits);
-        }
-      }
+      std::copy_if(bits, bits + count, std::back_inserter(found),
+                   [bin](std::uint32_t value) { return value >> lowBits == bin; });
     });
     std::vector<std::uint32_t> all;
     for (const auto& found : partial)
@@ -293,10 +320,7 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   const std::vector<float> lineDb = lateralGainDb(settings, lineCount);
   parallelFor(lineCount, {}, [&](int l) {
     const std::size_t first = std::size_t(l) * sampleCount;
-    for (std::size_t s = 0; s < offsetDb.size(); ++s)
-    {
-      grey[first + s] = compressedLevel(envelope[first + s], offsetDb[s] + lineDb[l], rangeDb, rejectDb);
-    }
+    compress(envelope.data() + first, offsetDb.data(), lineDb[l], rangeDb, rejectDb, sampleCount, grey + first);
   });
   if (smooths && settings.smoothCompressed)
   {

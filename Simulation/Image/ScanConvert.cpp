@@ -1,6 +1,7 @@
 #include "Image/ScanConvert.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
 #include "Kernel/PlaneScan.h"
 
 #include <algorithm>
@@ -12,21 +13,37 @@ namespace {
 
 constexpr double maxPixels = 268435456.0; // 2^28
 
-/// Lines and depths of a row of pixels.
-void beamsOfRow(const PlaneBeams& beams, float axialMm, const std::vector<float>& lateralMm, float* line,
-                float* depthMm)
+/// A row of pixels: the level of each that is scanned, and 1 in its mask.
+SONO_SIMD_CLONES __attribute__((flatten)) void convertRow(const PlaneScan& of, const float* values,
+                                                          const float* __restrict lateralMm, float axialMm, int count,
+                                                          float* __restrict line, float* __restrict depthMm,
+                                                          float* __restrict level, std::uint8_t* __restrict mask)
 {
+  const PlaneBeams beams = of.beams;
+  const ScannedArea area = of.area;
+  const BeamSamples samples = of.samples(values);
+  const float samplesPerMm = of.samplesPerMm;
   const float x = beams.axialFromCentre(axialMm);
   const float forward = PlaneBeams::notZero(x);
-  for (std::size_t i = 0; beams.parallel && i < lateralMm.size(); ++i)
+  for (int i = 0; beams.parallel && i < count; ++i)
   {
     line[i] = beams.lineOfParallel(lateralMm[i]);
     depthMm[i] = x - beams.faceRadiusMm;
   }
-  for (std::size_t i = 0; !beams.parallel && i < lateralMm.size(); ++i)
+  for (int i = 0; !beams.parallel && i < count; ++i)
   {
     line[i] = beams.lineOfFan(lateralMm[i], forward);
     depthMm[i] = beams.depthInFan(lateralMm[i], x);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    level[i] = samples.at(line[i], depthMm[i] * samplesPerMm);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const bool isScanned = area.contains(line[i], depthMm[i]);
+    level[i] = isScanned ? level[i] : 0.0f;
+    mask[i] = isScanned ? 1 : 0;
   }
 }
 
@@ -118,7 +135,6 @@ PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& v
   image.value.resize(std::size_t(image.width) * image.height);
   image.mask.resize(image.value.size());
 
-  const BeamSamples samples = scan.samples(values.data());
   std::vector<float> lateralMm(image.width);
   for (int i = 0; i < image.width; ++i)
   {
@@ -130,25 +146,21 @@ PlaneImage scanConvert(const ScanGeometry& geometry, const std::vector<float>& v
     std::vector<float> depthMm(image.width);
     for (int j = part * rowsTogether; j < std::min((part + 1) * rowsTogether, image.height); ++j)
     {
-      beamsOfRow(scan.beams, scan.axialMm(j), lateralMm, line.data(), depthMm.data());
-      float* value = image.value.data() + std::size_t(j) * image.width;
+      float* level = image.value.data() + std::size_t(j) * image.width;
       std::uint8_t* mask = image.mask.data() + std::size_t(j) * image.width;
+      if (scan.fanCount == 1)
+      {
+        convertRow(scan, values.data(), lateralMm.data(), scan.axialMm(j), image.width, line.data(), depthMm.data(),
+                   level, mask);
+        continue;
+      }
+      const float x = scan.beams.axialFromCentre(scan.axialMm(j));
       for (int i = 0; i < image.width; ++i)
       {
-        if (!scan.area.contains(line[i], depthMm[i]))
-        {
-          continue;
-        }
-        if (scan.fanCount > 1)
-        {
-          const float x = scan.beams.axialFromCentre(scan.axialMm(j));
-          mask[i] = scan.compound(values.data(), lateralMm[i], x, value[i]) ? 1 : 0;
-        }
-        else
-        {
-          value[i] = samples.at(line[i], depthMm[i] * scan.samplesPerMm);
-          mask[i] = 1;
-        }
+        float unsteered = 0.0f;
+        float depth = 0.0f;
+        scan.beams.beamAt(lateralMm[i], x, unsteered, depth);
+        mask[i] = scan.area.contains(unsteered, depth) && scan.compound(values.data(), lateralMm[i], x, level[i]);
       }
     }
   });

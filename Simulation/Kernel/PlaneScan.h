@@ -76,23 +76,25 @@ struct BeamSamples
   int sampleCount;
   bool closed;
 
+  static constexpr float largestLine = 3e38f; // which no line is beyond
   SONO_HD static float within(float x, float low, float high) { return x < low ? low : (x > high ? high : x); }
+  /// Without a branch, and by numbers instead of pointers, so that host loops vectorise; fewer than 2^31 values.
   SONO_HD float at(float line, float sample) const
   {
-    const float turned = line < float(lineCount) ? line : line - float(lineCount);
-    const float wanted = closed || line < float(lineCount - 1) ? turned : float(lineCount - 1);
-    const float lineInside = wanted > 0.0f ? wanted : 0.0f;
+    const float turn = closed ? float(lineCount) : largestLine;
+    const float last = closed ? float(lineCount) : float(lineCount - 1);
+    const float lineInside = within(line < turn ? line : line - turn, 0.0f, last);
     const float sampleInside = within(sample, 0.0f, float(sampleCount - 1));
-    const int l = int(lineInside);
+    const int l = int(lineInside) < lineCount ? int(lineInside) : lineCount - 1;
     const int s = int(sampleInside);
     const float fl = lineInside - float(l);
     const float fs = sampleInside - float(s);
-    const float* near = values + std::size_t(l) * std::size_t(sampleCount) + s;
-    const float* last = values + std::size_t(lineCount - 1) * std::size_t(sampleCount);
-    const float* far = near < last ? near + sampleCount : closed ? values + s : near;
+    const int afterLast = closed ? 0 : lineCount - 1;
+    const int near = l * sampleCount + s;
+    const int far = (l + 1 < lineCount ? l + 1 : afterLast) * sampleCount + s;
     const int deeper = s + 1 < sampleCount ? 1 : 0;
-    const float nearValue = near[0] + fs * (near[deeper] - near[0]);
-    const float farValue = far[0] + fs * (far[deeper] - far[0]);
+    const float nearValue = values[near] + fs * (values[near + deeper] - values[near]);
+    const float farValue = values[far] + fs * (values[far + deeper] - values[far]);
     return nearValue + fl * (farValue - nearValue);
   }
 };
@@ -107,7 +109,7 @@ struct ScannedArea
 
   SONO_HD bool contains(float line, float depthMm) const
   {
-    return line >= -lineSlack && line <= lastLine && depthMm >= firstMm && depthMm <= lastMm;
+    return (line >= -lineSlack) & (line <= lastLine) & (depthMm >= firstMm) & (depthMm <= lastMm);
   }
 };
 

@@ -43,9 +43,9 @@ KNOWN = {
     r"smstate.py.*Untraceable: .* is not 'known' at this point",
     # An image under a name whose ending is none of its writers': ParaView's dialog falls back on CGNS, which it cannot hold.
     r"vtkPCGNSWriter.*(Unable to write data object of class vtkImageData|returned failure for request)",
-    # The same of a surface, for which it falls back on PVD, whose folder would have the name of a file that is there.
+    # The same of a surface or a table, for which it falls back on PVD, whose folder would have the name of a file that is there.
     r"vtkXMLPVDWriter.*Sorry unable to create directory",
-    r'vtkXMLWriter.*(Error opening output file "[^"]*/(\w+\.\w+)/\2_\d+\.vtp"|Error code "Not a directory")',
+    r'vtkXMLWriter.*(Error opening output file "[^"]*/(\w+\.\w+)/\2_\d+\.vt[pt]"|Error code "Not a directory")',
     # VTK 9.2's selector compares the number of a prop before it has one, with what lies in the memory by chance: its constructor
     # leaves that number (PropID) out.
     r"vtkPVHardwareSelector.*Too many props",
