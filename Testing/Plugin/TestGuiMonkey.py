@@ -279,7 +279,7 @@ class TestGuiMonkey(GuiCase):
         if killer:
             killer.cancel()
         print(f"{judge.done} actions in {time.monotonic() - begun:.0f} s; the window was silent for {dog.longest_s:.1f} s at "
-              f"most, on a machine {dog.slowest:.1f} times as slow as that of the figures at most; {dog.stops} runs stopped after 5 s; {sum(judge.explained.values())} errors that are explained, of "
+              f"most; {dog.stops} runs stopped after 5 s; {sum(judge.explained.values())} errors that are explained, of "
               f"{len(judge.explained)} kinds", flush=True)
         return code
 

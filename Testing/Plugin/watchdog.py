@@ -2,11 +2,9 @@
 
 As a desktop does, it pings the window (_NET_WM_PING of the window managers' specification), and the monkey within notes when the
 ping comes through, with all other events, and when its timers fire or a run or a picture has ended. A window hangs that has not
-looked at its events for more than 5 s on a machine like that of the figures (Speed); what its threads waited for a processor that
-other processes had does not count. A simulation that can be stopped looks at events as it goes, though no timer fires meanwhile:
-after 5 s of that Escape is pressed, as a person would, and a run that is not over 5 s later cannot be stopped, which counts as a
-hang, too."""
-import collections
+looked at its events for more than 5 s; what its threads waited for a processor that other processes had does not count. A
+simulation that can be stopped looks at events as it goes, though no timer fires meanwhile: after 5 s of that Escape is pressed, as
+a person would, and a run that is not over 5 s later cannot be stopped, which counts as a hang, too."""
 import mmap
 import os
 import pathlib
@@ -21,29 +19,6 @@ from person import press_keys
 
 LONGEST_S = 5.0  # unless somebody who knows better says more
 PING_S = 0.25
-STEPS = 200000
-STEPS_S = 0.0037  # of a processor that made the figures
-OVER_S = 60.0
-EACH_S = 5.0
-
-
-class Speed:
-    """How many times as long as the machine of the figures this one takes for a loop: at least 1, and the least of a minute, since
-    a processor that shares its core with a busy one is slow for as long as that."""
-
-    def __init__(self):
-        self.taken = collections.deque()
-
-    def slowness(self):
-        now = time.monotonic()
-        if not self.taken or now - self.taken[-1][0] > EACH_S:
-            begun, i = time.thread_time(), 0
-            while i < STEPS:
-                i += 1
-            self.taken.append((now, time.thread_time() - begun))
-        while now - self.taken[0][0] > OVER_S:
-            self.taken.popleft()
-        return max(1.0, min(seconds for _, seconds in self.taken) / STEPS_S)
 
 
 class Clock:
@@ -97,7 +72,6 @@ class Watchdog:
         self.hung = hung
         self.limit_s = longest_s
         self.longest_s = 0.0
-        self.slowest = 1.0
         self.stops = 0
         self.ended = threading.Event()
         self.display = display.Display(display_name)
@@ -132,7 +106,7 @@ class Watchdog:
     def watch(self):
         number = seen = 0
         answered = beaten = None  # when, by the clock
-        clock, speed = Clock(self.pid), Speed()
+        clock = Clock(self.pid)
         beat, told, escaped = bytes(8), False, None
         while not self.ended.wait(PING_S):
             try:
@@ -153,18 +127,16 @@ class Watchdog:
                 continue  # the monkey has not begun
 
             silent, busy = now - answered, now - beaten
-            slowness = speed.slowness()
-            self.slowest = max(self.slowest, slowness)
             self.longest_s = max(self.longest_s, silent)
-            if silent > self.limit_s() * slowness:
+            if silent > self.limit_s():
                 if not told:
                     told = True
                     self.hung(f"the window does not answer for {silent:.1f} s")
                     beaten = None  # whoever looks into it with a debugger stops it
-            elif busy > self.limit_s() * slowness and escaped is None:
+            elif busy > self.limit_s() and escaped is None:
                 escaped = now
                 self.stops += 1
                 press_keys(self.display, "Escape")
-            elif escaped is not None and now - escaped > LONGEST_S * slowness:
+            elif escaped is not None and now - escaped > LONGEST_S:
                 self.hung(f"a run of {busy:.1f} s does not stop {now - escaped:.1f} s after Escape")
                 beaten = escaped = None
