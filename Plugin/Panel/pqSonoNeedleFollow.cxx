@@ -4,6 +4,7 @@
 #include "SonoMovingViews.h"
 #include "SonoUltrasoundHere.h"
 #include "SonoWaiting.h"
+#include "SonoWidgetOf.h"
 #include "pqSonoProbeWidget.h"
 #include "pqSonoStop.h"
 
@@ -29,20 +30,10 @@ constexpr int settledMs = 300;
 constexpr std::array<const char*, 2> endNames{ "HubMm", "TipMm" };
 constexpr std::array<const char*, 2> handleNames{ "Point1WorldPosition", "Point2WorldPosition" };
 
-/// What the panel has made for a source, if it has.
-template<class Widget>
-Widget* widgetOf(const pqPropertiesPanel* panel, const pqPipelineSource* source)
-{
-  const auto widgets = panel->findChildren<Widget*>();
-  const auto found = std::find_if(widgets.begin(), widgets.end(),
-                                  [source](const Widget* widget) { return widget->proxy() == source->getProxy(); });
-  return found == widgets.end() ? nullptr : *found;
-}
-
 /// Whether a source shows what it scans as soon as it is scanned.
 bool isLive(const pqPropertiesPanel* panel, const pqPipelineSource* source)
 {
-  const auto* probe = widgetOf<pqSonoProbeWidget>(panel, source);
+  const auto* probe = sonoWidgetOf<pqSonoProbeWidget>(panel, source->getProxy());
   return sonoIsUltrasound(source->getProxy()) && !sonoIsFrozen(source->getProxy()) && !pqSonoStop::waits(source) &&
          (!probe || probe->isLive());
 }
@@ -73,7 +64,7 @@ void pqSonoNeedleFollow::watch()
     return;
   }
   panel_ = pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>();
-  auto* handles = panel_ ? widgetOf<pqInteractivePropertyWidget>(panel_, active) : nullptr;
+  auto* handles = panel_ ? sonoWidgetOf<pqInteractivePropertyWidget>(panel_, active->getProxy()) : nullptr;
   if (handles == handles_)
   {
     return;

@@ -5,6 +5,7 @@
 #include "SonoSplitScreen.h"
 #include "SonoStore.h"
 #include "SonoUltrasoundHere.h"
+#include "SonoWidgetOf.h"
 #include "pqSonoBeat.h"
 #include "pqSonoCine.h"
 #include "pqSonoKeptAlike.h"
@@ -477,9 +478,5 @@ void pqSonoScannerDock::toggleBiplane()
 /// Of the source, in the properties panel.
 pqSonoProbeWidget* pqSonoScannerDock::probeWidget() const
 {
-  const auto widgets = pqCoreUtilities::mainWidget()->findChildren<pqSonoProbeWidget*>();
-  const auto found = std::find_if(widgets.begin(), widgets.end(), [this](pqSonoProbeWidget* widget) {
-    return source_ && widget->proxy() == source_->getProxy();
-  });
-  return found == widgets.end() ? nullptr : *found;
+  return source_ ? sonoWidgetOf<pqSonoProbeWidget>(pqCoreUtilities::mainWidget(), source_->getProxy()) : nullptr;
 }

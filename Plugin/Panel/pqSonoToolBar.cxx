@@ -3,6 +3,7 @@
 #include "SonoExamples.h"
 #include "SonoLayout.h"
 #include "SonoMenu.h"
+#include "SonoNeedleHere.h"
 #include "SonoUltrasoundHere.h"
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
@@ -75,6 +76,10 @@ pqSonoToolBar::pqSonoToolBar(QWidget* parent)
   layoutAction_->setObjectName("actionSonoLayout");
   layoutAction_->setToolTip(
     tr("Lay out the selected Simulate Ultrasound: in the body, flat with a depth scale, and one of its lines"));
+  needleAction_ = this->addAction(QIcon(":/sono/needle.svg"), tr("Needle"), [this] { showNeedle(); });
+  needleAction_->setObjectName("actionSonoNeedle");
+  needleAction_->setToolTip(
+    tr("Put a needle into the picture of the selected Simulate Ultrasound, to be dragged by its ends"));
   this->addWidget(new pqSonoFlatMenu(this));
   addExamples();
   new pqSonoDelete(this);
@@ -94,6 +99,7 @@ void pqSonoToolBar::updateActions()
   const auto& active = pqActiveObjects::instance();
   simulateAction_->setEnabled(isLabelMapOrScene(active.activePort()));
   layoutAction_->setEnabled(isUltrasound(active.activeSource()));
+  needleAction_->setEnabled(isUltrasound(active.activeSource()) && sonoTakesNeedle(active.activeSource()));
 }
 
 void pqSonoToolBar::simulate()
@@ -133,6 +139,24 @@ void pqSonoToolBar::showLayout()
   // Where the probe can be seen and dragged.
   pqActiveObjects::instance().setActiveView(
     pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(solid));
+  pqApplicationCore::instance()->render();
+}
+
+void pqSonoToolBar::showNeedle()
+{
+  pqPipelineSource* source = pqActiveObjects::instance().activeSource();
+  if (!isUltrasound(source) || !sonoTakesNeedle(source))
+  {
+    return; // its targets were changed since it was chosen
+  }
+  BEGIN_UNDO_SET(tr("Needle"));
+  pqPipelineSource* needle = sonoNeedleOf(source);
+  END_UNDO_SET();
+  if (pqView* body = sonoBodyOf(source))
+  {
+    pqActiveObjects::instance().setActiveView(body);
+  }
+  pqActiveObjects::instance().setActiveSource(needle); // whose ends can be dragged then
   pqApplicationCore::instance()->render();
 }
 

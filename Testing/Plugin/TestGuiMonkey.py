@@ -57,9 +57,9 @@ KNOWN = {
 
 
 # Of ParaView's own, what may take longer than the window may be silent, while others have the machine, too: making all proxies of
-# a state; taking those of ten outputs in several views apart (vtkSMProxy::~vtkSMProxy, 2 to 5 s); and, with Python in the process,
-# the classes of all proxies after a reset.
-SLOW = re.compile(r"ACT \d+ (loads state|deletes|actionDelete_All)")
+# a state; taking those of ten outputs in several views apart (vtkSMProxy::~vtkSMProxy, 2 to 5 s), where they are deleted or, of those
+# that undo has held, once a Python state has been written; and, with Python in the process, the classes of all proxies after a reset.
+SLOW = re.compile(r"ACT \d+ (loads state|saves state\d\.py|deletes|actionDelete_All)")
 SLOW_S = 15.0
 JUDGED = ("RAISED ", "MESSAGE ", "Traceback ", "critical: ", "fatal: ")  # beside what VTK logs as errors
 
@@ -259,6 +259,8 @@ class TestGuiMonkey(GuiCase):
             judge.fault(f"hang: {sentence}\n" + self.backtrace(process.pid), place)
 
         def longest_s():
+            if judge.ended:
+                return LEAVING_S  # the window is gone
             return SLOW_S if judge.acts and SLOW.match(judge.acts[-1]) else LONGEST_S
 
         dog = Watchdog(self.display, process.pid, heart, hung, longest_s)

@@ -8,8 +8,10 @@ import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
+from unittest import mock
 
 from guicase import PLAYBACKS, GuiCase
+from TestGuiMonkey import write_label_maps
 
 
 def angle(a, b):
@@ -111,6 +113,40 @@ class TestGuiPanel(GuiCase):
         self.assertFalse(moved["waits"])
         self.assertLess(math.dist(found["put back"]["tip"], moved["tip"][0]), 1e-6)
         self.assertEqual(found["put back"]["picture"], found["with"]["picture"])
+
+    def test_needle_is_added_by_one_click_and_an_instrument_from_a_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("added", folder)
+        without, with_it = found["without"], found["with"]
+        self.assertNotEqual(with_it["picture"], without["picture"])
+        self.assertTrue(with_it["isActive"] and with_it["handles"] and with_it["shown"])
+        self.assertTrue(with_it["isSolid"])
+        self.assertFalse(with_it["waits"])
+        elevation = [a * b - c * d for a, b, c, d in (
+            (with_it["axial"][(i + 1) % 3], with_it["lateral"][(i + 2) % 3],
+             with_it["axial"][(i + 2) % 3], with_it["lateral"][(i + 1) % 3]) for i in range(3))]
+        for end in with_it["ends"]:
+            off = [x - y for x, y in zip(end, with_it["position"])]
+            self.assertAlmostEqual(sum(x * y for x, y in zip(off, elevation)), 0, delta=1e-3)  # mm out of the plane
+            self.assertLess(math.hypot(*off), with_it["depth"])
+        self.assertEqual(found["again"]["needles"], 1)
+        self.assertTrue(found["again"]["isActive"])
+        self.assertEqual((found["undone"]["needles"], found["undone"]["targets"]), (0, False))
+        self.assertEqual(found["undone"]["picture"], without["picture"])
+        self.assertEqual((found["redone"]["needles"], found["redone"]["targets"]), (1, True))
+        self.assertEqual(found["redone"]["picture"], with_it["picture"])
+        instrument = found["instrument"]
+        self.assertFalse(instrument["takesNeedle"])
+        self.assertNotIn(instrument["picture"], (without["picture"], with_it["picture"]))
+
+    def test_clear_cache_is_clicked(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_label_maps(pathlib.Path(folder, "given"))
+            with mock.patch.dict(os.environ, XDG_CACHE_HOME=str(pathlib.Path(folder, "cache"))):
+                found = self.play_scene("cache", folder)
+        self.assertNotEqual(found["kept"]["files"], [])
+        self.assertEqual(found["cleared"]["files"], [])
+        self.assertEqual(found["cleared"]["picture"], found["kept"]["picture"])
 
     def test_cine_loop_is_played(self):
         """Again and again, the pictures as they were, of a probe that was turned; and of a heart that beat, at each moment."""

@@ -308,6 +308,59 @@ def needle():
     note("put back", ultrasound, tip=list(stick.Tipmm))
 
 
+def needles():
+    return [source for source in GetSources().values() if source.GetXMLName() == "SonoNeedle"]
+
+
+def added():
+    """A needle by one click, which an undo takes out again."""
+    ultrasound = yield from begin()
+    note("without", ultrasound)
+    trigger("actionSonoNeedle")
+    yield from settle()
+    (stick,) = needles()
+    body = GetActiveView()
+    note("with", ultrasound, ends=[list(stick.Hubmm), list(stick.Tipmm)], isActive=GetActiveSource() == stick,
+         handles=child(QtWidgets.QCheckBox, "show3DWidget").isChecked(), isSolid=body.InteractionMode == "3D",
+         shown=int(GetRepresentation(stick, body).Visibility), depth=ultrasound.GetProperty("DepthMm").GetElement(0))
+    SetActiveSource(ultrasound)
+    yield 500
+    trigger("actionSonoNeedle")
+    yield from settle()
+    note("again", ultrasound, needles=len(needles()), isActive=GetActiveSource() == stick)
+    for name, act in (("undone", "actionEditUndo"), ("redone", "actionEditRedo")):
+        trigger(act)
+        yield from settle()
+        note(name, ultrasound, needles=len(needles()), targets=ultrasound.Targets is not None)
+    # An instrument of another shape, from a file.
+    middle = np.array(ultrasound.PositionMm) + 40 * np.array(ultrasound.Axial)
+    SaveData("ball.stl", Sphere(Center=list(middle), Radius=6))
+    ultrasound.Targets = OpenDataFile("ball.stl")
+    ultrasound.SMProxy.UpdateVTKObjects()
+    SetActiveSource(ultrasound)
+    RenderAllViews()
+    yield from settle()
+    note("instrument", ultrasound, takesNeedle=hands.act_named("actionSonoNeedle") is not None)
+
+
+def cache():
+    """What is kept of a label map, and the button that removes it."""
+    folder = pathlib.Path(os.environ["XDG_CACHE_HOME"], "sonovdb")
+    SetActiveSource(LabelMapReader(FileName=[str(pathlib.Path("given", "map.nii").resolve())]))
+    yield 500
+    trigger("actionSonoSimulate")
+    yield from settle()
+    (ultrasound,) = ultrasounds()
+
+    def files():
+        return sorted(each.name for each in folder.rglob("*") if each.is_file())
+
+    note("kept", ultrasound, files=files())
+    main.findChild(QtWidgets.QWidget, "ClearCache").findChild(QtWidgets.QPushButton).click()
+    yield from settle()
+    note("cleared", ultrasound, files=files())
+
+
 def watch(ultrasound):
     """A list that grows with each picture on the way: the picture, the probe's lateral direction and the moment."""
     shown = []
@@ -411,11 +464,14 @@ def keys():
         type_keys("Right")
         yield from settle()
         note(name, ultrasound)
-    nameless = [each.objectName() for dock in ("propertiesDock", "pqSonoScannerDock")
+    hands.dock("pqSonoTissueDock").show()
+    yield 700
+    ours = {"propertiesDock": "SonoProbe", "pqSonoScannerDock": "SonoScannerControls", "pqSonoTissueDock": "pqSonoTissueDock"}
+    nameless = [each.objectName() for dock, part in ours.items()
                 for each in hands.dock(dock).findChildren((QtWidgets.QLineEdit, QtWidgets.QSlider, QtWidgets.QAbstractSpinBox))
                 if each.isVisible() and each.focusPolicy() & QtCore.Qt.TabFocus
                 and not (each.accessibleName() or each.parentWidget().accessibleName())
-                and any(part.objectName() in ("SonoProbe", "SonoScannerControls") for part in ancestors(each))]
+                and any(above.objectName() == part for above in ancestors(each))]
     found["nameless"] = nameless
 
 
@@ -447,4 +503,5 @@ def fail(*failure):
 
 
 sys.excepthook = fail
-play = Play({"pose": pose, "scanner": scanner, "views": views, "needle": needle, "cine": cine, "keys": keys}[os.environ["PANEL_SCENE"]]())
+scenes = (pose, scanner, views, needle, added, cache, cine, keys)
+play = Play({scene.__name__: scene for scene in scenes}[os.environ["PANEL_SCENE"]]())
