@@ -1,58 +1,118 @@
 #include "SonoNeedleHere.h"
 
-#include "SonoFlatView.h"
 #include "SonoPipelineItem.h"
+#include "SonoSplitScreen.h"
+#include "SonoUltrasoundHere.h"
+#include "SonoViewsInSpace.h"
 #include "SonoWindows.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
-#include "pqObjectBuilder.h"
 #include "pqPipelineSource.h"
 #include "pqRenderView.h"
-#include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMViewProxy.h"
-#include "vtkSonoUltrasound.h"
+#include "vtkSmartPointer.h"
+#include "vtkSonoProbeSource.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
+#include <vector>
 
 namespace {
 
 constexpr const char* needleKind = "SonoNeedle";
+
+bool isNeedle(vtkSMProxy* source)
+{
+  return source && std::strcmp(source->GetXMLName(), needleKind) == 0;
+}
 
 vtkSMProxy* targetsOf(const pqPipelineSource* ultrasound)
 {
   return vtkSMPropertyHelper(ultrasound->getProxy(), "Targets").GetAsProxy();
 }
 
+/// Along the picture's rows, as the probe sees it (vtkSonoProbeSource::Probe).
+void turnLateral(vtkSMProxy* ultrasound, double* axial, double* lateral)
+{
+  double elevation[3];
+  vtkMath::Normalize(axial);
+  vtkMath::Cross(axial, lateral, elevation);
+  vtkMath::Normalize(elevation);
+  const bool isSecond = vtkSMPropertyHelper(ultrasound, "ScanKind").GetAsInt() == vtkSonoProbeSource::MATRIX &&
+                        vtkSMPropertyHelper(ultrasound, sonoMatrixPlane).GetAsInt() == vtkSonoProbeSource::SECOND_PLANE;
+  if (isSecond)
+  {
+    std::copy_n(elevation, 3, lateral);
+  }
+  else
+  {
+    vtkMath::Cross(elevation, axial, lateral);
+  }
+}
+
 /// In the plane that is scanned: from beside the probe, as a hand holds it, to below the middle of its face.
 void placeAcross(vtkSMProxy* ultrasound, vtkSMProxy* needle)
 {
   std::array<double, 9> pose = sonoPoseOf(ultrasound); // position, axial, lateral
-  double* axial = pose.data() + 3;
-  double* lateral = pose.data() + 6;
-  vtkMath::Normalize(axial);
-  vtkMath::Normalize(lateral);
+  const double* axial = pose.data() + 3;
+  const double* lateral = pose.data() + 6;
+  turnLateral(ultrasound, pose.data() + 3, pose.data() + 6);
   const double reachMm = std::min(vtkSMPropertyHelper(ultrasound, "DepthMm").GetAsDouble(), 120.0);
-  const auto at = [&](double side, double depth) {
+  const double besideMm = 0.5 * vtkSMPropertyHelper(ultrasound, "WidthMm").GetAsDouble() + 5.0;
+  const auto at = [&](double sideMm, double depthMm) {
     std::array<double, 3> point{};
     for (std::size_t i = 0; i < 3; ++i)
     {
-      point[i] = pose[i] + reachMm * (side * lateral[i] + depth * axial[i]);
+      point[i] = pose[i] + sideMm * lateral[i] + depthMm * axial[i];
     }
     return point;
   };
-  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", needle);
-  vtkSMPropertyHelper(needle, "HubMm").Set(at(0.57, 0.22).data(), 3);
-  vtkSMPropertyHelper(needle, "TipMm").Set(at(-0.04, 0.35).data(), 3);
+  vtkSMPropertyHelper(needle, "HubMm").Set(at(std::max(0.57 * reachMm, besideMm), 0.22 * reachMm).data(), 3);
+  vtkSMPropertyHelper(needle, "TipMm").Set(at(-0.04 * reachMm, 0.35 * reachMm).data(), 3);
+}
+
+/// In the pipeline. The object builder would make one that waits for Apply after an undo and a redo.
+vtkSmartPointer<vtkSMSourceProxy> makeNeedle(vtkSMProxy* ultrasound)
+{
+  vtkNew<vtkSMParaViewPipelineController> controller;
+  auto needle = vtkSmartPointer<vtkSMSourceProxy>::Take(
+    vtkSMSourceProxy::SafeDownCast(ultrasound->GetSessionProxyManager()->NewProxy("sources", needleKind)));
+  controller->PreInitializeProxy(needle);
+  placeAcross(ultrasound, needle);
+  controller->PostInitializeProxy(needle);
   needle->UpdateVTKObjects();
+  controller->RegisterPipelineProxy(needle);
+  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", ultrasound);
+  vtkSMPropertyHelper(ultrasound, "Targets").Set(needle);
+  ultrasound->UpdateVTKObjects();
+  return needle;
+}
+
+/// Its own, or, where it has none as the second of a split screen, the others'.
+std::vector<pqRenderView*> bodiesOf(const pqPipelineSource* ultrasound)
+{
+  std::vector<pqRenderView*> bodies = sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()));
+  const bool hasOwn = !bodies.empty();
+  for (auto* other : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  {
+    if (!hasOwn && sonoIsUltrasound(other->getProxy()))
+    {
+      const std::vector<pqRenderView*> more = sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(other->getProxy()));
+      bodies.insert(bodies.end(), more.begin(), more.end());
+    }
+  }
+  return bodies;
 }
 
 } // namespace
@@ -60,39 +120,30 @@ void placeAcross(vtkSMProxy* ultrasound, vtkSMProxy* needle)
 bool sonoTakesNeedle(const pqPipelineSource* ultrasound)
 {
   vtkSMProxy* targets = targetsOf(ultrasound);
-  return !targets || std::strcmp(targets->GetXMLName(), needleKind) == 0;
+  return !targets || isNeedle(targets);
 }
 
-pqPipelineSource* sonoNeedleOf(const pqPipelineSource* ultrasound)
+pqPipelineSource* sonoShowNeedle(const pqPipelineSource* ultrasound)
 {
-  if (pqPipelineSource* there = sonoPipelineItem(targetsOf(ultrasound)))
+  vtkSmartPointer<vtkSMSourceProxy> needle = vtkSMSourceProxy::SafeDownCast(targetsOf(ultrasound));
+  if (!needle)
   {
-    return there;
+    needle = makeNeedle(ultrasound->getProxy());
   }
-  pqPipelineSource* needle =
-    pqApplicationCore::instance()->getObjectBuilder()->createSource("sources", needleKind, ultrasound->getServer());
-  placeAcross(ultrasound->getProxy(), needle->getProxy());
-  needle->setModifiedState(pqProxy::UNMODIFIED); // nothing is left to apply
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  for (const pqRenderView* body : bodiesOf(ultrasound))
   {
-    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", ultrasound->getProxy());
-    vtkSMPropertyHelper(ultrasound->getProxy(), "Targets").Set(needle->getProxy());
-    ultrasound->getProxy()->UpdateVTKObjects();
+    controller->Show(needle, 0, body->getViewProxy());
   }
-  if (const pqView* body = sonoBodyOf(ultrasound))
-  {
-    vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-    controller->Show(vtkSMSourceProxy::SafeDownCast(needle->getProxy()), 0, body->getViewProxy());
-  }
-  return needle;
+  return sonoPipelineItem(needle);
 }
 
 pqView* sonoBodyOf(const pqPipelineSource* ultrasound)
 {
-  auto* proxy = vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy());
-  const auto views = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>();
-  const auto found = std::find_if(views.begin(), views.end(), [proxy](const pqRenderView* view) {
-    return !sonoIsFlatView(view->getProxy()) &&
-           view->getViewProxy()->FindRepresentation(proxy, vtkSonoUltrasound::IMAGE);
-  });
-  return found == views.end() ? nullptr : *found;
+  const std::vector<pqRenderView*> bodies = bodiesOf(ultrasound);
+  const auto active = std::find(bodies.begin(), bodies.end(), pqActiveObjects::instance().activeView());
+  const auto onTop =
+    std::find_if(bodies.begin(), bodies.end(), [](pqRenderView* body) { return body->widget()->isVisible(); });
+  const auto best = active != bodies.end() ? active : onTop != bodies.end() ? onTop : bodies.begin();
+  return best == bodies.end() ? nullptr : *best;
 }

@@ -1,24 +1,20 @@
 #include "SonoProbePaths.h"
 
 #include "SonoPipelineItem.h"
+#include "SonoViewsInSpace.h"
 
-#include "pqApplicationCore.h"
-#include "pqObjectBuilder.h"
 #include "pqPipelineSource.h"
 #include "pqRenderView.h"
-#include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
-#include "vtkSMRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMViewProxy.h"
 #include "vtkSmartPointer.h"
-#include "vtkSonoUltrasound.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,25 +55,6 @@ void mix(const double* a, const double* b, double share, double* mixed)
   }
 }
 
-/// Of the views that show a filter's anatomy or image in space.
-std::vector<pqRenderView*> viewsInSpace(vtkSMSourceProxy* ultrasound)
-{
-  std::vector<pqRenderView*> views;
-  for (auto* view : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>())
-  {
-    for (const unsigned int port : { vtkSonoUltrasound::IMAGE, vtkSonoUltrasound::ANATOMY })
-    {
-      vtkSMProxy* shown = view->getViewProxy()->FindRepresentation(ultrasound, int(port));
-      if (shown && vtkSMPropertyHelper(shown, "Visibility").GetAsInt() == 1)
-      {
-        views.push_back(view);
-        break;
-      }
-    }
-  }
-  return views;
-}
-
 } // namespace
 
 pqPipelineSource* sonoMakePath(const std::vector<SonoTimedPose>& poses, pqPipelineSource* ultrasound)
@@ -97,7 +74,7 @@ pqPipelineSource* sonoMakePath(const std::vector<SonoTimedPose>& poses, pqPipeli
   path->UpdateVTKObjects();
   controller->RegisterPipelineProxy(path);
   path->UpdatePipeline();
-  for (pqRenderView* view : viewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy())))
+  for (pqRenderView* view : sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy())))
   {
     controller->Show(path, 0, view->getViewProxy());
     view->render();

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "vtkSMProxy.h"
-
 #include <QWidget>
 
 #include <algorithm>
+
+class vtkSMProxy;
 
 /// What a panel has made for a source, of a kind that knows its proxy; null: nothing.
 template<class Widget>

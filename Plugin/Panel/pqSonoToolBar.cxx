@@ -12,6 +12,7 @@
 #include "pqSonoNeedleFollow.h"
 #include "pqSonoUndoing.h"
 
+#include "vtkCommand.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkPVDataInformation.h"
 #include "vtkSMPropertyHelper.h"
@@ -63,6 +64,15 @@ bool hasPicture(pqPipelineSource* source)
   return ultrasound->GetDataInformation(vtkSonoUltrasound::FLAT_IMAGE)->GetNumberOfPoints() > 0;
 }
 
+/// As if Apply had been clicked before.
+void applyWhatWaits(const pqPipelineSource* source)
+{
+  if (source->modifiedState() != pqProxy::UNMODIFIED)
+  {
+    pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>()->apply();
+  }
+}
+
 } // namespace
 
 pqSonoToolBar::pqSonoToolBar(QWidget* parent)
@@ -105,11 +115,7 @@ void pqSonoToolBar::updateActions()
 void pqSonoToolBar::simulate()
 {
   pqOutputPort* port = pqActiveObjects::instance().activePort();
-  if (port->getSource()->modifiedState() != pqProxy::UNMODIFIED)
-  {
-    // As if Apply had been clicked before, so that it does not wait to show a slice of the labels in the new views.
-    pqCoreUtilities::mainWidget()->findChild<pqPropertiesPanel*>()->apply();
-  }
+  applyWhatWaits(port->getSource()); // so that it does not wait to show a slice of the labels in the new views
   BEGIN_UNDO_SET(tr("Simulate Ultrasound"));
   QMap<QString, QList<pqOutputPort*>> inputs;
   inputs["Input"] << port;
@@ -149,14 +155,21 @@ void pqSonoToolBar::showNeedle()
   {
     return; // its targets were changed since it was chosen
   }
+  applyWhatWaits(source); // so that it lies across the picture at the probe's new place
+  if (!hasPicture(source))
+  {
+    return;
+  }
   BEGIN_UNDO_SET(tr("Needle"));
-  pqPipelineSource* needle = sonoNeedleOf(source);
+  pqPipelineSource* needle = sonoShowNeedle(source);
   END_UNDO_SET();
   if (pqView* body = sonoBodyOf(source))
   {
     pqActiveObjects::instance().setActiveView(body);
   }
   pqActiveObjects::instance().setActiveSource(needle); // whose ends can be dragged then
+  // ParaView keeps them hidden once another source was chosen.
+  needle->getProxy()->InvokeEvent(vtkCommand::UserEvent, const_cast<char*>("ShowWidget"));
   pqApplicationCore::instance()->render();
 }
 

@@ -260,7 +260,7 @@ class TestGuiMonkey(GuiCase):
 
         def longest_s():
             if judge.ended:
-                return LEAVING_S  # the window is gone
+                return LEAVING_S / 2  # the window goes, and all behind it is taken apart
             return SLOW_S if judge.acts and SLOW.match(judge.acts[-1]) else LONGEST_S
 
         dog = Watchdog(self.display, process.pid, heart, hung, longest_s)

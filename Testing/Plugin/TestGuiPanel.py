@@ -125,16 +125,22 @@ class TestGuiPanel(GuiCase):
         elevation = [a * b - c * d for a, b, c, d in (
             (with_it["axial"][(i + 1) % 3], with_it["lateral"][(i + 2) % 3],
              with_it["axial"][(i + 2) % 3], with_it["lateral"][(i + 1) % 3]) for i in range(3))]
-        for end in with_it["ends"]:
-            off = [x - y for x, y in zip(end, with_it["position"])]
-            self.assertAlmostEqual(sum(x * y for x, y in zip(off, elevation)), 0, delta=1e-3)  # mm out of the plane
-            self.assertLess(math.hypot(*off), with_it["depth"])
+        hub, tip = ({name: sum(x * y for x, y in zip([p - q for p, q in zip(end, with_it["position"])], along)) for name, along in (
+            ("side", with_it["lateral"]), ("depth", with_it["axial"]), ("off", elevation))} for end in with_it["ends"])
+        for end in (hub, tip):
+            self.assertAlmostEqual(end["off"], 0, delta=1e-3)  # mm out of the plane
+            self.assertGreater(end["depth"], 0)
+        self.assertGreater(hub["side"], without["width"] / 2)  # beside the probe, and not as deep as the tip
+        self.assertLess(hub["depth"], tip["depth"])
+        self.assertLess(abs(tip["side"]), without["width"] / 2)
+        self.assertLess(tip["depth"], with_it["depth"])
         self.assertEqual(found["again"]["needles"], 1)
-        self.assertTrue(found["again"]["isActive"])
+        self.assertTrue(found["again"]["isActive"] and found["again"]["handles"])
         self.assertEqual((found["undone"]["needles"], found["undone"]["targets"]), (0, False))
         self.assertEqual(found["undone"]["picture"], without["picture"])
         self.assertEqual((found["redone"]["needles"], found["redone"]["targets"]), (1, True))
         self.assertEqual(found["redone"]["picture"], with_it["picture"])
+        self.assertFalse(found["chosen"]["waits"])
         instrument = found["instrument"]
         self.assertFalse(instrument["takesNeedle"])
         self.assertNotIn(instrument["picture"], (without["picture"], with_it["picture"]))
@@ -169,7 +175,7 @@ class TestGuiPanel(GuiCase):
         """Alt+U, arrows and Return do what the tool bar's buttons do; what takes keys in our panels has a name to be read out."""
         with tempfile.TemporaryDirectory() as folder:
             found = self.play_scene("keys", folder)
-        for name in ("actionSonoSimulate", "actionSonoLayout", "&Flat View", "&Examples", "actionSonoScanner", "actionSonoFreeze"):
+        for name in ("actionSonoSimulate", "actionSonoLayout", "actionSonoNeedle", "&Flat View", "&Examples", "actionSonoScanner", "actionSonoFreeze"):
             self.assertIn(name, found["menu"])
         self.assertGreater(max(found["simulated"]["bands"]), 10)
         self.assertEqual(found["calipers"], 1)

@@ -315,7 +315,9 @@ def needles():
 def added():
     """A needle by one click, which an undo takes out again."""
     ultrasound = yield from begin()
-    note("without", ultrasound)
+    note("without", ultrasound, width=ultrasound.GetProperty("WidthMm").GetElement(0))
+    SetActiveView(next(each for each in GetViews() if each.GetXMLName() == "RenderView" and each.InteractionMode == "2D"))
+    yield 500
     trigger("actionSonoNeedle")
     yield from settle()
     (stick,) = needles()
@@ -327,11 +329,15 @@ def added():
     yield 500
     trigger("actionSonoNeedle")
     yield from settle()
-    note("again", ultrasound, needles=len(needles()), isActive=GetActiveSource() == stick)
+    note("again", ultrasound, needles=len(needles()), isActive=GetActiveSource() == stick,
+         handles=child(QtWidgets.QCheckBox, "show3DWidget").isChecked())
     for name, act in (("undone", "actionEditUndo"), ("redone", "actionEditRedo")):
         trigger(act)
         yield from settle()
         note(name, ultrasound, needles=len(needles()), targets=ultrasound.Targets is not None)
+    SetActiveSource(needles()[0])
+    yield 500
+    note("chosen", ultrasound)
     # An instrument of another shape, from a file.
     middle = np.array(ultrasound.PositionMm) + 40 * np.array(ultrasound.Axial)
     SaveData("ball.stl", Sphere(Center=list(middle), Radius=6))
