@@ -1,35 +1,17 @@
 #include "SonoExamples.h"
 
+#include "SonoMakeSource.h"
 #include "SonoWindows.h"
 
-#include "vtkNew.h"
-#include "vtkSMParaViewPipelineController.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
-#include "vtkSmartPointer.h"
 
 namespace {
 
 constexpr double neck = 5.0; // of the phantoms
 // A finer thorax has so many triangles that drawing it in software keeps the window busy for more than five seconds.
 constexpr double thoraxMm = 1.5;
-
-/// Makes a source or filter and hands it to `fill`; it is registered, so that it appears in the pipeline, once that is
-/// done.
-template<class Fill>
-vtkSMSourceProxy* make(vtkSMSessionProxyManager* manager, const char* group, const char* name, const Fill& fill)
-{
-  vtkNew<vtkSMParaViewPipelineController> controller;
-  auto proxy = vtkSmartPointer<vtkSMSourceProxy>::Take(vtkSMSourceProxy::SafeDownCast(manager->NewProxy(group, name)));
-  controller->PreInitializeProxy(proxy);
-  fill(proxy.Get());
-  controller->PostInitializeProxy(proxy);
-  fill(proxy.Get()); // what was initialized by an input
-  proxy->UpdateVTKObjects();
-  controller->RegisterPipelineProxy(proxy);
-  return proxy;
-}
 
 template<class Names>
 void set(vtkSMSourceProxy* proxy, const Names& settings)
@@ -101,13 +83,13 @@ const std::vector<SonoExample>& sonoExamples()
 
 vtkSMSourceProxy* sonoMakeExample(const SonoExample& example, vtkSMSessionProxyManager* manager)
 {
-  vtkSMSourceProxy* labels =
-    make(manager, "sources", example.source, [&](vtkSMSourceProxy* source) { set(source, example.ofSource); });
+  vtkSMSourceProxy* labels = sonoMakeSource(manager, "sources", example.source,
+                                            [&](vtkSMSourceProxy* source) { set(source, example.ofSource); });
   labels->UpdatePipeline();
   vtkSMSourceProxy* needle = nullptr;
   if (example.hasNeedle)
   {
-    needle = make(manager, "sources", "SonoNeedle", [&](vtkSMSourceProxy* source) {
+    needle = sonoMakeSource(manager, "sources", "SonoNeedle", [&](vtkSMSourceProxy* source) {
       vtkSMPropertyHelper(source, "HubMm").Set(example.needleMm.data(), 3);
       vtkSMPropertyHelper(source, "TipMm").Set(&example.needleMm[3], 3);
     });
@@ -116,7 +98,7 @@ vtkSMSourceProxy* sonoMakeExample(const SonoExample& example, vtkSMSessionProxyM
   const auto ofProbe = sonoPresetNumbers(manager, example.preset);
   const bool isCalibration = labels->GetProperty("Phantom") && vtkSMPropertyHelper(labels, "Phantom").GetAsInt() == 0;
   // With a pose of its own before it is registered: else one is looked for.
-  return make(manager, "filters", "SonoUltrasound", [&](vtkSMSourceProxy* ultrasound) {
+  return sonoMakeSource(manager, "filters", "SonoUltrasound", [&](vtkSMSourceProxy* ultrasound) {
     vtkSMPropertyHelper(ultrasound, "Input").Set(labels, 0);
     if (isCalibration)
     {

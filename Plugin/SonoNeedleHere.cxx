@@ -1,25 +1,21 @@
 #include "SonoNeedleHere.h"
 
+#include "SonoMakeSource.h"
 #include "SonoPipelineItem.h"
 #include "SonoSplitScreen.h"
-#include "SonoUltrasoundHere.h"
 #include "SonoViewsInSpace.h"
 #include "SonoWindows.h"
 
 #include "pqActiveObjects.h"
-#include "pqApplicationCore.h"
 #include "pqPipelineSource.h"
 #include "pqRenderView.h"
-#include "pqServerManagerModel.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSMViewProxy.h"
-#include "vtkSmartPointer.h"
 #include "vtkSonoProbeSource.h"
 
 #include <algorithm>
@@ -31,11 +27,6 @@
 namespace {
 
 constexpr const char* needleKind = "SonoNeedle";
-
-bool isNeedle(vtkSMProxy* source)
-{
-  return source && std::strcmp(source->GetXMLName(), needleKind) == 0;
-}
 
 vtkSMProxy* targetsOf(const pqPipelineSource* ultrasound)
 {
@@ -82,68 +73,76 @@ void placeAcross(vtkSMProxy* ultrasound, vtkSMProxy* needle)
   vtkSMPropertyHelper(needle, "TipMm").Set(at(-0.04 * reachMm, 0.35 * reachMm).data(), 3);
 }
 
-/// In the pipeline. The object builder would make one that waits for Apply after an undo and a redo.
-vtkSmartPointer<vtkSMSourceProxy> makeNeedle(vtkSMProxy* ultrasound)
+/// In the pipeline.
+vtkSMSourceProxy* makeNeedle(vtkSMProxy* ultrasound)
 {
-  vtkNew<vtkSMParaViewPipelineController> controller;
-  auto needle = vtkSmartPointer<vtkSMSourceProxy>::Take(
-    vtkSMSourceProxy::SafeDownCast(ultrasound->GetSessionProxyManager()->NewProxy("sources", needleKind)));
-  controller->PreInitializeProxy(needle);
-  placeAcross(ultrasound, needle);
-  controller->PostInitializeProxy(needle);
-  needle->UpdateVTKObjects();
-  controller->RegisterPipelineProxy(needle);
+  return sonoMakeSource(ultrasound->GetSessionProxyManager(), "sources", needleKind,
+                        [ultrasound](vtkSMSourceProxy* needle) { placeAcross(ultrasound, needle); });
+}
+
+void setTargets(vtkSMProxy* ultrasound, vtkSMProxy* targets)
+{
   SM_SCOPED_TRACE(PropertiesModified).arg("proxy", ultrasound);
-  vtkSMPropertyHelper(ultrasound, "Targets").Set(needle);
+  vtkSMPropertyHelper(ultrasound, "Targets").Set(targets);
   ultrasound->UpdateVTKObjects();
-  return needle;
+}
+
+std::vector<pqRenderView*> ownBodies(const pqPipelineSource* ultrasound)
+{
+  return sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()));
 }
 
 /// Its own, or, where it has none as the second of a split screen, the others'.
 std::vector<pqRenderView*> bodiesOf(const pqPipelineSource* ultrasound)
 {
-  std::vector<pqRenderView*> bodies = sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy()));
-  const bool hasOwn = !bodies.empty();
-  for (auto* other : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  std::vector<pqRenderView*> bodies = ownBodies(ultrasound);
+  if (bodies.empty())
   {
-    if (!hasOwn && sonoIsUltrasound(other->getProxy()))
+    for (const pqPipelineSource* other : sonoUltrasounds())
     {
-      const std::vector<pqRenderView*> more = sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(other->getProxy()));
+      const std::vector<pqRenderView*> more = ownBodies(other);
       bodies.insert(bodies.end(), more.begin(), more.end());
     }
   }
   return bodies;
 }
 
-} // namespace
-
-bool sonoTakesNeedle(const pqPipelineSource* ultrasound)
+/// The active one, or one on top where there are several; null: none.
+pqRenderView* bestOf(const std::vector<pqRenderView*>& bodies)
 {
-  vtkSMProxy* targets = targetsOf(ultrasound);
-  return !targets || isNeedle(targets);
-}
-
-pqPipelineSource* sonoShowNeedle(const pqPipelineSource* ultrasound)
-{
-  vtkSmartPointer<vtkSMSourceProxy> needle = vtkSMSourceProxy::SafeDownCast(targetsOf(ultrasound));
-  if (!needle)
-  {
-    needle = makeNeedle(ultrasound->getProxy());
-  }
-  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-  for (const pqRenderView* body : bodiesOf(ultrasound))
-  {
-    controller->Show(needle, 0, body->getViewProxy());
-  }
-  return sonoPipelineItem(needle);
-}
-
-pqView* sonoBodyOf(const pqPipelineSource* ultrasound)
-{
-  const std::vector<pqRenderView*> bodies = bodiesOf(ultrasound);
   const auto active = std::find(bodies.begin(), bodies.end(), pqActiveObjects::instance().activeView());
   const auto onTop =
     std::find_if(bodies.begin(), bodies.end(), [](pqRenderView* body) { return body->widget()->isVisible(); });
   const auto best = active != bodies.end() ? active : onTop != bodies.end() ? onTop : bodies.begin();
   return best == bodies.end() ? nullptr : *best;
+}
+
+} // namespace
+
+bool sonoIsNeedle(vtkSMProxy* source)
+{
+  return source && std::strcmp(source->GetXMLName(), needleKind) == 0;
+}
+
+bool sonoTakesNeedle(const pqPipelineSource* ultrasound)
+{
+  vtkSMProxy* targets = targetsOf(ultrasound);
+  return !targets || sonoIsNeedle(targets);
+}
+
+SonoShownNeedle sonoShowNeedle(const pqPipelineSource* ultrasound)
+{
+  auto* needle = vtkSMSourceProxy::SafeDownCast(targetsOf(ultrasound));
+  if (!needle)
+  {
+    needle = makeNeedle(ultrasound->getProxy());
+    setTargets(ultrasound->getProxy(), needle);
+  }
+  const std::vector<pqRenderView*> bodies = bodiesOf(ultrasound);
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  for (const pqRenderView* body : bodies)
+  {
+    controller->Show(needle, 0, body->getViewProxy());
+  }
+  return { sonoPipelineItem(needle), bestOf(bodies) };
 }

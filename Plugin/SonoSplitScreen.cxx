@@ -121,23 +121,13 @@ int sharedProbeOf(const pqPipelineSource* source)
   return vtkSMPropertyHelper(source->getProxy(), sonoSharedProbe).GetAsInt();
 }
 
-/// The Simulate Ultrasounds, in the order in which they were made.
-std::vector<pqPipelineSource*> ultrasounds()
-{
-  const auto all = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
-  std::vector<pqPipelineSource*> found;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(found),
-               [](const pqPipelineSource* source) { return sonoIsUltrasound(source->getProxy()); });
-  return found;
-}
-
 /// Lets it share its probe with the next one of its settings, if it does not share it yet.
 void shareProbe(const pqPipelineSource* first)
 {
   if (sharedProbeOf(first) == 0)
   {
     int largest = 0;
-    for (const pqPipelineSource* each : ultrasounds())
+    for (const pqPipelineSource* each : sonoUltrasounds())
     {
       largest = std::max(largest, sharedProbeOf(each));
     }
@@ -158,6 +148,15 @@ void destroyWithConsumers(pqPipelineSource* source)
 
 } // namespace
 
+std::vector<pqPipelineSource*> sonoUltrasounds()
+{
+  const auto all = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>();
+  std::vector<pqPipelineSource*> found;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(found),
+               [](const pqPipelineSource* source) { return sonoIsUltrasound(source->getProxy()); });
+  return found;
+}
+
 SonoSplit sonoSplitScreen(pqPipelineSource* first)
 {
   shareProbe(first);
@@ -169,7 +168,7 @@ SonoSplit sonoSplitScreen(pqPipelineSource* first)
 std::vector<std::vector<vtkSMProxy*>> sonoProbeSharers()
 {
   std::map<std::pair<vtkSMProxy*, int>, std::vector<vtkSMProxy*>> groups;
-  for (const pqPipelineSource* each : ultrasounds())
+  for (const pqPipelineSource* each : sonoUltrasounds())
   {
     if (sharedProbeOf(each) > 0)
     {
@@ -191,7 +190,7 @@ SonoPlanes sonoPlanesOf(const pqPipelineSource* source)
 {
   SonoPlanes planes;
   bool isIn = false;
-  for (pqPipelineSource* each : ultrasounds())
+  for (pqPipelineSource* each : sonoUltrasounds())
   {
     if (sonoIsUltrasound(source->getProxy()) && inputOf(each) == inputOf(source))
     {
@@ -211,7 +210,7 @@ SonoPlanes sonoPlanesOf(const pqPipelineSource* source)
 std::vector<std::vector<vtkSMProxy*>> sonoPlanePairs()
 {
   std::vector<std::vector<vtkSMProxy*>> pairs;
-  for (const pqPipelineSource* each : ultrasounds())
+  for (const pqPipelineSource* each : sonoUltrasounds())
   {
     const SonoPlanes planes = sonoPlanesOf(each);
     if (planes.first && planes.second == each)

@@ -6,6 +6,9 @@ class pqPipelineSource;
 class pqView;
 class vtkSMProxy;
 
+/// Each Simulate Ultrasound there is, in the order in which they were made.
+std::vector<pqPipelineSource*> sonoUltrasounds();
+
 /// Two of a probe's pictures, side by side.
 struct SonoSplit
 {

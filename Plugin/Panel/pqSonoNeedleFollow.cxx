@@ -2,6 +2,7 @@
 
 #include "SonoFreeze.h"
 #include "SonoMovingViews.h"
+#include "SonoNeedleHere.h"
 #include "SonoUltrasoundHere.h"
 #include "SonoWaiting.h"
 #include "SonoWidgetOf.h"
@@ -21,7 +22,6 @@
 #include <QGuiApplication>
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace {
@@ -59,7 +59,7 @@ pqSonoNeedleFollow::~pqSonoNeedleFollow() = default;
 void pqSonoNeedleFollow::watch()
 {
   pqPipelineSource* active = pqActiveObjects::instance().activeSource();
-  if (!active || std::strcmp(active->getProxy()->GetXMLName(), "SonoNeedle") != 0)
+  if (!active || !sonoIsNeedle(active->getProxy()))
   {
     return;
   }

@@ -161,15 +161,15 @@ void pqSonoToolBar::showNeedle()
     return;
   }
   BEGIN_UNDO_SET(tr("Needle"));
-  pqPipelineSource* needle = sonoShowNeedle(source);
+  const SonoShownNeedle shown = sonoShowNeedle(source);
   END_UNDO_SET();
-  if (pqView* body = sonoBodyOf(source))
+  if (shown.body)
   {
-    pqActiveObjects::instance().setActiveView(body);
+    pqActiveObjects::instance().setActiveView(shown.body);
   }
-  pqActiveObjects::instance().setActiveSource(needle); // whose ends can be dragged then
+  pqActiveObjects::instance().setActiveSource(shown.needle); // whose ends can be dragged then
   // ParaView keeps them hidden once another source was chosen.
-  needle->getProxy()->InvokeEvent(vtkCommand::UserEvent, const_cast<char*>("ShowWidget"));
+  shown.needle->getProxy()->InvokeEvent(vtkCommand::UserEvent, const_cast<char*>("ShowWidget"));
   pqApplicationCore::instance()->render();
 }
 

@@ -11,7 +11,6 @@ import pathlib
 import re
 import shutil
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
@@ -19,7 +18,7 @@ import threading
 import time
 import unittest
 
-from guicase import PLAYBACKS, PLUGIN, GuiCase
+from guicase import PLAYBACKS, PLUGIN, GuiCase, write_label_maps
 from watchdog import LONGEST_S, Watchdog
 
 ROOT = PLAYBACKS.parents[2]
@@ -57,9 +56,9 @@ KNOWN = {
 
 
 # Of ParaView's own, what may take longer than the window may be silent, while others have the machine, too: making all proxies of
-# a state; taking those of ten outputs in several views apart (vtkSMProxy::~vtkSMProxy, 2 to 5 s), where they are deleted or, of those
-# that undo has held, once a Python state has been written; and, with Python in the process, the classes of all proxies after a reset.
-SLOW = re.compile(r"ACT \d+ (loads state|saves state\d\.py|deletes|actionDelete_All)")
+# a state; taking those of ten outputs in several views apart (vtkSMProxy::~vtkSMProxy, 2 to 5 s); and, with Python in the process,
+# the classes of all proxies after a reset.
+SLOW = re.compile(r"ACT \d+ (loads state|deletes|actionDelete_All)")
 SLOW_S = 15.0
 JUDGED = ("RAISED ", "MESSAGE ", "Traceback ", "critical: ", "fatal: ")  # beside what VTK logs as errors
 
@@ -139,35 +138,6 @@ class Judge:
         if "SonoStage.cxx" in text or "vtkSono" in text:
             return next((part for part in self.ours if part in text), None)
         return None
-
-
-def write_label_maps(folder):
-    """Small ones, and damaged ones."""
-    folder.mkdir()
-    size = 24
-
-    def label(x, y, z):
-        r = sum(((each - size / 2) / (size / 2)) ** 2 for each in (x, y, z))
-        return 0 if r > 0.95 else 3 if r > 0.8 else 2 if r < 0.15 else 1
-
-    voxels = bytes(label(x, y, z) for z in range(size) for y in range(size) for x in range(size))
-    header = (f"NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: {size} {size} {size}\n"
-              "space directions: (5,0,0) (0,5,0) (0,0,5)\nspace origin: (-60,-60,-60)\nencoding: raw\n"
-              "Segment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=liver\nSegment1_ID:=b\nSegment1_LabelValue:=2\n"
-              "Segment1_Name:=heart\nSegment2_ID:=c\nSegment2_LabelValue:=3\nSegment2_Name:=skin\n\n").encode()
-    nifti = struct.pack("<i36x8h12x4h8f3f", 348, 3, size, size, size, 1, 1, 1, 1, 0, 2, 8, 0, 1, 5, 5, 5, 0, 0, 0, 0, 352, 1, 0)
-    nifti = nifti.ljust(252, b"\0") + struct.pack("<2h6f12f", 0, 1, 0, 0, 0, 0, 0, 0, 5, 0, 0, -60, 0, 5, 0, -60, 0, 0, 5, -60)
-    nifti = nifti.ljust(344, b"\0") + b"n+1\0" + bytes(4)
-    whole = {"map.seg.nrrd": header + voxels, "map.nii": nifti + voxels}
-    for name, content in whole.items():
-        (folder / name).write_bytes(content)
-        (folder / ("cut_" + name)).write_bytes(content[:len(content) // 2])
-        bent = bytearray(content)
-        for i in range(0, 200, 13):
-            bent[i] ^= 0x55
-        (folder / ("bent_" + name)).write_bytes(bent)
-    (folder / "huge.seg.nrrd").write_bytes(header.replace(f"sizes: {size} {size}".encode(), b"sizes: 900000 900000") + voxels)
-    (folder / "empty.nii").write_bytes(b"")
 
 
 # A monkey that does what must not be.

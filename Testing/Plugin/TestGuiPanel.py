@@ -10,8 +10,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 from unittest import mock
 
-from guicase import PLAYBACKS, GuiCase
-from TestGuiMonkey import write_label_maps
+from guicase import PLAYBACKS, GuiCase, write_label_maps
 
 
 def angle(a, b):
@@ -125,8 +124,9 @@ class TestGuiPanel(GuiCase):
         elevation = [a * b - c * d for a, b, c, d in (
             (with_it["axial"][(i + 1) % 3], with_it["lateral"][(i + 2) % 3],
              with_it["axial"][(i + 2) % 3], with_it["lateral"][(i + 1) % 3]) for i in range(3))]
-        hub, tip = ({name: sum(x * y for x, y in zip([p - q for p, q in zip(end, with_it["position"])], along)) for name, along in (
-            ("side", with_it["lateral"]), ("depth", with_it["axial"]), ("off", elevation))} for end in with_it["ends"])
+        axes = {"side": with_it["lateral"], "depth": with_it["axial"], "off": elevation}
+        hub, tip = ({name: sum((x - y) * a for x, y, a in zip(end, with_it["position"], axis)) for name, axis in axes.items()}
+                    for end in with_it["ends"])
         for end in (hub, tip):
             self.assertAlmostEqual(end["off"], 0, delta=1e-3)  # mm out of the plane
             self.assertGreater(end["depth"], 0)
@@ -175,7 +175,8 @@ class TestGuiPanel(GuiCase):
         """Alt+U, arrows and Return do what the tool bar's buttons do; what takes keys in our panels has a name to be read out."""
         with tempfile.TemporaryDirectory() as folder:
             found = self.play_scene("keys", folder)
-        for name in ("actionSonoSimulate", "actionSonoLayout", "actionSonoNeedle", "&Flat View", "&Examples", "actionSonoScanner", "actionSonoFreeze"):
+        for name in ("actionSonoSimulate", "actionSonoLayout", "actionSonoNeedle", "&Flat View", "&Examples", "actionSonoScanner",
+                     "actionSonoFreeze"):
             self.assertIn(name, found["menu"])
         self.assertGreater(max(found["simulated"]["bands"]), 10)
         self.assertEqual(found["calipers"], 1)

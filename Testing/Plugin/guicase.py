@@ -42,6 +42,35 @@ def bytes_of(picture, count):
     return raw.read_bytes()[-count:]
 
 
+def write_label_maps(folder):
+    """Small ones, and damaged ones."""
+    folder.mkdir()
+    size = 24
+
+    def label(x, y, z):
+        r = sum(((each - size / 2) / (size / 2)) ** 2 for each in (x, y, z))
+        return 0 if r > 0.95 else 3 if r > 0.8 else 2 if r < 0.15 else 1
+
+    voxels = bytes(label(x, y, z) for z in range(size) for y in range(size) for x in range(size))
+    header = (f"NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: {size} {size} {size}\n"
+              "space directions: (5,0,0) (0,5,0) (0,0,5)\nspace origin: (-60,-60,-60)\nencoding: raw\n"
+              "Segment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=liver\nSegment1_ID:=b\nSegment1_LabelValue:=2\n"
+              "Segment1_Name:=heart\nSegment2_ID:=c\nSegment2_LabelValue:=3\nSegment2_Name:=skin\n\n").encode()
+    nifti = struct.pack("<i36x8h12x4h8f3f", 348, 3, size, size, size, 1, 1, 1, 1, 0, 2, 8, 0, 1, 5, 5, 5, 0, 0, 0, 0, 352, 1, 0)
+    nifti = nifti.ljust(252, b"\0") + struct.pack("<2h6f12f", 0, 1, 0, 0, 0, 0, 0, 0, 5, 0, 0, -60, 0, 5, 0, -60, 0, 0, 5, -60)
+    nifti = nifti.ljust(344, b"\0") + b"n+1\0" + bytes(4)
+    whole = {"map.seg.nrrd": header + voxels, "map.nii": nifti + voxels}
+    for name, content in whole.items():
+        (folder / name).write_bytes(content)
+        (folder / ("cut_" + name)).write_bytes(content[:len(content) // 2])
+        bent = bytearray(content)
+        for i in range(0, 200, 13):
+            bent[i] ^= 0x55
+        (folder / ("bent_" + name)).write_bytes(bent)
+    (folder / "huge.seg.nrrd").write_bytes(header.replace(f"sizes: {size} {size}".encode(), b"sizes: 900000 900000") + voxels)
+    (folder / "empty.nii").write_bytes(b"")
+
+
 class GuiCase(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
