@@ -17,6 +17,7 @@
 #include "vtkOutputWindow.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <chrono>
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -148,14 +149,20 @@ void announceNothing(vtkAlgorithm* algorithm)
 
 } // namespace
 
-Progress progressOf(vtkAlgorithm* algorithm)
+Progress progressOf(vtkAlgorithm* algorithm, double quietS)
 {
-  return [algorithm, caller = std::this_thread::get_id()](double fraction) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point tells =
+    Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(quietS));
+  return [algorithm, tells, caller = std::this_thread::get_id()](double fraction) {
     if (std::this_thread::get_id() != caller)
     {
       return !algorithm->GetAbortExecute();
     }
-    algorithm->UpdateProgress(fraction);
+    if (Clock::now() >= tells)
+    {
+      algorithm->UpdateProgress(fraction);
+    }
     return !algorithm->CheckAbort() && !stopIsWanted();
   };
 }

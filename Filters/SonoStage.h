@@ -13,8 +13,9 @@ class vtkInformationVector;
 namespace sono {
 
 /// Progress for Simulation's loops: forwards to UpdateProgress and asks CheckAbort and the interrupter on the calling
-/// thread, where VTK may be touched; worker threads only look at the abort flag, which is atomic.
-Progress progressOf(vtkAlgorithm* algorithm);
+/// thread, where VTK may be touched; worker threads only look at the abort flag, which is atomic. Nothing is forwarded
+/// in the first `quietS` seconds.
+Progress progressOf(vtkAlgorithm* algorithm, double quietS = 0.0);
 
 /// Runs a stage's work and gives RequestData's return value. An exception becomes one vtkErrorMacro sentence and leaves
 /// the outputs empty, as an abort, which is quiet, does; either way no stage downstream works, or says anything, on

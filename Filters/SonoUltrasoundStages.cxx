@@ -54,6 +54,9 @@ constexpr double anatomyEnd = 0.3;
 constexpr double tracingEnd = 0.75;
 constexpr double bmodeEnd = 0.95;
 
+// ParaView draws its window's lower edge for each word of progress, which can take as long as a moving probe's picture.
+constexpr double quietPreviewS = 1.0;
+
 } // namespace
 
 UltrasoundStages::UltrasoundStages(vtkSonoUltrasound* owner)
@@ -97,7 +100,7 @@ std::vector<vtkAlgorithm*> UltrasoundStages::withSettings() const
 Progress UltrasoundStages::progress(vtkAlgorithm* stage, double from, double to)
 {
   owner_->SetProgressText(stage->GetProgressText());
-  return partOf(progressOf(owner_), from, to);
+  return partOf(progressOf(owner_, field_.preview ? quietPreviewS : 0.0), from, to);
 }
 
 UltrasoundStages::Inputs UltrasoundStages::inputsOf(vtkInformationVector** input)

@@ -224,4 +224,5 @@ void pqSonoBeat::step()
   phase_ = phase;
   sonoSetTime(source_, times[phase]);
   widget_->showAgain();
+  steps_.start(); // not until what came meanwhile has had its turn
 }

@@ -1,4 +1,5 @@
 """The filter that chains all stages makes what they make, and runs only those that a change concerns."""
+import time
 import unittest
 
 import numpy as np
@@ -187,6 +188,24 @@ class TestWhatIsMade(unittest.TestCase):
         self.assertNotIn("Tracing", texts)
         alone = Ultrasound()
         np.testing.assert_array_equal(rf, values(alone.output(RF_LINES), "RF"))
+
+    def test_a_short_preview_tells_no_progress(self):
+        ultrasound = Ultrasound()
+        ultrasound.output(IMAGE)
+        told = []
+        ultrasound.filter.AddObserver("ProgressEvent", lambda *_: told.append(ultrasound.filter.GetProgress()))
+        for preview, paths in ((False, 30), (True, 40)):
+            ultrasound.filter.GetProbe().SetPreview(preview)
+            ultrasound.filter.GetRayTracer().SetPathsPerLine(paths)
+            told.clear()
+            begin = time.monotonic()
+            ultrasound.output(IMAGE)
+            # Its executive tells the beginning and the end. A machine that takes longer is told so.
+            amid = [progress for progress in told if 0.0 < progress < 1.0]
+            if preview and time.monotonic() - begin < 1.0:
+                self.assertEqual(amid, [])
+            elif not preview:
+                self.assertGreater(len(amid), 0)
 
     def test_asking_for_the_probe_simulates_nothing(self):
         ultrasound = Ultrasound()

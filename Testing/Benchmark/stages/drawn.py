@@ -20,8 +20,8 @@ SWEEP_S, SWEEPS = 2.0, 6  # one way along the skin, and how many ways there and 
 GAIN_STEPS, GAIN_EVERY_S = 20, 0.3
 # Where things are on the screen.
 FAN = (757, 122)
-SCANNER = (940, 122)
-GAIN = (994, 509)  # the slider's handle at 0 dB
+SCANNER = (974, 122)
+GAIN = (994, 517)  # the slider's handle at 0 dB
 FROM, TO = (538, 539), (499, 516)  # in the view with the body: where the probe lies at first, and up the chest
 
 first_motion = []  # of the pointer in the drag; time.perf_counter is the machine's, the same in all processes
