@@ -6,6 +6,8 @@
 #   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
 #   run-gpu.sh views [FOLDER]  there: a drag drawn in ParaView's views, the last pictures into the folder; `pack views` packs ParaView
 #                          for it, with a display server, for there is none
+#   run-gpu.sh window      there: the stages `drawn` and `gui` on two of that machine's cores, its GPU left aside; `pack window`
+#                          packs ParaView's window, beside what `pack views` packs
 #   run-gpu.sh dataset FILE [FOLDER [PART PARTS]]  there: writes a data set (the same pack), or takes it image by image
 #   run-gpu.sh study [FOLDER]  there: run time against error on the GPU, tables and report in the folder (build-gpu/study)
 #   run-gpu.sh peers [FOLDER]  there: programs of others on the same scenes, tables and report in the folder (build-gpu/peers);
@@ -67,7 +69,7 @@ pack_filters()
 # ParaView's Python, and what of it the stage `renders` loads here.
 pack_views()
 {
-  "$root/Testing/build-preset.sh" release
+  "$root/Testing/build-preset.sh" release SonoVDB vtkSonoFiltersPython vtkSonoWidgetsPython
   local work packages=/usr/lib/python3/dist-packages plugin=lib/paraview-5.11/plugins/SonoVDB/SonoVDB.so file
   work="$(mktemp -d)"
   mkdir -p "$work/lib" "$work/bin" "$work/python" "$work/dri" "$work/share"
@@ -102,6 +104,26 @@ END
   archive views "$work"
 }
 
+# What ParaView's window needs beside its Python: Qt's plugins, fonts, and what the stages' hands are made of.
+pack_window()
+{
+  local work file
+  work="$(mktemp -d)"
+  mkdir -p "$work/lib" "$work/bin" "$work/fonts" "$work/python"
+  cp "$(readlink -f "$(command -v paraview)")" "$work/bin/paraview"
+  cp -r /usr/lib/*/qt5/plugins "$work/qt"
+  (cd "$work/qt" && find . -name '*.so' | grep -vE '/(libqxcb|libqxcb-glx-integration|libqsvg|libqsvgicon|libqico)\.so$' | xargs rm)
+  cp -rL /etc/fonts "$work/fonts/etc"
+  cp -r /usr/share/fonts/truetype/dejavu "$work/fonts"
+  (cd /usr/lib/python3/dist-packages && cp -r Xlib six.py "$work/python")
+  for file in "$work/bin/paraview" $(find "$work/qt" -name '*.so'); do
+    libraries_of "$file" "$work/lib"
+  done
+  cp -L /usr/lib/*/libGLX_mesa.so.0 "$work/lib"
+  tar -tf "$pack/views.tar.xz" | sed -n 's,^\./lib/\([^/]*\)$,\1,p' | (cd "$work/lib" && xargs rm -f) # the other pack brings them
+  archive window "$work"
+}
+
 # Those that run on a GPU, as install-dependencies.sh knows them, and what they need beside what the machine has. The others
 # would only repeat there what the CPU's study has measured.
 pack_peers()
@@ -131,6 +153,19 @@ unpack()
   done
 }
 
+# From here on: what `pack views` packed, with the machine's display server where there is one.
+with_paraview()
+{
+  local views="$unpacked/views"
+  export PATH="$views/bin:$PATH" LD_LIBRARY_PATH="$views/lib:$views/lib/blas:${LD_LIBRARY_PATH:-}" LIBGL_DRIVERS_PATH="$views/dri"
+  export PYTHONHOME="$views/python" PYTHONPATH="$views/python:$views/python/lib-dynload"
+  export SONOVDB_DATA_DIR="$views/share/sonovdb" SONOVDB_PLUGIN="$views/lib/SonoVDB.so"
+  # Where the display server looks for them, whatever the environment says.
+  [ -e /usr/bin/xkbcomp ] || cp "$views/bin/xkbcomp" /usr/bin
+  [ -e /usr/share/X11/xkb ] || { mkdir -p /usr/share/X11 && cp -r "$views/share/xkb" /usr/share/X11; }
+  [ -e /usr/lib/x86_64-linux-gnu/dri ] || cp -r "$views/dri" /usr/lib/x86_64-linux-gnu/dri
+}
+
 with_libraries()
 {
   SONOVDB_DATA_DIR="$unpacked/programs" LD_LIBRARY_PATH="$unpacked/libraries" "$@"
@@ -158,15 +193,26 @@ case "${1:-}" in
     ;;
   views)
     unpack views
-    views="$unpacked/views"
-    export LD_LIBRARY_PATH="$views/lib:$views/lib/blas:${LD_LIBRARY_PATH:-}" LIBGL_DRIVERS_PATH="$views/dri"
-    [ -e /usr/bin/xkbcomp ] || cp "$views/bin/xkbcomp" /usr/bin # where the display server looks for it
-    "$views/bin/Xvfb" :99 -screen 0 1400x900x24 -xkbdir "$views/share/xkb" +extension GLX &
+    with_paraview
+    Xvfb :99 -screen 0 1400x900x24 +extension GLX &
     trap 'kill %1' EXIT
     sleep 3
-    DISPLAY=:99 __GLX_VENDOR_LIBRARY_NAME=nvidia PYTHONHOME="$views/python" PYTHONPATH="$views/python:$views/python/lib-dynload" \
-      SONOVDB_DATA_DIR="$views/share/sonovdb" SONOVDB_PLUGIN="$views/lib/SonoVDB.so" SONOVDB_RENDERED="${2:-}" \
-      "$views/bin/pvpython" --no-mpi "$root/Testing/Benchmark/stages/renders.py"
+    DISPLAY=:99 __GLX_VENDOR_LIBRARY_NAME=nvidia SONOVDB_RENDERED="${2:-}" \
+      pvpython --no-mpi "$root/Testing/Benchmark/stages/renders.py"
+    ;;
+  window)
+    unpack views window
+    window="$unpacked/window"
+    sed -i "s,/usr/share/fonts,$window/fonts," "$window/fonts/etc/fonts.conf"
+    # Two that share no core.
+    cores="$(lscpu -p=CPU,CORE | awk -F, '!/^#/ && !seen[$2]++ {print $1}' | head -2 | paste -sd,)"
+    with_paraview
+    export PATH="$window/bin:$PATH" LD_LIBRARY_PATH="$LD_LIBRARY_PATH:$window/lib" PYTHONPATH="$PYTHONPATH:$window/python"
+    export QT_PLUGIN_PATH="$window/qt" FONTCONFIG_PATH="$window/fonts/etc" CUDA_VISIBLE_DEVICES= XDG_CACHE_HOME=/dev/null
+    export __GLX_VENDOR_LIBRARY_NAME=mesa LP_NUM_THREADS=2
+    for stage in drawn gui; do
+      taskset -c "$cores" pvpython --no-mpi "$root/Testing/Benchmark/stages/$stage.py"
+    done
     ;;
   dataset)
     unpack filters
@@ -197,7 +243,7 @@ END
     done
     ;;
   *)
-    sed -n '2,13s/^# *//p' "$0" >&2
+    sed -n '2,15s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac
