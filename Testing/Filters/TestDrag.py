@@ -8,6 +8,8 @@ from chain import Chain, count_runs, make
 from sonovdb.vtkSonoFilters import vtkSonoRayTracer, vtkSonoThoraxSource, vtkSonoUltrasound
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+ANATOMY = 4  # the one filter's output
+
 
 def array(image, name="BMode"):
     width, height, _ = image.GetDimensions()
@@ -22,6 +24,12 @@ def ultrasound_on(thorax, **settings):
     for part in ("PositionMm", "Axial", "Lateral"):
         getattr(ultrasound.GetProbe(), "Set" + part)(*field.GetArray("A4C" + part).GetTuple3(0))
     return ultrasound
+
+
+def scene_time(ultrasound):
+    """When the scene of the one filter was built."""
+    ultrasound.Update(ANATOMY)
+    return ultrasound.GetOutputDataObject(ANATOMY).GetFieldData().GetAbstractArray("SonoScene").GetMTime()
 
 
 def moved(position, steps):
@@ -54,11 +62,14 @@ class TestDrag(unittest.TestCase):
         self.assertIn("Building the anatomy", texts)
         texts.clear()
         ultrasound.GetProbe().SetPreview(True)
+        built = scene_time(ultrasound)
         for step in range(1, 6):
+            before = array(ultrasound.GetOutputDataObject(0))
             ultrasound.GetProbe().SetPositionMm(*moved(position, step))
             ultrasound.Update()
-        self.assertIn("Tracing", texts)
+            self.assertFalse(np.array_equal(array(ultrasound.GetOutputDataObject(0)), before))
         self.assertNotIn("Building the anatomy", texts)
+        self.assertEqual(scene_time(ultrasound), built)
 
     def test_nothing_is_prepared_unless_a_widget_asks(self):
         chain = Chain()
