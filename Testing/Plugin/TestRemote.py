@@ -80,11 +80,11 @@ class TestRemote(unittest.TestCase):
 
         down, seconds = self.crossed(turn)
         times.sort()
-        print(f"{1 / times[0]:.1f} pictures/s cross at best, {1 / times[STEPS // 2]:.1f} usually, {STEPS / seconds:.1f} computed, too, "
-              f"{down / STEPS:.0f} bytes each, of which {size} in arrays")
+        print(f"{1 / times[STEPS // 2]:.1f} pictures/s cross, {STEPS / seconds:.1f} computed, too, {down / STEPS:.0f} bytes each, of which "
+              f"{size} in arrays")
         self.assertEqual(len(greys), STEPS)
         self.assertLess(down / STEPS, 1.2 * size)
-        self.assertLess(times[0], 0.1)  # of the quickest: what others take of a busy machine only adds to it
+        self.assertLess(times[STEPS // 2], 0.1)
 
     def test_surfaces_for_the_probe_are_made_once_a_body(self):
         """Few triangles of it, whatever the probe does meanwhile, and others for another body."""
