@@ -48,7 +48,8 @@ compile_ahead()
 }
 
 cd "$root" # where presets are looked up
-export CCACHE_DEPEND=1 # or it would preprocess each file once more
+# Depend: or it would preprocess each file once more. The others let it serve every clone.
+export CCACHE_DEPEND=1 CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1
 if command -v pvpython > /dev/null; then
   Testing/install-dependencies.sh "${packages[@]}"
 else

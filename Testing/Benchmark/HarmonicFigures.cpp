@@ -1,5 +1,6 @@
 #include "HarmonicFigures.h"
 
+#include "Folders.h"
 #include "Simulator.h"
 #include "TestScenes.h"
 
@@ -18,7 +19,7 @@ constexpr double neperPerDb = 0.11512925464970229; // of amplitude
 
 const Tissue& tissueCalled(const std::string& name)
 {
-  static const TissueTable table = TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  static const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
   return *table.find(name);
 }
 
@@ -38,7 +39,7 @@ std::shared_ptr<const Scene> cystScene()
 ImageInput cystInput(ImagingMode mode)
 {
   const double sentFrequencyMHz = 2.0;
-  const ProbePreset probe = readProbePreset(SONOVDB_DATA_DIR "/probes/curvilinear_c5-2.json");
+  const ProbePreset probe = readProbePreset(dataFolder() + "/probes/curvilinear_c5-2.json");
   ImageInput input;
   input.pose.positionMm = { cystMm.x, cystMm.y, 0.0 };
   ImageSettings& s = input.settings;

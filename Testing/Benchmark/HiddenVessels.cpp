@@ -1,6 +1,7 @@
 #include "HiddenVessels.h"
 
 #include "Echo/FormRf.h"
+#include "Folders.h"
 #include "Phantoms/ThoraxPhantom.h"
 #include "Scene/AddScan.h"
 #include "Stage.h"
@@ -64,7 +65,7 @@ struct Sums
 
 void measureHiddenVessels()
 {
-  const std::string data = SONOVDB_DATA_DIR;
+  const std::string data = dataFolder();
   const auto map = LabelTissueMap::read(data + "/label_tissues.csv");
   const auto table = TissueTable::read(data + "/tissues.csv");
   LabelVolume volume = makeThoraxPhantom(1.0);

@@ -1,9 +1,9 @@
 #include "PhantomScene.h"
 
 #include "Core/Progress.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 
-#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -11,9 +11,7 @@ namespace sono {
 
 std::unique_ptr<Scene> makePhantomScene(LabelVolume volume)
 {
-  // The variable is for programs that are carried to another machine.
-  const char* carried = std::getenv("SONOVDB_DATA_DIR");
-  const std::string data = carried ? carried : SONOVDB_DATA_DIR;
+  const std::string data = dataFolder();
   const TissueTable table = TissueTable::read(data + "/tissues.csv");
   const LabelTissueMap map = LabelTissueMap::read(data + "/label_tissues.csv");
   const auto unmatched = assignTissues(volume, map, table, "air");

@@ -1,6 +1,7 @@
 #include "SyntheticTorso.h"
 
 #include "Core/ParallelFor.h"
+#include "Folders.h"
 #include "Scene/SceneFile.h"
 
 #include <algorithm>
@@ -153,7 +154,7 @@ LabelVolume makeSyntheticTorso(const Vec3i& size, int labelCount)
 
 std::unique_ptr<Scene> makeTorsoScene(LabelVolume volume, const std::string& cacheFolder)
 {
-  const TissueTable table = TissueTable::read(std::string(SONOVDB_DATA_DIR) + "/tissues.csv");
+  const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
   const auto& tissues = table.tissues();
   for (LabelInfo& label : volume.labels)
   {

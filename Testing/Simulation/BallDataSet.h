@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Folders.h"
 #include "TemporaryFolder.h"
 
 #include "DataSets/DataSetPlan.h"
@@ -65,7 +66,7 @@ protected:
   std::shared_ptr<const DataSetPlan> plan()
   {
     std::ofstream(root_ / "set.json") << json_.dump();
-    return std::make_shared<const DataSetPlan>(readDataSet((root_ / "set.json").string(), SONOVDB_DATA_DIR));
+    return std::make_shared<const DataSetPlan>(readDataSet((root_ / "set.json").string(), dataFolder()));
   }
 
   const TemporaryFolder folder_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "FieldScenes.h"
+#include "Folders.h"
 
 #include "Probe/ScanGeometry.h"
 
@@ -20,7 +21,7 @@ constexpr std::array<std::pair<double, double>, 4> elementSpeckleWidths{
 
 inline ProbePreset p42()
 {
-  return readProbePreset(SONOVDB_DATA_DIR "/probes/phased_p4-2.json");
+  return readProbePreset(dataFolder() + "/probes/phased_p4-2.json");
 }
 
 /// Image formation with the probe's pulse and aperture.

@@ -1,6 +1,7 @@
 #include "Probe/AcousticWindow.h"
 
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/BodyFill.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -271,9 +272,8 @@ TEST(AcousticWindow, AKidneyInsteadOfALiversTip)
 std::unique_ptr<Scene> thoraxScene()
 {
   LabelVolume volume = makeThoraxPhantom(2.0);
-  const auto table = TissueTable::read(std::string(SONOVDB_DATA_DIR) + "/tissues.csv");
-  assignTissues(volume, LabelTissueMap::read(std::string(SONOVDB_DATA_DIR) + "/label_tissues.csv"), table,
-                "soft_tissue");
+  const auto table = TissueTable::read(dataFolder() + "/tissues.csv");
+  assignTissues(volume, LabelTissueMap::read(dataFolder() + "/label_tissues.csv"), table, "soft_tissue");
   return std::make_unique<Scene>(std::move(volume), table, "air");
 }
 
@@ -325,7 +325,7 @@ TEST(AcousticWindow, TheSameAtEachCall)
 TEST(AcousticWindow, NeverOnACutFace)
 {
   CutFigures figures;
-  WindowCuts(makeThoraxPhantom(3.0), false, SONOVDB_DATA_DIR, 7).run(60, { "heart", "liver", "" }, figures);
+  WindowCuts(makeThoraxPhantom(3.0), false, dataFolder(), 7).run(60, { "heart", "liver", "" }, figures);
   EXPECT_EQ(figures.onCutFaces, 0);
   EXPECT_GT(figures.windows, 100);
 }
@@ -349,7 +349,7 @@ TEST(AcousticWindow, CutFacesOfAFilledBodyAreSeenAsSuch)
   LabelVolume half = ball;
   half.placement.size.z = 30;
   half.voxels.resize(half.placement.voxelCount());
-  const WindowCuts cuts(ball, true, SONOVDB_DATA_DIR, 1);
+  const WindowCuts cuts(ball, true, dataFolder(), 1);
   fillBody(half);
   const auto radiusMm = [&](const Vec3d& outward) { // of the half's own skin
     double r = 0.0;

@@ -1,3 +1,4 @@
+#include "Folders.h"
 #include "Probe/ArrayElements.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ constexpr double pi = 3.14159265358979323846;
 
 ProbePreset bundled(const std::string& name)
 {
-  return readProbePreset(std::string(SONOVDB_DATA_DIR) + "/probes/" + name + ".json");
+  return readProbePreset(dataFolder() + "/probes/" + name + ".json");
 }
 
 int activeCount(const ArrayElements& elements, const ProbeSettings& probe, int line)

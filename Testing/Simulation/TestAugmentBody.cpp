@@ -2,6 +2,7 @@
 #include "DataSets/AugmentBody.h"
 #include "DataSets/DataSetImager.h"
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/AddFat.h"
 #include "Labels/LabelContacts.h"
 #include "Phantoms/CheckThorax.h"
@@ -287,7 +288,7 @@ class AugmentedPictures : public ::testing::Test
 protected:
   void SetUp() override
   {
-    std::ifstream(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json") >> json_;
+    std::ifstream(dataFolder() + "/datasets/apical.json") >> json_;
     json_["exams"] = 1;
     json_["imagesPerExam"] = 2;
     json_["pixelMm"] = 1.0;
@@ -304,7 +305,7 @@ protected:
     json["patients"][0].update(nlohmann::json::parse(changes));
     const std::string path = folder_.file("set.json");
     std::ofstream(path) << json.dump();
-    DataSetImager imager(std::make_shared<const DataSetPlan>(readDataSet(path, SONOVDB_DATA_DIR)), Device::Cpu);
+    DataSetImager imager(std::make_shared<const DataSetPlan>(readDataSet(path, dataFolder())), Device::Cpu);
     return { imager.make(0), imager.make(1) };
   }
 

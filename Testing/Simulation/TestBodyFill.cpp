@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/BodyFill.h"
 #include "Labels/DistanceField.h"
 #include "Labels/ReadLabelMap.h"
@@ -249,7 +250,7 @@ TEST(BodyFill, RefusesWhatItCannotFill)
 TEST(BodyFill, AgreesWithTheFittedThorax)
 {
   // thorax_heart was made from the same subject by other means and has its fat and skin labelled.
-  const fs::path data = SONOVDB_SHARED_DATA_DIR;
+  const fs::path data = sharedDataFolder();
   const fs::path sparse = data / "totalseg_s0327/s0327_total_v2_labelmap.nii.gz";
   const fs::path whole = data / "thorax_heart/thorax_heart.nii.gz";
   if (!fs::exists(sparse) || !fs::exists(whole))

@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Phantoms/CalibrationPhantom.h"
 #include "Phantoms/TestObjects.h"
@@ -21,12 +22,12 @@ using sono::testing::expectContains;
 
 std::vector<PhantomTarget> bundledTargets()
 {
-  return readPhantomTargets(SONOVDB_DATA_DIR "/phantom_040gse.csv");
+  return readPhantomTargets(dataFolder() + "/phantom_040gse.csv");
 }
 
 TissueTable bundledTissues()
 {
-  return TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  return TissueTable::read(dataFolder() + "/tissues.csv");
 }
 
 int voxelsOf(const LabelVolume& volume, const std::string& name)
@@ -144,7 +145,7 @@ TEST(CalibrationPhantom, MakesAScene)
   LabelVolume volume = makeCalibrationPhantom(bundledTargets(), settings);
   const TissueTable tissues = bundledTissues();
   const auto unmatched =
-    assignTissues(volume, LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv"), tissues, "air");
+    assignTissues(volume, LabelTissueMap::read(dataFolder() + "/label_tissues.csv"), tissues, "air");
   EXPECT_TRUE(unmatched.empty());
   for (const LabelInfo& label : volume.labels)
   {

@@ -1,5 +1,6 @@
 // What a data set's file may say, and what follows from it for each image.
 #include "ErrorText.h"
+#include "Folders.h"
 #include "TemporaryFolder.h"
 
 #include "DataSets/DataSetPlan.h"
@@ -24,7 +25,7 @@ using Json = nlohmann::json;
 
 std::string dataFile(const std::string& name)
 {
-  return std::string(SONOVDB_DATA_DIR) + "/" + name;
+  return dataFolder() + "/" + name;
 }
 
 Json parsed(const std::string& path)
@@ -46,7 +47,7 @@ protected:
     std::ofstream(path_) << text;
     return path_;
   }
-  DataSet read(const Json& json) { return readDataSet(write(json.dump()), SONOVDB_DATA_DIR); }
+  DataSet read(const Json& json) { return readDataSet(write(json.dump()), dataFolder()); }
   std::string refusal(const Json& json)
   {
     return errorOf([&] { read(json); });
@@ -59,10 +60,10 @@ protected:
 
 TEST_F(DataSetFile, PresetsAreRead)
 {
-  const DataSet set = readDataSet(dataFile("datasets/apical.json"), SONOVDB_DATA_DIR);
+  const DataSet set = readDataSet(dataFile("datasets/apical.json"), dataFolder());
   EXPECT_EQ(set.masks.size(), 5u);
   EXPECT_EQ(set.parameters.size(), 13u);
-  EXPECT_EQ(readDataSet(dataFile("datasets/amadou2024.json"), SONOVDB_DATA_DIR).imagesPerExam, 10);
+  EXPECT_EQ(readDataSet(dataFile("datasets/amadou2024.json"), dataFolder()).imagesPerExam, 10);
 }
 
 TEST_F(DataSetFile, EachMistakeIsNamedWithFileAndKey)
@@ -171,11 +172,11 @@ TEST_F(DataSetFile, MistakesOfAPatientAreNamed)
 
 TEST_F(DataSetFile, WhatIsNoJsonIsRefused)
 {
-  expectContains(errorOf([&] { readDataSet(write("{\"seed\": 1,"), SONOVDB_DATA_DIR); }), "is not JSON");
-  expectContains(errorOf([&] { readDataSet(write("[]"), SONOVDB_DATA_DIR); }), "is not an object");
-  expectContains(errorOf([&] { readDataSet(write(R"({"seed": 1, "seed": 2})"), SONOVDB_DATA_DIR); }),
+  expectContains(errorOf([&] { readDataSet(write("{\"seed\": 1,"), dataFolder()); }), "is not JSON");
+  expectContains(errorOf([&] { readDataSet(write("[]"), dataFolder()); }), "is not an object");
+  expectContains(errorOf([&] { readDataSet(write(R"({"seed": 1, "seed": 2})"), dataFolder()); }),
                  "'seed' is there twice");
-  expectContains(errorOf([&] { readDataSet(::testing::TempDir(), SONOVDB_DATA_DIR); }), "cannot read");
+  expectContains(errorOf([&] { readDataSet(::testing::TempDir(), dataFolder()); }), "cannot read");
 }
 
 /// The schema, which editors read, names the keys that the reader knows, no more and no fewer.
@@ -364,7 +365,7 @@ TEST_F(DataSetFile, PatientsStayInOneSplit)
 /// Each copy of the bundled thorax is another body then, and a patient that is in one split.
 TEST_F(DataSetFile, DrawnBodiesDiffer)
 {
-  const DataSetPlan plan(readDataSet(dataFile("datasets/apical_views.json"), SONOVDB_DATA_DIR));
+  const DataSetPlan plan(readDataSet(dataFile("datasets/apical_views.json"), dataFolder()));
   std::set<double> ventricles;
   for (const PlannedBody& body : plan.bodies())
   {

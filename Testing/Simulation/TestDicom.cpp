@@ -1,5 +1,6 @@
 #include "DicomBytes.h"
 #include "ErrorText.h"
+#include "Folders.h"
 #include "LabelFolder.h"
 #include "Labels/MatchedScan.h"
 #include "Labels/ReadIntensities.h"
@@ -250,7 +251,7 @@ TEST_F(DicomFiles, AnOrientationThatIsNotAtRightAnglesIsRefused)
 
 TEST(DicomData, LiverIsWhatItsNrrdSays)
 {
-  const fs::path folder = fs::path(SONOVDB_SHARED_DATA_DIR) / "dcmqi";
+  const fs::path folder = fs::path(sharedDataFolder()) / "dcmqi";
   if (!fs::exists(folder / "liver.dcm"))
   {
     GTEST_SKIP() << "the dcmqi data are not there";
@@ -282,7 +283,7 @@ TEST(DicomData, LiverIsWhatItsNrrdSays)
 
 TEST(DicomData, OverlapsAreFlattened)
 {
-  const fs::path path = fs::path(SONOVDB_SHARED_DATA_DIR) / "dcmqi/partial_overlaps.dcm";
+  const fs::path path = fs::path(sharedDataFolder()) / "dcmqi/partial_overlaps.dcm";
   if (!fs::exists(path))
   {
     GTEST_SKIP() << "the dcmqi data are not there";

@@ -1,6 +1,7 @@
 #include "Probe/HeartLandmarks.h"
 
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Phantoms/ThoraxLandmarks.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -53,7 +54,7 @@ int bodyAt(const Vec3d& p)
 
 void nameAll(LabelVolume& volume)
 {
-  const std::string data = SONOVDB_DATA_DIR;
+  const std::string data = dataFolder();
   assignTissues(volume, LabelTissueMap::read(data + "/label_tissues.csv"), TissueTable::read(data + "/tissues.csv"),
                 "soft_tissue");
 }

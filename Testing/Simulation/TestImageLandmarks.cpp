@@ -1,4 +1,5 @@
 // Landmarks where a picture shows them: against the labels that it shows, and against circles in closed form.
+#include "Folders.h"
 #include "TemporaryFolder.h"
 
 #include "DataSets/DataSetImager.h"
@@ -54,7 +55,7 @@ double distanceToMask(const DataSetImage& image, int value, const Json& point, b
 DataSetImage apicalImage(const std::string& path, const std::string& view)
 {
   Json json;
-  std::ifstream(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json") >> json;
+  std::ifstream(dataFolder() + "/datasets/apical.json") >> json;
   json.erase("jitter");
   json.erase("tissues");
   json["patients"][0].update(
@@ -63,7 +64,7 @@ DataSetImage apicalImage(const std::string& path, const std::string& view)
   json["tracing"]["pathsPerLine"] = 40;
   json["echo"]["samplingMHz"] = 12;
   std::ofstream(path) << json.dump();
-  return DataSetImager(std::make_shared<const DataSetPlan>(readDataSet(path, SONOVDB_DATA_DIR)), Device::Cpu).make(0);
+  return DataSetImager(std::make_shared<const DataSetPlan>(readDataSet(path, dataFolder())), Device::Cpu).make(0);
 }
 
 } // namespace

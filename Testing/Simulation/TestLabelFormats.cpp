@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Folders.h"
 #include "LabelFolder.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/LabelTable.h"
@@ -336,7 +337,7 @@ TEST(XmlLabelTable, IsReadAsXmlIs)
 TEST(LabelNames, NumbersAloneNeverNameAnOrgan)
 {
   // 51 is a heart in TotalSegmentator v2 and an iliac artery in v1.
-  const LabelTissueMap map = LabelTissueMap::read(std::string(SONOVDB_DATA_DIR) + "/label_tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
   EXPECT_EQ(map.find("heart"), "myocardium");
   EXPECT_EQ(map.find("iliac_artery_left"), "blood");
   EXPECT_EQ(map.find("label_51"), "");
@@ -344,7 +345,7 @@ TEST(LabelNames, NumbersAloneNeverNameAnOrgan)
 
 TEST(LabelNames, SubjectsNamesComeFromTheTextBesideIt)
 {
-  const fs::path path = fs::path(SONOVDB_SHARED_DATA_DIR) / "totalseg_s0327/s0327_total_v2_labelmap.nii.gz";
+  const fs::path path = fs::path(sharedDataFolder()) / "totalseg_s0327/s0327_total_v2_labelmap.nii.gz";
   if (!fs::exists(path))
   {
     GTEST_SKIP() << "the totalseg_s0327 data are not there";
@@ -369,7 +370,7 @@ TEST(LabelNames, SubjectsNamesComeFromTheTextBesideIt)
     EXPECT_EQ(count[std::size_t(id)], voxels) << name;
   }
   EXPECT_EQ(volume.labels.size(), lines);
-  const LabelTissueMap map = LabelTissueMap::read(std::string(SONOVDB_DATA_DIR) + "/label_tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
   for (const LabelInfo& label : volume.labels)
   {
     EXPECT_NE(map.find(label.name), "") << label.name;

@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Folders.h"
 #include "LabelFolder.h"
 #include "Labels/LabelVolume.h"
 #include "Labels/ReadLabelMap.h"
@@ -40,7 +41,7 @@ protected:
 
 fs::path sharedData(const std::string& name)
 {
-  return fs::path(SONOVDB_SHARED_DATA_DIR) / name;
+  return fs::path(sharedDataFolder()) / name;
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "Probe/StandardViews.h"
 
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Phantoms/ThoraxLandmarks.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -21,7 +22,7 @@ namespace {
 using namespace sono;
 using namespace sono::test;
 
-const std::string data = SONOVDB_DATA_DIR;
+const std::string data = dataFolder();
 
 ProbeSettings probeOf(const std::string& preset)
 {

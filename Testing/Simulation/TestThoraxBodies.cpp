@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Phantoms/CheckThorax.h"
 #include "Phantoms/DrawThorax.h"
@@ -190,7 +191,7 @@ std::string faultsOf(const LabelVolume& volume, const ThoraxParameters& paramete
 /// Valid, with the volumes that were asked for at the end of diastole, its landmarks where the label map's are.
 TEST(ThoraxBodies, DrawsAreValid)
 {
-  const std::string data = SONOVDB_DATA_DIR;
+  const std::string data = dataFolder();
   for (std::uint64_t seed = 1; seed <= 12; ++seed)
   {
     const ThoraxParameters parameters = drawThoraxParameters(seed);

@@ -1,4 +1,5 @@
 #include "ErrorText.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/TissueTable.h"
 #include "TemporaryFolder.h"
@@ -38,12 +39,12 @@ std::string tableError(const std::string& content)
 
 TissueTable bundledTable()
 {
-  return TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  return TissueTable::read(dataFolder() + "/tissues.csv");
 }
 
 LabelTissueMap bundledMap()
 {
-  return LabelTissueMap::read(SONOVDB_DATA_DIR "/label_tissues.csv");
+  return LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
 }
 
 double reflection(const Tissue* a, const Tissue* b)
@@ -264,7 +265,7 @@ TEST(AssignTissues, WellKnownNames)
 
 TEST(AssignTissues, AgreesWithTheClassesOfTheHeartData)
 {
-  std::ifstream csv(SONOVDB_SHARED_DATA_DIR "/thorax_heart/labels.csv");
+  std::ifstream csv(sharedDataFolder() + "/thorax_heart/labels.csv");
   if (!csv)
   {
     GTEST_SKIP() << "the thorax_heart data are not there";
@@ -291,7 +292,7 @@ TEST(AssignTissues, AgreesWithTheClassesOfTheHeartData)
 
 TEST(AssignTissues, KnowsEveryNameOfATotalSegmentatorMap)
 {
-  std::ifstream list(SONOVDB_SHARED_DATA_DIR "/totalseg_s0327/s0327_labels.txt");
+  std::ifstream list(sharedDataFolder() + "/totalseg_s0327/s0327_labels.txt");
   if (!list)
   {
     GTEST_SKIP() << "the totalseg_s0327 data are not there";

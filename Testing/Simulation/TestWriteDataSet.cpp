@@ -1,6 +1,7 @@
 // What a data set's folder holds, and what becomes of it when its writing was cut off.
 #include "BallDataSet.h"
 #include "ErrorText.h"
+#include "Folders.h"
 
 #include "DataSets/ImageWorkers.h"
 #include "DataSets/WriteDataSet.h"
@@ -460,7 +461,7 @@ TEST_F(DataSetFolder, LooksForViewsByNameAndForWindows)
 
 TEST(PoseOnSkin, FindsTheSurfaceFromBothSides)
 {
-  TissueTable table = TissueTable::read(std::string(SONOVDB_DATA_DIR) + "/tissues.csv");
+  TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
   LabelVolume volume = ballInSkin();
   for (LabelInfo& label : volume.labels)
   {

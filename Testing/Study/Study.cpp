@@ -1,10 +1,10 @@
 #include "Study.h"
 
 #include "Core/Progress.h"
+#include "Folders.h"
 #include "Labels/CsvFile.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 
 namespace sono::study {
@@ -60,8 +60,7 @@ void Output::finish() const
 
 std::string dataFile(const std::string& name)
 {
-  const char* carried = std::getenv("SONOVDB_DATA_DIR");
-  return (carried ? std::string(carried) : std::string(SONOVDB_DATA_DIR)) + "/" + name;
+  return dataFolder() + "/" + name;
 }
 
 std::string number(double value)

@@ -32,8 +32,7 @@ private:
   std::vector<std::vector<std::string>> figures_;
 };
 
-/// A file of the repository's Data folder, or of the folder that SONOVDB_DATA_DIR names where a machine has no
-/// repository.
+/// A file of dataFolder().
 std::string dataFile(const std::string& name);
 
 /// A number as tables hold it: six significant digits.

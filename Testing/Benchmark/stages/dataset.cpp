@@ -1,5 +1,6 @@
 // A data set: 1000 images of the bundled apical preset with masks to disk, all cores; its plan, memory and PNG files.
 #include "DataSets/WriteDataSet.h"
+#include "Folders.h"
 #include "Image/PngFile.h"
 #include "Stage.h"
 
@@ -47,7 +48,7 @@ void measurePng(const DataSet& set)
 
 void measureDataSet()
 {
-  DataSet set = readDataSet(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json", SONOVDB_DATA_DIR);
+  DataSet set = readDataSet(dataFolder() + "/datasets/apical.json", dataFolder());
   measurePlan(set);
   measurePng(set);
   set.exams = 100;

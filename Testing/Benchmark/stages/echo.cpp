@@ -3,6 +3,7 @@
 #include "Core/SoundSpeed.h"
 #include "Echo/FormRf.h"
 #include "EchoScenes.h"
+#include "Folders.h"
 #include "Image/BMode.h"
 #include "Image/ScanConvert.h"
 #include "PhantomScene.h"
@@ -90,7 +91,7 @@ void measureA4C()
   RfLines rf;
   printFigure("echo_a4c_s", medianSeconds([&] { rf = formRf(*scene, lines, traced, echo); }), "s");
 
-  ArrayAperture p42 = apertureOf(readProbePreset(SONOVDB_DATA_DIR "/probes/phased_p4-2.json"));
+  ArrayAperture p42 = apertureOf(readProbePreset(dataFolder() + "/probes/phased_p4-2.json"));
   p42.centreFrequencyMHz = echo.centreFrequencyMHz;
   p42.fractionalBandwidth = echo.fractionalBandwidth;
   EchoSettings withField = echo;

@@ -1,5 +1,6 @@
 // Memory over 10^5 images of a data set to disk, tiny ones of 100 drawn bodies (minutes, 2 GB in the temporary folder).
 #include "DataSets/WriteDataSet.h"
+#include "Folders.h"
 #include "Stage.h"
 
 #include <cstdlib>
@@ -14,7 +15,7 @@ constexpr std::int64_t images = 100000;
 /// The apical preset with pictures that cost next to nothing: what is kept of an image or a body is kept of these, too.
 DataSet tinySet()
 {
-  DataSet set = readDataSet(std::string(SONOVDB_DATA_DIR) + "/datasets/apical.json", SONOVDB_DATA_DIR);
+  DataSet set = readDataSet(dataFolder() + "/datasets/apical.json", dataFolder());
   const std::map<std::string, double> tiny{
     { "lineCount", 8 }, { "depthMm", 60 }, { "pathsPerLine", 1 }, { "samplingMHz", 10 }
   };

@@ -8,6 +8,7 @@
 #include "DataSets/MaskGroups.h"
 #include "Echo/ComputedBeam.h"
 #include "Echo/EchoSetup.h"
+#include "Folders.h"
 #include "Image/LabelSlice.h"
 #include "Image/PngFile.h"
 #include "Labels/PrepareBody.h"
@@ -224,7 +225,7 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
 
 void measureHost()
 {
-  DataSet set = readDataSet(std::string(SONOVDB_DATA_DIR) + "/datasets/apical_views.json", SONOVDB_DATA_DIR);
+  DataSet set = readDataSet(dataFolder() + "/datasets/apical_views.json", dataFolder());
   const DataSetPlan plan(set);
   constexpr int bodies = 4;
   constexpr int images = 8; // of each

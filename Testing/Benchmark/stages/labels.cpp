@@ -1,5 +1,6 @@
 // Any segmentation: names of public lists that no rule knows, or knows as another tissue; windows in volumes cut at
 // random.
+#include "Folders.h"
 #include "HiddenVessels.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/CsvFile.h"
@@ -19,8 +20,8 @@ namespace {
 
 void measureNames()
 {
-  const LabelTissueMap map = LabelTissueMap::read(std::string(SONOVDB_DATA_DIR) + "/label_tissues.csv");
-  const CsvFile names = CsvFile::read(SONOVDB_LABEL_NAMES);
+  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  const CsvFile names = CsvFile::read(labelNamesFile());
   const auto name = std::size_t(names.requiredColumn("name"));
   const auto tissue = std::size_t(names.requiredColumn("tissue"));
   int unknown = 0;
@@ -38,10 +39,10 @@ void measureNames()
 
 void measureWindows()
 {
-  const std::string data = SONOVDB_DATA_DIR;
+  const std::string data = dataFolder();
   CutFigures figures;
   WindowCuts(makeThoraxPhantom(2.0), false, data, 1).run(1000, { "heart", "liver", "", "aorta lumen" }, figures);
-  const std::filesystem::path shared = SONOVDB_SHARED_DATA_DIR;
+  const std::filesystem::path shared = sharedDataFolder();
   CutFigures filled;
   const auto cutFile = [&](const char* file, bool isFilled, const std::vector<std::string>& targets) {
     if (std::filesystem::exists(shared / file))

@@ -2,6 +2,7 @@
 #include "ApicalImage.h"
 #include "BeamFigures.h"
 #include "BoundaryEchoes.h"
+#include "Folders.h"
 #include "PhantomScene.h"
 #include "SpeckleBands.h"
 #include "Stage.h"
@@ -136,7 +137,7 @@ void measureBeams()
 
 void measureSpeckle()
 {
-  const TissueTable tissues = TissueTable::read(SONOVDB_DATA_DIR "/tissues.csv");
+  const TissueTable tissues = TissueTable::read(dataFolder() + "/tissues.csv");
   for (const SpeckleBand& band : speckleBands(*tissues.find("liver")))
   {
     printFigure("speckle_snr_" + text(band.depthMm) + "_mm", band.snr, "1", "1.89 to 1.93");

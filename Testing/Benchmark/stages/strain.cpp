@@ -2,6 +2,7 @@
 // has. With SONOVDB_REGISTERED, a folder that the stage `registered` has filled, the walls ride on displacements from
 // there.
 #include "ApicalImage.h"
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Phantoms/ThoraxBody.h"
 #include "Phantoms/ThoraxPhantom.h"
@@ -24,7 +25,7 @@
 namespace sono {
 namespace {
 
-const std::string data = SONOVDB_DATA_DIR;
+const std::string data = dataFolder();
 
 constexpr int phases = 24; // of a cycle
 constexpr int frames = 9;  // of them, from the end of diastole to that of systole

@@ -1,4 +1,5 @@
 // Standard views of drawn bodies: how many are found, how far their planes are off where the bodies' own landmarks say.
+#include "Folders.h"
 #include "Labels/AssignTissues.h"
 #include "Labels/ReadLabelMap.h"
 #include "Phantoms/DrawThorax.h"
@@ -23,7 +24,7 @@
 namespace sono {
 namespace {
 
-const std::string data = SONOVDB_DATA_DIR;
+const std::string data = dataFolder();
 constexpr int drawnBodies = 200;
 constexpr int supineBodies = 10; // the first of them, on their backs
 constexpr double mostDeg = 5.0;  // a view may be off
@@ -210,7 +211,7 @@ void measureViews()
     const double spacingMm = seed % 20 == 0 ? 1.0 : seed % 20 == 10 ? 1.5 : 2.0; // mostly the quickest that is valid
     addDrawn(seed, drawThoraxParameters(std::uint64_t(seed)), spacingMm, figures);
   }
-  const std::filesystem::path fitted = std::filesystem::path(SONOVDB_SHARED_DATA_DIR) / "thorax_heart";
+  const std::filesystem::path fitted = std::filesystem::path(sharedDataFolder()) / "thorax_heart";
   if (std::filesystem::exists(fitted / "landmarks.json"))
   {
     figures.add("thorax_heart", readLabelMap((fitted / "thorax_heart.nii.gz").string()),
