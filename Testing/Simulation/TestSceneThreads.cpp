@@ -134,9 +134,9 @@ TEST(SceneThreads, WhoObservesTheMakingOfAThingMayAskForAnyOther)
   }
 }
 
-const Vec3i longSize(64, 64, 1024);
-const VoxelBox firstHalf{ Vec3i(0), Vec3i(64, 64, 500) };
-const VoxelBox secondHalf{ Vec3i(0, 0, 520), Vec3i(64, 64, 1000) };
+const Vec3i longSize(32, 32, 1024);
+const VoxelBox firstHalf{ Vec3i(0), Vec3i(32, 32, 500) };
+const VoxelBox secondHalf{ Vec3i(0, 0, 520), Vec3i(32, 32, 1000) };
 
 /// Counted in processor time, whatever else the machine does: a box that is left takes no more of it. Its end is waited
 /// for, so that all that it took is counted.
