@@ -14,13 +14,14 @@ if [[ $preset == demo ]]; then
   packages=()
 fi
 
-configure()
+# To be called when it is installed: a build that goes on with another launcher compiles everything anew.
+use_compiler_cache()
 {
-  local launcher=()
   if command -v ccache > /dev/null; then
-    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CMAKE_CUDA_COMPILER_LAUNCHER=ccache
+    # Depend: or it would preprocess each file once more. The others let it serve every clone.
+    export CCACHE_DEPEND=1 CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1
   fi
-  cmake --preset "$preset" "${launcher[@]}" "$@"
 }
 
 # Most packages are ParaView's, and one core alone unpacks them: the others compile the simulator meanwhile, which needs none
@@ -28,6 +29,7 @@ configure()
 compile_ahead()
 {
   Testing/install-dependencies.sh simulation
+  use_compiler_cache
   local log
   log="$(mktemp)"
   echo "Installs ParaView, and compiles the simulator meanwhile; what apt says goes to $log"
@@ -35,7 +37,7 @@ compile_ahead()
   local apt=$!
   # Started so, it does not hear Ctrl-C. It is waited for, since it holds apt's lock.
   trap 'echo "Waits until apt is done." >&2; wait' EXIT
-  configure -DSONOVDB_BUILD_PLUGIN=OFF -DSONOVDB_BUILD_TESTING=OFF
+  cmake --preset "$preset" -DSONOVDB_BUILD_PLUGIN=OFF -DSONOVDB_BUILD_TESTING=OFF
   cmake --build --preset "$preset" --target Simulation
   local status=0
   wait "$apt" || status=$?
@@ -48,12 +50,11 @@ compile_ahead()
 }
 
 cd "$root" # where presets are looked up
-# Depend: or it would preprocess each file once more. The others let it serve every clone.
-export CCACHE_DEPEND=1 CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1
 if command -v pvpython > /dev/null; then
   Testing/install-dependencies.sh "${packages[@]}"
+  use_compiler_cache
 else
   compile_ahead
 fi
-configure
+cmake --preset "$preset"
 cmake --build --preset "$preset" "${targets[@]}"
