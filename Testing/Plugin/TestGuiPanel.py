@@ -145,6 +145,17 @@ class TestGuiPanel(GuiCase):
         self.assertFalse(instrument["takesNeedle"])
         self.assertNotIn(instrument["picture"], (without["picture"], with_it["picture"]))
 
+    def test_needle_of_a_frozen_picture_and_of_one_of_two(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = self.play_scene("placed", folder)
+        self.assertEqual(found["frozen with it"]["needles"], 1)
+        self.assertNotEqual(found["frozen with it"]["picture"], found["frozen"]["picture"])
+        self.assertEqual(found["first with it"]["needles"], 1)
+        self.assertEqual([found[f"{name} with it"]["targets"] for name in ("first", "second")], [False, True])
+        self.assertEqual(found["first with it"]["picture"], found["first"]["picture"])
+        self.assertNotEqual(found["second with it"]["picture"], found["second"]["picture"])
+        self.assertIn(1, found["bodies"])
+
     def test_clear_cache_is_clicked(self):
         with tempfile.TemporaryDirectory() as folder:
             write_label_maps(pathlib.Path(folder, "given"))
@@ -153,6 +164,8 @@ class TestGuiPanel(GuiCase):
         self.assertNotEqual(found["kept"]["files"], [])
         self.assertEqual(found["cleared"]["files"], [])
         self.assertEqual(found["cleared"]["picture"], found["kept"]["picture"])
+        self.assertNotEqual(found["other"]["picture"], found["kept"]["picture"])
+        self.assertEqual(found["anew"]["picture"], found["kept"]["picture"])  # computed, not kept
 
     def test_cine_loop_is_played(self):
         """Again and again, the pictures as they were, of a probe that was turned; and of a heart that beat, at each moment."""

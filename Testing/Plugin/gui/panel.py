@@ -259,8 +259,41 @@ def added():
     note("instrument", ultrasound, takesNeedle=hands.act_named("actionSonoNeedle") is not None)
 
 
+def placed():
+    """A needle by its button while the picture is frozen, and for one of two probes side by side."""
+    ultrasound = yield from begin()
+    hands.dock("pqSonoScannerDock").show()
+    yield 500
+    press("Freeze")
+    yield 700
+    note("frozen", ultrasound)
+    trigger("actionSonoNeedle")
+    yield from settle()
+    note("frozen with it", ultrasound, needles=len(needles()))
+    trigger("actionEditUndo")
+    yield from settle()
+    SetActiveSource(ultrasound)
+    yield 500
+    press("Freeze")
+    yield from settle()
+    trigger("actionSonoSplit")
+    yield from settle()
+    first, second = sorted(ultrasounds(), key=lambda each: each.SMProxy is not ultrasound.SMProxy)
+    for name, each in (("first", first), ("second", second)):
+        note(name, each)
+    SetActiveSource(second)
+    yield 500
+    trigger("actionSonoNeedle")
+    yield from settle()
+    for name, each in (("first with it", first), ("second with it", second)):
+        note(name, each, needles=len(needles()), targets=each.Targets is not None)
+    (stick,) = needles()
+    found["bodies"] = [int(GetRepresentation(stick, view).Visibility) for view in GetViews()
+                       if view.GetXMLName() == "RenderView" and view.InteractionMode == "3D" and len(view.Representations) > 1]
+
+
 def cache():
-    """What is kept of a label map, and the button that removes it."""
+    """What is kept of a label map, the button that removes it, and the same picture asked for anew."""
     folder = pathlib.Path(os.environ["XDG_CACHE_HOME"], "sonovdb")
     SetActiveSource(LabelMapReader(FileName=[str(pathlib.Path("given", "map.nii").resolve())]))
     yield 500
@@ -275,6 +308,13 @@ def cache():
     main.findChild(QtWidgets.QWidget, "ClearCache").findChild(QtWidgets.QPushButton).click()
     yield from settle()
     note("cleared", ultrasound, files=files())
+    lines = ultrasound.LineCount
+    for name, count in (("other", lines // 2), ("anew", lines)):
+        ultrasound.LineCount = count
+        ultrasound.SMProxy.UpdateVTKObjects()
+        RenderAllViews()
+        yield from settle()
+        note(name, ultrasound)
 
 
 def cine():
@@ -411,5 +451,5 @@ def fail(*failure):
 
 
 sys.excepthook = fail
-scenes = (pose, scanner, views, needle, added, cache, cine, keys)
+scenes = (pose, scanner, views, needle, added, placed, cache, cine, keys)
 play = Play({scene.__name__: scene for scene in scenes}[os.environ["PANEL_SCENE"]]())
