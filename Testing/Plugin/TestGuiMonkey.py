@@ -64,7 +64,7 @@ KNOWN = {
 SLOW = re.compile(r"ACT \d+ (loads state|deletes|actionDelete_All)")
 SLOW_S = 15.0
 # And how long while nothing of ours is on the main thread's stack. A state of eight views takes an empty ParaView 10 to 12 s on a
-# slow machine, and one that has been used for hours the longer: VTK looks through all weak pointers to the session one by one for
+# slow machine, and one in which much was done the longer: VTK looks through all weak pointers to the session one by one for
 # each property that is made, of which there were 45,000 after 590 actions. What a debugger takes is included.
 SLOWEST_MS = 90_000
 OURS = re.compile(r"SonoVDB\.so|vtkSono\w+\.so")
@@ -286,7 +286,7 @@ class TestGuiMonkey(GuiCase):
         """Of the main thread, where there is a debugger."""
         if not shutil.which("gdb"):
             return "  (without gdb there is no backtrace)"
-        done = subprocess.run(["gdb", "-batch", "-nx", "-iex", "set debuginfod enabled off", "-ex", "bt 60", "-p", str(pid)],
+        done = subprocess.run(["gdb", "-batch", "-nx", "-iex", "set debuginfod enabled off", "-ex", "bt 300", "-p", str(pid)],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", timeout=300)
         return "\n".join("  " + line for line in done.stdout.splitlines() if line.startswith("#"))
 
