@@ -119,6 +119,19 @@ def fits(view, ultrasound):
     return [2 * view.CameraParallelScale, list(view.ViewSize), [bounds[1] - bounds[0], bounds[3] - bounds[2]]]
 
 
+def split(ultrasound):
+    """Into two screens: it and the other one."""
+    trigger("actionSonoSplit")
+    yield from settle()
+    return sorted(ultrasounds(), key=lambda each: each.SMProxy is not ultrasound.SMProxy)
+
+
+def bodies():
+    """The views with a body."""
+    return [each for each in GetViews() if each.GetXMLName() == "RenderView" and each.InteractionMode == "3D"
+            and len(each.Representations) > 1]
+
+
 def views():
     """The flat view in a window of other sizes, and a split screen of two probes."""
     ultrasound = yield from begin()
@@ -130,9 +143,7 @@ def views():
         yield 1500
         sizes.append(fits(view, ultrasound))
     found["sizes"] = sizes
-    trigger("actionSonoSplit")
-    yield from settle()
-    first, second = sorted(ultrasounds(), key=lambda each: each.SMProxy is not ultrasound.SMProxy)
+    first, second = yield from split(ultrasound)
     for name, number in (("shared", None), ("apart", 0)):
         if number is not None:
             second.SharedProbe = number
@@ -192,8 +203,7 @@ def needle():
     trigger("actionChangeInput")
     yield from settle()
     note("with", ultrasound, targets=ultrasound.Targets is not None)
-    view = next(each for each in GetViews() if each.GetXMLName() == "RenderView" and each.InteractionMode == "3D"
-                and len(each.Representations) > 1)
+    view = bodies()[0]
     SetActiveView(view)
     SetActiveSource(stick)
     yield 700
@@ -276,9 +286,7 @@ def placed():
     yield 500
     press("Freeze")
     yield from settle()
-    trigger("actionSonoSplit")
-    yield from settle()
-    first, second = sorted(ultrasounds(), key=lambda each: each.SMProxy is not ultrasound.SMProxy)
+    first, second = yield from split(ultrasound)
     for name, each in (("first", first), ("second", second)):
         note(name, each)
     SetActiveSource(second)
@@ -288,8 +296,7 @@ def placed():
     for name, each in (("first with it", first), ("second with it", second)):
         note(name, each, needles=len(needles()), targets=each.Targets is not None)
     (stick,) = needles()
-    found["bodies"] = [int(GetRepresentation(stick, view).Visibility) for view in GetViews()
-                       if view.GetXMLName() == "RenderView" and view.InteractionMode == "3D" and len(view.Representations) > 1]
+    found["bodies"] = [int(GetRepresentation(stick, view).Visibility) for view in bodies()]
 
 
 def cache():
