@@ -130,9 +130,9 @@ class Judge:
         if line.startswith("ACT "):
             self.acts.append(line)
         elif line.startswith("DONE "):
-            self.done = int(line.split()[1]) + 1
             if int(line.split()[3]) > SLOWEST_MS and self.is_slow():
                 self.fault(f"hang: {line}")
+            self.done = int(line.split()[1]) + 1
         elif re.match(r"\d+ +0x", line):
             self.stack.append(line)
         elif line == "END":
