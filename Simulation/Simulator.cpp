@@ -253,13 +253,14 @@ std::shared_ptr<const PointScatterers> Simulator::withMoving(const std::shared_p
   const MovingStatistics statistics = movingStatistics(*scene_, settings, model);
   const MovingPart part = movingPart(*scene_, statistics, lines(), settings, model);
   return keptMoving().get(scene_, { statistics, part, points }, [&] {
-    std::vector<PointScatterer> all = movingScatterers(*scene_, statistics, part, progress);
+    std::vector<PointScatterer> all = movingScatterers(*scene_, statistics, part, partOf(progress, 0.0, 0.6));
     if (points)
     {
       const std::vector<PointScatterer> own = points->all();
       all.insert(all.end(), own.begin(), own.end());
     }
-    return std::make_shared<const PointScatterers>(sortedMoving(*scene_, statistics, part, all));
+    return std::make_shared<const PointScatterers>(
+      sortedMoving(*scene_, statistics, part, all, partOf(progress, 0.6, 1.0)));
   });
 }
 

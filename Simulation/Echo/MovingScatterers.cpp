@@ -279,7 +279,7 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
   const Vec3i size = scene.placement().size;
   const CubesWanted wanted(scene, part);
   std::vector<std::vector<PointScatterer>> ofSlices(std::size_t(size.z));
-  parallelFor(size.z, progress, [&](int k) {
+  parallelFor(size.z, partOf(progress, 0.0, 0.9), [&](int k) {
     std::size_t at = std::size_t(k) * std::size_t(size.x) * std::size_t(size.y);
     for (int j = 0; j < size.y; ++j)
     {
@@ -306,16 +306,17 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
   {
     points.insert(points.end(), slice.begin(), slice.end());
     slice = {};
+    report(progress, 0.9 + 0.1 * double(points.size()) / double(std::max<std::size_t>(count, 1)));
   }
   return points;
 }
 
 PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
-                             const std::vector<PointScatterer>& points)
+                             const std::vector<PointScatterer>& points, const Progress& progress)
 {
   if (part.isAll)
   {
-    return PointScatterers(points);
+    return PointScatterers(points, progress);
   }
   const Vec3d middle = scene.worldFromLocal(middleOf(scene));
   const double edgeMm = sortingEdgeMm(statistics);
@@ -333,7 +334,7 @@ PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statist
     loudest = std::max(loudest, detail * (std::fabs(statistics.mean[t]) + strongestSigmas * statistics.sigma[t]));
   }
   const bool fit = std::pow(2.0 * farthestMm / edgeMm + 1.0, 3.0) < mostSortingBricks;
-  return fit ? PointScatterers(points, middle, edgeMm, loudest) : PointScatterers(points);
+  return fit ? PointScatterers(points, middle, edgeMm, loudest, progress) : PointScatterers(points, progress);
 }
 
 } // namespace sono

@@ -68,7 +68,8 @@ std::vector<PointScatterer> movingScatterers(const Scene& scene, const MovingSta
 
 /// These and the user's, sorted. Of a part in bricks that do not depend on which part it is, each of which is whole
 /// where a line of it hears one: any part that holds what some lines hear gives these lines the same, to the bit.
+/// Throws Aborted.
 PointScatterers sortedMoving(const Scene& scene, const MovingStatistics& statistics, const MovingPart& part,
-                             const std::vector<PointScatterer>& points);
+                             const std::vector<PointScatterer>& points, const Progress& progress = {});
 
 } // namespace sono

@@ -1,9 +1,10 @@
 #include "Echo/PointScatterers.h"
 
-#include "Core/Progress.h"
+#include "Core/ParallelFor.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -14,23 +15,67 @@ namespace {
 constexpr double pointsPerBrick = 64.0;
 constexpr double minEdgeMm = 0.25;
 constexpr double farthestMm = 1e6;
+constexpr std::size_t pointsPerChunk = 1 << 16; // some milliseconds
+constexpr std::size_t mostShares = 16;          // of a sort; each reads all bricks' numbers
 
-void requireValid(const std::vector<PointScatterer>& points)
+std::size_t chunksOf(std::size_t count)
+{
+  return (count + pointsPerChunk - 1) / pointsPerChunk;
+}
+
+/// Calls body(chunk, from, to) for the points in chunks, whose borders do not depend on how many cores there are.
+void forChunks(std::size_t count, const Progress& progress,
+               const std::function<void(std::size_t, std::size_t, std::size_t)>& body)
+{
+  parallelFor(int(chunksOf(count)), progress, [&](int chunk) {
+    const std::size_t from = std::size_t(chunk) * pointsPerChunk;
+    body(std::size_t(chunk), from, std::min(count, from + pointsPerChunk));
+  });
+}
+
+/// What all points of a chunk, or of some, have in common.
+struct Summary
+{
+  std::size_t firstWrong = std::numeric_limits<std::size_t>::max();
+  Vec3d part{ 0.0 }; ///< of the centroid
+  float loudest = 0.0f;
+};
+
+/// Throws Error where a point is wrong.
+Summary summaryOf(const std::vector<PointScatterer>& points, const Progress& progress)
 {
   if (points.size() > std::size_t(std::numeric_limits<int>::max()))
   {
     throw Error("there are " + std::to_string(points.size()) + " scatterers: give at most 2147483647");
   }
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const Vec3d& p = points[i].positionMm;
-    if (!glm::all(glm::lessThanEqual(glm::abs(p), Vec3d(farthestMm))) || !std::isfinite(points[i].amplitude))
+  std::vector<Summary> chunks(chunksOf(points.size()));
+  forChunks(points.size(), progress, [&](std::size_t chunk, std::size_t from, std::size_t to) {
+    Summary of;
+    for (std::size_t i = from; i < to; ++i)
     {
-      throw Error(
-        "scatterer " + std::to_string(i) +
-        " has a position that is not within 10^6 mm or an amplitude that is not finite: correct or remove it");
+      const PointScatterer& p = points[i];
+      if (!glm::all(glm::lessThanEqual(glm::abs(p.positionMm), Vec3d(farthestMm))) || !std::isfinite(p.amplitude))
+      {
+        of.firstWrong = std::min(of.firstWrong, i);
+      }
+      of.part += p.positionMm / double(points.size());
+      of.loudest = std::max(of.loudest, std::fabs(p.amplitude));
     }
+    chunks[chunk] = of;
+  });
+  Summary all;
+  for (const Summary& of : chunks)
+  {
+    all.firstWrong = std::min(all.firstWrong, of.firstWrong);
+    all.part += of.part;
+    all.loudest = std::max(all.loudest, of.loudest);
   }
+  if (all.firstWrong < points.size())
+  {
+    throw Error("scatterer " + std::to_string(all.firstWrong) +
+                " has a position that is not within 10^6 mm or an amplitude that is not finite: correct or remove it");
+  }
+  return all;
 }
 
 /// Edge such that a brick holds about `pointsPerBrick` on average and the bricks are no more than the points.
@@ -53,29 +98,60 @@ int indexOf(const PointTable& table, const Vec3i& brick)
   return at.x + table.bricks.x * (at.y + table.bricks.y * at.z);
 }
 
+struct Box
+{
+  Vec3d low{ std::numeric_limits<double>::max() };
+  Vec3d high{ -std::numeric_limits<double>::max() };
+
+  void add(const Vec3d& p)
+  {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+/// Calls body(point, brick) for all points, those of a brick by one thread in their order.
+template<typename Body>
+void forShares(const std::vector<int>& brickOf, std::size_t brickCount, const Progress& progress, const Body& body)
+{
+  const std::size_t shares = std::min({ chunksOf(brickOf.size()), brickCount, mostShares });
+  parallelFor(int(shares), progress, [&](int share, const YieldPoint& yieldPoint) {
+    const std::size_t first = brickCount * std::size_t(share) / shares;
+    const std::size_t end = brickCount * std::size_t(share + 1) / shares;
+    for (std::size_t i = 0; i < brickOf.size(); ++i)
+    {
+      if (i % pointsPerChunk == 0)
+      {
+        yieldPoint();
+      }
+      const std::size_t brick = std::size_t(brickOf[i]);
+      if (brick >= first && brick < end)
+      {
+        body(i, brick);
+      }
+    }
+  });
+}
+
 } // namespace
 
-PointScatterers::PointScatterers(const std::vector<PointScatterer>& points)
+PointScatterers::PointScatterers(const std::vector<PointScatterer>& points, const Progress& progress)
 {
-  requireValid(points);
-  float loudest = 0.0f;
-  for (const PointScatterer& p : points)
-  {
-    originMm_ += p.positionMm / double(points.size());
-    loudest = std::max(loudest, std::fabs(p.amplitude));
-  }
-  sort(points, std::nullopt, loudest);
+  const Summary of = summaryOf(points, partOf(progress, 0.0, 0.2));
+  originMm_ = of.part;
+  sort(points, std::nullopt, of.loudest, partOf(progress, 0.2, 1.0));
 }
 
 PointScatterers::PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm,
-                                 float loudest)
+                                 float loudest, const Progress& progress)
   : originMm_(originMm)
 {
-  requireValid(points);
-  sort(points, edgeMm, loudest);
+  summaryOf(points, partOf(progress, 0.0, 0.2));
+  sort(points, edgeMm, loudest, partOf(progress, 0.2, 1.0));
 }
 
-void PointScatterers::sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm, float loudest)
+void PointScatterers::sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm, float loudest,
+                           const Progress& progress)
 {
   auto table = std::make_shared<PointTable>();
   table->loudest = loudest;
@@ -85,48 +161,64 @@ void PointScatterers::sort(const std::vector<PointScatterer>& points, std::optio
     table->begin.assign(1, 0);
     return;
   }
-  Vec3d low(std::numeric_limits<double>::max());
-  Vec3d high(-std::numeric_limits<double>::max());
-  for (const PointScatterer& p : points)
+  std::vector<Box> boxes(chunksOf(points.size()));
+  forChunks(points.size(), partOf(progress, 0.0, 0.2), [&](std::size_t chunk, std::size_t from, std::size_t to) {
+    Box box;
+    for (std::size_t i = from; i < to; ++i)
+    {
+      box.add(points[i].positionMm - originMm_);
+    }
+    boxes[chunk] = box;
+  });
+  Box whole;
+  for (const Box& box : boxes)
   {
-    low = glm::min(low, p.positionMm - originMm_);
-    high = glm::max(high, p.positionMm - originMm_);
+    whole.add(box.low);
+    whole.add(box.high);
   }
-  grid_.edgeMm = table->edgeMm = float(edgeMm ? *edgeMm : brickEdge(high - low, points.size()));
+  grid_.edgeMm = table->edgeMm = float(edgeMm ? *edgeMm : brickEdge(whole.high - whole.low, points.size()));
   const double edge = grid_.edgeMm;
-  table->firstBrick = Vec3i(glm::floor(low / edge));
-  table->bricks = Vec3i(glm::floor(high / edge)) - table->firstBrick + 1;
+  table->firstBrick = Vec3i(glm::floor(whole.low / edge));
+  table->bricks = Vec3i(glm::floor(whole.high / edge)) - table->firstBrick + 1;
   grid_.lowMm = Vec3f(table->firstBrick) * grid_.edgeMm;
   grid_.highMm = Vec3f(table->firstBrick + table->bricks) * grid_.edgeMm;
 
-  // Counting sort by brick; inside a brick the points keep their order.
-  const Vec3i size = table->bricks;
-  std::vector<int>& begin = table->begin;
-  begin.assign(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z) + 1, 0);
   std::vector<int> brickOf(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    brickOf[i] = indexOf(*table, Vec3i(glm::floor((points[i].positionMm - originMm_) / edge)));
-    ++begin[std::size_t(brickOf[i]) + 1];
-  }
+  forChunks(points.size(), partOf(progress, 0.2, 0.4), [&](std::size_t, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+    {
+      brickOf[i] = indexOf(*table, Vec3i(glm::floor((points[i].positionMm - originMm_) / edge)));
+    }
+  });
+
+  // Counting sort by brick; inside a brick the points keep their order, for each brick is one share's, and a share
+  // looks through all points in turn.
+  const Vec3i size = table->bricks;
+  const std::size_t brickCount = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+  std::vector<int>& begin = table->begin;
+  begin.assign(brickCount + 1, 0);
+  forShares(brickOf, brickCount, partOf(progress, 0.4, 0.6),
+            [&](std::size_t, std::size_t brick) { ++begin[brick + 1]; });
   for (std::size_t b = 1; b < begin.size(); ++b)
   {
     begin[b] += begin[b - 1];
   }
-  for (std::vector<float>* column : { &table->x, &table->y, &table->z, &table->amplitude })
+  double done = 0.6;
+  for (std::vector<float>* column :
+       { &table->x, &table->y, &table->z, &table->amplitude }) // memory takes its time, too
   {
     column->resize(points.size());
+    report(progress, done += 0.025);
   }
   std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const std::size_t to = std::size_t(next[std::size_t(brickOf[i])]++);
+  forShares(brickOf, brickCount, partOf(progress, 0.7, 1.0), [&](std::size_t i, std::size_t brick) {
+    const std::size_t to = std::size_t(next[brick]++);
     const Vec3d p = points[i].positionMm - originMm_;
     table->x[to] = float(p.x);
     table->y[to] = float(p.y);
     table->z[to] = float(p.z);
     table->amplitude[to] = points[i].amplitude;
-  }
+  });
 }
 
 std::vector<PointScatterer> PointScatterers::all() const

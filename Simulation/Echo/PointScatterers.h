@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Core/Progress.h"
 #include "Echo/BrickWalk.h"
 #include "Echo/PointTable.h"
 #include "Echo/ScattererView.h"
@@ -22,10 +23,12 @@ struct PointScatterer
 class PointScatterers
 {
 public:
-  /// Throws Error naming the scatterer whose position is beyond 10^6 mm or not finite, or whose amplitude is not.
-  explicit PointScatterers(const std::vector<PointScatterer>& points);
+  /// Throws Error naming the scatterer whose position is beyond 10^6 mm or not finite, or whose amplitude is not, and
+  /// Aborted. Sorted on all cores; what comes out depends on the points alone.
+  explicit PointScatterers(const std::vector<PointScatterer>& points, const Progress& progress = {});
   /// In bricks of this edge from this origin on, however many there are; `loudest` is at least the largest amplitude.
-  PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm, float loudest);
+  PointScatterers(const std::vector<PointScatterer>& points, const Vec3d& originMm, double edgeMm, float loudest,
+                  const Progress& progress = {});
 
   int count() const { return int(table_->x.size()); }
   /// The centroid where no other was given, where the scatterers' own coordinates are 0; their axes are the world's.
@@ -40,7 +43,8 @@ public:
 
 private:
   /// By bricks of this edge; without one, of as many as do.
-  void sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm, float loudest);
+  void sort(const std::vector<PointScatterer>& points, std::optional<double> edgeMm, float loudest,
+            const Progress& progress);
 
   Vec3d originMm_{ 0.0 };
   BrickGrid grid_;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <tuple>
 
 namespace {
 
@@ -69,6 +71,56 @@ TEST(EchoPoints, AgreeWithTheDirectSum)
       EXPECT_LT(nrmse(rf.iq.data() + std::size_t(line) * exact.size(), exact), samplingMHz == 50.0 ? 1e-3 : 1e-2)
         << "line " << line << " at " << samplingMHz << " MHz";
     }
+  }
+}
+
+TEST(EchoPoints, StandInTheirBricksInTheOrderGiven)
+{
+  const SceneS1 s1(300000);
+  const PointScatterers sorted(s1.points);
+  const double edgeMm = sorted.grid().edgeMm;
+  std::map<std::tuple<int, int, int>, std::vector<const PointScatterer*>> bricks;
+  for (const PointScatterer& p : s1.points)
+  {
+    const Vec3d at = glm::floor((p.positionMm - sorted.originMm()) / edgeMm);
+    bricks[{ int(at.x), int(at.y), int(at.z) }].push_back(&p);
+  }
+  for (const auto& [at, points] : bricks)
+  {
+    const ScattererView view = sorted.brick({ std::get<0>(at), std::get<1>(at), std::get<2>(at) });
+    ASSERT_EQ(view.count, int(points.size()));
+    for (int i = 0; i < view.count; ++i)
+    {
+      const Vec3f wanted(points[std::size_t(i)]->positionMm - sorted.originMm());
+      ASSERT_EQ(Vec3f(view.x[i], view.y[i], view.z[i]), wanted);
+      ASSERT_EQ(view.amplitude[i], points[std::size_t(i)]->amplitude);
+    }
+  }
+  EXPECT_EQ(sorted.count(), int(s1.points.size()));
+}
+
+TEST(EchoPoints, TheirSortTellsHowFarItIsAndStops)
+{
+  const SceneS1 s1(1000000);
+  std::vector<double> told;
+  const PointScatterers sorted(s1.points, [&](double fraction) {
+    told.push_back(fraction);
+    return true;
+  });
+  EXPECT_GT(told.size(), 40u); // each some milliseconds
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GE(told.front(), 0.0);
+  EXPECT_LE(told.back(), 1.0);
+  for (const double last : { 0.0, 0.1, 0.3, 0.5, 0.7, 0.9 })
+  {
+    double at = 0.0;
+    EXPECT_THROW(PointScatterers(s1.points,
+                                 [&](double fraction) {
+                                   EXPECT_LE(at, last); // not asked again
+                                   at = fraction;
+                                   return fraction <= last;
+                                 }),
+                 Aborted);
   }
 }
 
