@@ -3,6 +3,7 @@
 #include "SonoDrawNow.h"
 #include "SonoGreyColors.h"
 #include "SonoOutputFilter.h"
+#include "SonoTimersWait.h"
 #include "SonoUltrasoundHere.h"
 
 #include "vtkNew.h"
@@ -269,6 +270,7 @@ void fillChart(vtkSMViewProxy* view, vtkSMSourceProxy* line, Controller* control
 
 vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
 {
+  const SonoTimersWait waiting; // ParaView looks at events where a layout is made
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = ultrasound->GetSessionProxyManager();
   ultrasound->UpdatePipeline();
@@ -304,6 +306,7 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
 
 vtkSMViewProxy* sonoShowSplitLayout(const char* tab, vtkSMSourceProxy* first, vtkSMSourceProxy* second)
 {
+  const SonoTimersWait waiting;
   vtkNew<Controller> controller;
   vtkSMSessionProxyManager* manager = first->GetSessionProxyManager();
   const auto layout = makeLayout(tab, controller, manager);
@@ -352,6 +355,7 @@ void sonoDrawEasily(vtkSMSessionProxyManager* manager)
 
 vtkSMViewProxy* sonoShowMMode(vtkSMSourceProxy* ultrasound, vtkSMViewProxy* beside)
 {
+  const SonoTimersWait waiting;
   vtkNew<Controller> controller;
   vtkSMSourceProxy* line = sonoFindFilterOf(ultrasound, vtkSonoUltrasound::RF_LINES, "SonoALine");
   const auto mode = sonoFilterOf(ultrasound, vtkSonoUltrasound::BMODE_LINES, "SonoMMode");

@@ -2,6 +2,7 @@
 
 #include "SonoServerStops.h"
 #include "SonoTell.h"
+#include "SonoTimersWait.h"
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
@@ -160,8 +161,11 @@ void pqSonoStop::look()
   sinceLook_.start();
   progressManager()->setEnableAbort(true);
   qApp->installEventFilter(this); // in front of all others
-  // Without timers: some of ParaView's render, which would update the pipeline that is running.
-  QCoreApplication::processEvents(QEventLoop::X11ExcludeTimers | QEventLoop::ExcludeSocketNotifiers);
+  {
+    // Some of ParaView's render, which would update the pipeline that is running, and a script's may delete it.
+    const SonoTimersWait waiting;
+    QCoreApplication::processEvents(QEventLoop::X11ExcludeTimers | QEventLoop::ExcludeSocketNotifiers);
+  }
   qApp->removeEventFilter(this);
   lastLookMs_ = sinceLook_.restart();
   looking_ = false;

@@ -224,6 +224,16 @@ class TestGuiMonkey(GuiCase):
             drawn = pathlib.Path(folder, "drawn.txt").read_text(encoding="utf-8").split("\n")
         self.assertEqual(drawn, ["3.0", "4.0"])  # in the view that has one
 
+    def test_timers_wait_while_a_layout_is_made(self):
+        """One of a script deleted what was simulated and drawn, and ParaView crashed."""
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.paraview(folder, f"--script={PLAYBACKS / 'timers_wait.py'}")
+            self.assertEqual(done.returncode, 0, done.stdout)
+            within, afterwards, sources = map(int, pathlib.Path(folder, "fired.txt").read_text(encoding="utf-8").split())
+        self.assertEqual(within, 0)
+        self.assertGreater(afterwards, 0)
+        self.assertEqual(sources, 5)  # the body, its simulation, a line, and what stands beside the flat picture
+
     def test_random_actions(self):
         seed, count = os.environ.get("MONKEY_SEED", "1"), int(os.environ.get("MONKEY_ACTIONS", "300"))
         print(f"seed {seed}, {count} actions", flush=True)
@@ -244,10 +254,11 @@ class TestGuiMonkey(GuiCase):
         """Until it ends by itself; the return code."""
         heart = folder / "heart"
         heart.write_bytes(bytes(16))
-        # Shaders that were compiled for one view are there for the next.
+        # Shaders that were compiled for one view are there for the next. Memory that is given back is filled: who still uses it
+        # is found out.
         environment = dict(os.environ, DISPLAY=self.display, HOME=str(folder), XDG_RUNTIME_DIR=str(folder),
                            XDG_CACHE_HOME=str(folder / "cache"), MONKEY_SEED=seed, MONKEY_ACTIONS=str(count),
-                           MONKEY_SCRIPTS=str(PLAYBACKS))
+                           MONKEY_SCRIPTS=str(PLAYBACKS), MALLOC_PERTURB_="165")
         begun = time.monotonic()
         process = subprocess.Popen(
             ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
