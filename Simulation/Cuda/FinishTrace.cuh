@@ -153,7 +153,7 @@ __global__ void finishReverberation(TraceLaunch<Targets> launch, int from, int l
   }
 }
 
-constexpr int flightThreads = 256;
+constexpr int flightThreads = 1024; // few steps each: a single image's trace waits for them
 
 /// A block finds where a line's axis leads by time (Trace/Trace.cpp does the same): each thread adds up the bins next
 /// to each other, then where each range lies is looked up among the sums.

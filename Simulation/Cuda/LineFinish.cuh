@@ -167,11 +167,16 @@ __device__ inline float2 summedAt(const FinishLaunch& launch, int line, int d)
   return v;
 }
 
-/// What of the depths behind a sample of range, up to the next, is shown there, demodulated: of each what is `near`,
-/// or else what is left for the next.
-__device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeStep& step, int line, int s, bool near)
+/// What of the depths behind a sample of range, up to the next, is shown at either, demodulated.
+struct ShownPair
 {
-  float2 v{ 0.0f, 0.0f };
+  float2 here;
+  float2 next;
+};
+
+__device__ inline ShownPair shownBehind(const FinishLaunch& launch, const RangeStep& step, int line, int s)
+{
+  ShownPair v{ { 0.0f, 0.0f }, { 0.0f, 0.0f } };
   const float2 c = launch.carrier[s];
   const float2 t = launch.halfTurn;
   const float2 middle{ c.x * t.x - c.y * t.y, c.x * t.y + c.y * t.x };
@@ -180,9 +185,10 @@ __device__ inline float2 shownBehind(const FinishLaunch& launch, const RangeStep
     const float2 sum = summedAt(launch, line, d);
     const float share = step.shareOf(d);
     const ShownSample shown = shownSample(sum.x, sum.y, (share - 0.5f) * launch.radPerSample, middle.x, middle.y);
-    const float part = near ? 1.0f - share : share;
-    v.x += part * shown.re;
-    v.y += part * shown.im;
+    v.here.x += (1.0f - share) * shown.re;
+    v.here.y += (1.0f - share) * shown.im;
+    v.next.x += share * shown.re;
+    v.next.y += share * shown.im;
   }
   return v;
 }
@@ -246,34 +252,37 @@ __device__ inline float2 reverberatingAt(const FinishLaunch& launch, int line, i
 }
 
 /// What is shown at a sample of range, and the boundary echoes, demodulated; where the frequency sinks, as strong as it
-/// then is and turned by the phase.
+/// then is and turned by the phase. All lanes of a warp have neighbouring samples, and the first one's is not wanted:
+/// what is shown between two samples is found once, by the lane of the earlier.
 __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s)
 {
-  if (s < 0 || s >= launch.rangeCount)
-  {
-    return { 0.0f, 0.0f };
-  }
+  const bool exists = s >= 0 && s < launch.rangeCount;
   const RangeMap map = rangeMap(launch, line);
   const TracedOnDevice& traced = launch.traced;
-  const std::size_t at = std::size_t(line) * launch.rangeCount + s;
   float2 v{ 0.0f, 0.0f };
-  const float2 c = launch.carrier[s];
   if (map.offsetMm)
   {
-    const float depth = depthInSamples(map, launch.sampleMm, s);
-    const RangeStep behind = stepBetween(depth, depthInSamples(map, launch.sampleMm, s + 1));
-    v = shownBehind(launch, behind, line, s, true);
-    if (s > 0)
+    const float depth = depthInSamples(map, launch.sampleMm, max(s, 0));
+    const float next = __shfl_down_sync(0xffffffffu, depth, 1);
+    ShownPair shown{ { 0.0f, 0.0f }, { 0.0f, 0.0f } };
+    if (exists)
     {
-      const RangeStep before = stepBetween(depthInSamples(map, launch.sampleMm, s - 1), depth);
-      const float2 far = shownBehind(launch, before, line, s - 1, false);
-      v = { v.x + far.x, v.y + far.y };
+      const bool isLast = threadIdx.x % 32 == 31;
+      const float end = isLast ? depthInSamples(map, launch.sampleMm, s + 1) : next;
+      shown = shownBehind(launch, stepBetween(depth, end), line, s);
     }
+    v.x = shown.here.x + __shfl_up_sync(0xffffffffu, shown.next.x, 1);
+    v.y = shown.here.y + __shfl_up_sync(0xffffffffu, shown.next.y, 1);
   }
-  else
+  else if (exists)
   {
+    const float2 c = launch.carrier[s];
     const float2 sum = summedAt(launch, line, s);
     v = { sum.x * c.x - sum.y * c.y, sum.x * c.y + sum.y * c.x };
+  }
+  if (!exists)
+  {
+    return { 0.0f, 0.0f };
   }
   const bool sinks = launch.turns != nullptr;
   if (sinks)
@@ -286,15 +295,16 @@ __device__ inline float2 demodulated(const FinishLaunch& launch, int line, int s
   v = { v.x + late.x, v.y + late.y };
   if (sinks)
   {
-    const DownshiftAt turned = downshiftRotation(launch.turns[at]);
+    const DownshiftAt turned = downshiftRotation(launch.turns[std::size_t(line) * launch.rangeCount + s]);
     v = { v.x * turned.re - v.y * turned.im, v.x * turned.im + v.y * turned.re };
   }
   return v;
 }
 
-/// Convolves a tile of a line with the pulse; each thread keeps the sums of neighbouring samples in registers.
+/// Convolves a tile of a line with the pulse; each thread keeps the sums of neighbouring samples in registers. Of these
+/// it has as many as let all blocks of an image run at once.
 template<bool ComplexPulse>
-__global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch launch)
+__global__ void __launch_bounds__(finishThreads, 12) convolveLines(FinishLaunch launch)
 {
   extern __shared__ float2 tile[];
   const int taps = paddedTaps(launch.half);
@@ -302,9 +312,17 @@ __global__ void __launch_bounds__(finishThreads) convolveLines(FinishLaunch laun
   float* pulse = reinterpret_cast<float*>(tile + pitch * outputsOfThread);
   const int line = blockIdx.x;
   const int first = blockIdx.y * tileSamples;
-  for (int i = threadIdx.x; i < tileSamples + taps; i += finishThreads)
+  constexpr int wanted = 31; // of a warp's samples
+  const int lane = int(threadIdx.x) % 32;
+  const int samples = tileSamples + taps;
+  for (int from = int(threadIdx.x) / 32 * wanted; from < samples; from += finishThreads / 32 * wanted)
   {
-    tile[i % outputsOfThread * pitch + i / outputsOfThread] = demodulated(launch, line, first + i - launch.half);
+    const int i = from + lane - 1;
+    const float2 v = demodulated(launch, line, first + i - launch.half);
+    if (lane > 0 && i < samples)
+    {
+      tile[i % outputsOfThread * pitch + i / outputsOfThread] = v;
+    }
   }
   const int given = 2 * launch.half + 1;
   for (int k = threadIdx.x; k < taps * (ComplexPulse ? 2 : 1); k += finishThreads)
