@@ -1,5 +1,6 @@
 #include "SonoProbePaths.h"
 
+#include "SonoMakeSource.h"
 #include "SonoPipelineItem.h"
 #include "SonoViewsInSpace.h"
 
@@ -24,12 +25,6 @@
 namespace {
 
 constexpr std::size_t numbersPerPose = 10;
-
-vtkSmartPointer<vtkSMSourceProxy> makeSource(vtkSMProxy* beside, const char* group, const char* name)
-{
-  return vtkSmartPointer<vtkSMSourceProxy>::Take(
-    vtkSMSourceProxy::SafeDownCast(beside->GetSessionProxyManager()->NewProxy(group, name)));
-}
 
 /// What both have by the same name, but for what they are connected to.
 void copySettings(vtkSMProxy* from, vtkSMProxy* to, const std::set<std::string>& butNot)
@@ -60,21 +55,20 @@ void mix(const double* a, const double* b, double share, double* mixed)
 pqPipelineSource* sonoMakePath(const std::vector<SonoTimedPose>& poses, pqPipelineSource* ultrasound)
 {
   SCOPED_UNDO_SET(QObject::tr("Record Probe Path"));
-  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-  const auto path = makeSource(ultrasound->getProxy(), "sources", "SonoProbePath");
-  controller->PreInitializeProxy(path);
   std::vector<double> numbers;
   for (const SonoTimedPose& pose : poses)
   {
     numbers.push_back(pose.timeS);
     numbers.insert(numbers.end(), pose.pose.begin(), pose.pose.end());
   }
-  vtkSMPropertyHelper(path, "Poses").Set(numbers.data(), static_cast<unsigned int>(numbers.size()));
-  controller->PostInitializeProxy(path);
-  path->UpdateVTKObjects();
-  controller->RegisterPipelineProxy(path);
+  vtkSMProxy* from = ultrasound->getProxy();
+  vtkSMSourceProxy* path =
+    sonoMakeSource(from->GetSessionProxyManager(), "sources", "SonoProbePath", [&](vtkSMSourceProxy* made) {
+      vtkSMPropertyHelper(made, "Poses").Set(numbers.data(), static_cast<unsigned int>(numbers.size()));
+    });
   path->UpdatePipeline();
-  for (pqRenderView* view : sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(ultrasound->getProxy())))
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  for (pqRenderView* view : sonoViewsInSpace(vtkSMSourceProxy::SafeDownCast(from)))
   {
     controller->Show(path, 0, view->getViewProxy());
     view->render();
@@ -119,21 +113,16 @@ pqPipelineSource* sonoMakeSweep(pqPipelineSource* path, pqPipelineSource* ultras
 {
   SCOPED_UNDO_SET(QObject::tr("Sweep along Probe Path"));
   vtkSMProxy* from = ultrasound->getProxy();
-  vtkNew<vtkSMParaViewPipelineController> controller;
-  const auto probe = makeSource(from, "sources", "SonoProbeSource");
-  controller->PreInitializeProxy(probe);
-  copySettings(from, probe, { "Preview", "PrepareInteraction" });
-  controller->PostInitializeProxy(probe);
-  controller->RegisterPipelineProxy(probe);
+  vtkSMSessionProxyManager* manager = from->GetSessionProxyManager();
+  vtkSMSourceProxy* probe = sonoMakeSource(manager, "sources", "SonoProbeSource", [from](vtkSMSourceProxy* made) {
+    copySettings(from, made, { "Preview", "PrepareInteraction" });
+  });
   sonoPipelineItem(probe)->setModifiedState(pqProxy::UNMODIFIED);
-
-  const auto sweep = makeSource(from, "filters", "SonoSweep");
-  controller->PreInitializeProxy(sweep);
-  sweep->GetProperty("Input")->Copy(from->GetProperty("Input"));
-  vtkSMPropertyHelper(sweep, "Probe").Set(probe);
-  vtkSMPropertyHelper(sweep, "Poses").Set(path->getProxy());
-  controller->PostInitializeProxy(sweep);
-  copySettings(from, sweep, { "Input", "Probe", "Poses" });
-  controller->RegisterPipelineProxy(sweep);
+  vtkSMSourceProxy* sweep = sonoMakeSource(manager, "filters", "SonoSweep", [&](vtkSMSourceProxy* made) {
+    made->GetProperty("Input")->Copy(from->GetProperty("Input"));
+    vtkSMPropertyHelper(made, "Probe").Set(probe);
+    vtkSMPropertyHelper(made, "Poses").Set(path->getProxy());
+    copySettings(from, made, { "Input", "Probe", "Poses" });
+  });
   return sonoPipelineItem(sweep);
 }

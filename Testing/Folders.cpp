@@ -10,6 +10,11 @@ std::string dataFolder()
   return carried ? carried : SONOVDB_ROOT "/Data";
 }
 
+std::string dataFile(const std::string& name)
+{
+  return dataFolder() + "/" + name;
+}
+
 std::string sharedDataFolder()
 {
   return SONOVDB_ROOT "/../shared/data";

@@ -10,6 +10,9 @@ namespace sono {
 /// for programs that are carried to another machine.
 std::string dataFolder();
 
+/// A file of it, by its name there.
+std::string dataFile(const std::string& name);
+
 /// The folder of real segmentations beside the clone, which may not be there.
 std::string sharedDataFolder();
 

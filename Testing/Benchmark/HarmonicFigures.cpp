@@ -19,7 +19,7 @@ constexpr double neperPerDb = 0.11512925464970229; // of amplitude
 
 const Tissue& tissueCalled(const std::string& name)
 {
-  static const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
+  static const TissueTable table = TissueTable::read(dataFile("tissues.csv"));
   return *table.find(name);
 }
 
@@ -39,7 +39,7 @@ std::shared_ptr<const Scene> cystScene()
 ImageInput cystInput(ImagingMode mode)
 {
   const double sentFrequencyMHz = 2.0;
-  const ProbePreset probe = readProbePreset(dataFolder() + "/probes/curvilinear_c5-2.json");
+  const ProbePreset probe = readProbePreset(dataFile("probes/curvilinear_c5-2.json"));
   ImageInput input;
   input.pose.positionMm = { cystMm.x, cystMm.y, 0.0 };
   ImageSettings& s = input.settings;

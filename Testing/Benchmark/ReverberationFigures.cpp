@@ -172,7 +172,7 @@ std::vector<HeardArrival> hearStack(const std::string& name, const LayerStack& s
 /// Soft tissue over a lung, as the table has them.
 LayerStack lungStack(double depthMm)
 {
-  const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
+  const TissueTable table = TissueTable::read(dataFile("tissues.csv"));
   const Tissue& tissue = *table.find("soft_tissue");
   const Tissue& lung = *table.find("lung");
   return { { { tissue.impedanceMRayl, tissue.soundSpeedMPerS, tissue.attenuationDbPerCmMHz, depthMm },

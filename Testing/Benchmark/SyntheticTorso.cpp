@@ -154,7 +154,7 @@ LabelVolume makeSyntheticTorso(const Vec3i& size, int labelCount)
 
 std::unique_ptr<Scene> makeTorsoScene(LabelVolume volume, const std::string& cacheFolder)
 {
-  const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
+  const TissueTable table = TissueTable::read(dataFile("tissues.csv"));
   const auto& tissues = table.tissues();
   for (LabelInfo& label : volume.labels)
   {

@@ -21,7 +21,7 @@ constexpr std::array<std::pair<double, double>, 4> elementSpeckleWidths{
 
 inline ProbePreset p42()
 {
-  return readProbePreset(dataFolder() + "/probes/phased_p4-2.json");
+  return readProbePreset(dataFile("probes/phased_p4-2.json"));
 }
 
 /// Image formation with the probe's pulse and aperture.

@@ -272,8 +272,8 @@ TEST(AcousticWindow, AKidneyInsteadOfALiversTip)
 std::unique_ptr<Scene> thoraxScene()
 {
   LabelVolume volume = makeThoraxPhantom(2.0);
-  const auto table = TissueTable::read(dataFolder() + "/tissues.csv");
-  assignTissues(volume, LabelTissueMap::read(dataFolder() + "/label_tissues.csv"), table, "soft_tissue");
+  const auto table = TissueTable::read(dataFile("tissues.csv"));
+  assignTissues(volume, LabelTissueMap::read(dataFile("label_tissues.csv")), table, "soft_tissue");
   return std::make_unique<Scene>(std::move(volume), table, "air");
 }
 

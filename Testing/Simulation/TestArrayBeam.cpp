@@ -322,7 +322,7 @@ TEST(ArrayBeam, PresetsGiveSensibleBeams)
 {
   for (const char* file : { "phased_p4-2", "linear_l14", "curvilinear_c5-2" })
   {
-    const ProbePreset preset = readProbePreset(dataFolder() + "/probes/" + file + ".json");
+    const ProbePreset preset = readProbePreset(dataFile(std::string("probes/") + file + ".json"));
     const ArrayAperture aperture = apertureOf(preset);
     FieldGrid grid = suggestedFieldGrid(aperture, preset.geometry.depthMm);
     EXPECT_EQ(grid.size(), 64u * 32u * 128u);

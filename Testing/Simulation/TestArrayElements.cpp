@@ -13,7 +13,7 @@ constexpr double pi = 3.14159265358979323846;
 
 ProbePreset bundled(const std::string& name)
 {
-  return readProbePreset(dataFolder() + "/probes/" + name + ".json");
+  return readProbePreset(dataFile("probes/" + name + ".json"));
 }
 
 int activeCount(const ArrayElements& elements, const ProbeSettings& probe, int line)

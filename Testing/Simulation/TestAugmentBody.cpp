@@ -288,7 +288,7 @@ class AugmentedPictures : public ::testing::Test
 protected:
   void SetUp() override
   {
-    std::ifstream(dataFolder() + "/datasets/apical.json") >> json_;
+    std::ifstream(dataFile("datasets/apical.json")) >> json_;
     json_["exams"] = 1;
     json_["imagesPerExam"] = 2;
     json_["pixelMm"] = 1.0;

@@ -22,12 +22,12 @@ using sono::testing::expectContains;
 
 std::vector<PhantomTarget> bundledTargets()
 {
-  return readPhantomTargets(dataFolder() + "/phantom_040gse.csv");
+  return readPhantomTargets(dataFile("phantom_040gse.csv"));
 }
 
 TissueTable bundledTissues()
 {
-  return TissueTable::read(dataFolder() + "/tissues.csv");
+  return TissueTable::read(dataFile("tissues.csv"));
 }
 
 int voxelsOf(const LabelVolume& volume, const std::string& name)
@@ -144,8 +144,7 @@ TEST(CalibrationPhantom, MakesAScene)
   settings.thicknessMm = 2.0;
   LabelVolume volume = makeCalibrationPhantom(bundledTargets(), settings);
   const TissueTable tissues = bundledTissues();
-  const auto unmatched =
-    assignTissues(volume, LabelTissueMap::read(dataFolder() + "/label_tissues.csv"), tissues, "air");
+  const auto unmatched = assignTissues(volume, LabelTissueMap::read(dataFile("label_tissues.csv")), tissues, "air");
   EXPECT_TRUE(unmatched.empty());
   for (const LabelInfo& label : volume.labels)
   {

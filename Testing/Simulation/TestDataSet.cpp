@@ -23,11 +23,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string dataFile(const std::string& name)
-{
-  return dataFolder() + "/" + name;
-}
-
 Json parsed(const std::string& path)
 {
   std::ifstream stream(path);

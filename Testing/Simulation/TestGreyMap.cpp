@@ -45,8 +45,8 @@ std::vector<float> greyOf(const std::vector<double>& levels, const std::vector<f
 TEST_F(GreyMaps, BundledTablesAreTheirClosedForms)
 {
   const std::vector<double> levels{ 0.013, 0.1, 1.0 / 3.0, 0.5, 0.7071, 0.95, 1.0 };
-  const auto sShaped = greyOf(levels, readGreyMap(dataFolder() + "/grey_maps/s_shaped.csv"));
-  const auto root = greyOf(levels, readGreyMap(dataFolder() + "/grey_maps/square_root.csv"));
+  const auto sShaped = greyOf(levels, readGreyMap(dataFile("grey_maps/s_shaped.csv")));
+  const auto root = greyOf(levels, readGreyMap(dataFile("grey_maps/square_root.csv")));
   for (std::size_t n = 0; n < levels.size(); ++n)
   {
     const double x = levels[n];

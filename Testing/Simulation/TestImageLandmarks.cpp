@@ -55,7 +55,7 @@ double distanceToMask(const DataSetImage& image, int value, const Json& point, b
 DataSetImage apicalImage(const std::string& path, const std::string& view)
 {
   Json json;
-  std::ifstream(dataFolder() + "/datasets/apical.json") >> json;
+  std::ifstream(dataFile("datasets/apical.json")) >> json;
   json.erase("jitter");
   json.erase("tissues");
   json["patients"][0].update(

@@ -337,7 +337,7 @@ TEST(XmlLabelTable, IsReadAsXmlIs)
 TEST(LabelNames, NumbersAloneNeverNameAnOrgan)
 {
   // 51 is a heart in TotalSegmentator v2 and an iliac artery in v1.
-  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(dataFile("label_tissues.csv"));
   EXPECT_EQ(map.find("heart"), "myocardium");
   EXPECT_EQ(map.find("iliac_artery_left"), "blood");
   EXPECT_EQ(map.find("label_51"), "");
@@ -370,7 +370,7 @@ TEST(LabelNames, SubjectsNamesComeFromTheTextBesideIt)
     EXPECT_EQ(count[std::size_t(id)], voxels) << name;
   }
   EXPECT_EQ(volume.labels.size(), lines);
-  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(dataFile("label_tissues.csv"));
   for (const LabelInfo& label : volume.labels)
   {
     EXPECT_NE(map.find(label.name), "") << label.name;

@@ -20,7 +20,7 @@ using Words = std::vector<std::string>;
 
 const LabelTissueMap& bundledRules()
 {
-  static const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  static const LabelTissueMap map = LabelTissueMap::read(dataFile("label_tissues.csv"));
   return map;
 }
 
@@ -154,7 +154,7 @@ TEST(LabelNames, ARuleMayAskForAPersonsEye)
 {
   LabelVolume volume =
     volumeOf({ labelOf(0, "Unknown"), labelOf(1, "left rib 6"), labelOf(2, "thing"), labelOf(3, "ventricle") });
-  const TissueTable tissues = TissueTable::read(dataFolder() + "/tissues.csv");
+  const TissueTable tissues = TissueTable::read(dataFile("tissues.csv"));
   EXPECT_EQ(assignTissues(volume, bundledRules(), tissues, "soft_tissue"), Words{ "thing" });
   EXPECT_EQ(volume.find(0)->tissue, "air");
   EXPECT_FALSE(volume.find(0)->guessed || volume.find(1)->guessed);
@@ -169,7 +169,7 @@ TEST(LabelCodes, CountBeforeNames)
   LabelVolume volume =
     volumeOf({ labelOf(1, "Segment_1", "SCT 64033007"), labelOf(2, "mine", "SRT T-62000"), labelOf(3, "liver", "SCT 1"),
                labelOf(4, "vein", "SCT 113197003"), labelOf(5, "Rippe", "SCT 59558009") });
-  const TissueTable tissues = TissueTable::read(dataFolder() + "/tissues.csv");
+  const TissueTable tissues = TissueTable::read(dataFile("tissues.csv"));
   EXPECT_TRUE(assignTissues(volume, bundledRules(), tissues, "air").empty());
   const Words expected = { "kidney", "liver", "liver", "cortical_bone", "cortical_bone" };
   for (int id = 1; id <= 5; ++id)

@@ -11,7 +11,7 @@ using namespace sono;
 
 const TissueTable& tissues()
 {
-  static const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
+  static const TissueTable table = TissueTable::read(dataFile("tissues.csv"));
   return table;
 }
 
@@ -44,7 +44,7 @@ LabelVolume block(const char* inside, const char* shell)
 
 int saying(const std::string& words, LabelVolume volume, BodyFillMode fill)
 {
-  const auto map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  const auto map = LabelTissueMap::read(dataFile("label_tissues.csv"));
   const std::vector<std::string> said = prepareBody(volume, map, tissues(), "soft_tissue", fill);
   return int(std::count_if(said.begin(), said.end(),
                            [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; }));
@@ -62,8 +62,7 @@ TEST(PrepareBody, WithoutFillingTheLabelsStay)
 {
   LabelVolume volume = block("liver", "spleen");
   const std::vector<std::uint16_t> before = volume.voxels;
-  prepareBody(volume, LabelTissueMap::read(dataFolder() + "/label_tissues.csv"), tissues(), "soft_tissue",
-              BodyFillMode::Off);
+  prepareBody(volume, LabelTissueMap::read(dataFile("label_tissues.csv")), tissues(), "soft_tissue", BodyFillMode::Off);
   EXPECT_EQ(volume.voxels, before);
   EXPECT_EQ(volume.labels.size(), 3u);
 }

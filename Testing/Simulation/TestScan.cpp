@@ -395,8 +395,8 @@ TEST(AddScan, SaysWhatTheScanDoesNotReach)
 {
   const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
   const LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "" } }, isLiver);
-  const auto map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
-  const auto table = TissueTable::read(dataFolder() + "/tissues.csv");
+  const auto map = LabelTissueMap::read(dataFile("label_tissues.csv"));
+  const auto table = TissueTable::read(dataFile("tissues.csv"));
   LabelVolume whole = labels;
   EXPECT_TRUE(addScan(whole, scanned(grid, torsoHu), map, table, {}).notices.empty());
   GridPlacement half = grid; // its upper eleven slices, as a series that was copied in part
@@ -416,8 +416,8 @@ TEST(AddScan, SaysWhatTheScanDoesNotReach)
 TEST(AddScan, SaysWhatAScanWithoutModalityIsTakenFor)
 {
   const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
-  const auto map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
-  const auto table = TissueTable::read(dataFolder() + "/tissues.csv");
+  const auto map = LabelTissueMap::read(dataFile("label_tissues.csv"));
+  const auto table = TissueTable::read(dataFile("tissues.csv"));
   const auto said = [&](const auto& value, const char* modality) {
     LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "" } }, isLiver);
     IntensityVolume scan = scanned(grid, value);
@@ -446,8 +446,8 @@ TEST(AddScan, LeavesTheGuessToAnMr)
   const GridPlacement grid = gridOf({ 60, 60, 20 }, Vec3d(2.0), { -60.0, -60.0, -20.0 });
   LabelVolume labels = labelled(grid, { { "", "" }, { "liver", "" } }, isLiver);
   const auto before = labels.voxels;
-  const auto map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
-  const auto table = TissueTable::read(dataFolder() + "/tissues.csv");
+  const auto map = LabelTissueMap::read(dataFile("label_tissues.csv"));
+  const auto table = TissueTable::read(dataFile("tissues.csv"));
   const AddedScan added =
     addScan(labels, scanned(grid, [](const Vec3d& p) { return 500.0 + 3.0 * p.x; }), map, table, {});
   EXPECT_FALSE(added.isCt);

@@ -209,15 +209,15 @@ TEST(ScanGeometry, ErrorsNameTheParameter)
 
 TEST(ProbePreset, BundledPresets)
 {
-  const ProbePreset phased = readProbePreset(dataFolder() + "/probes/phased_p4-2.json");
+  const ProbePreset phased = readProbePreset(dataFile("probes/phased_p4-2.json"));
   EXPECT_EQ(phased.geometry.kind, ScanKind::PhasedSector);
   EXPECT_EQ(phased.elementCount, 64);
   EXPECT_NEAR(phased.elementWidthMm + phased.kerfMm, 0.32, 1e-9);
   EXPECT_DOUBLE_EQ(phased.centreFrequencyMHz, 3.6);
-  const ProbePreset linear = readProbePreset(dataFolder() + "/probes/linear_l14.json");
+  const ProbePreset linear = readProbePreset(dataFile("probes/linear_l14.json"));
   EXPECT_EQ(linear.geometry.kind, ScanKind::Linear);
   EXPECT_NEAR(linear.geometry.widthMm, 127 * (linear.elementWidthMm + linear.kerfMm), 1e-6);
-  const ProbePreset curved = readProbePreset(dataFolder() + "/probes/curvilinear_c5-2.json");
+  const ProbePreset curved = readProbePreset(dataFile("probes/curvilinear_c5-2.json"));
   EXPECT_EQ(curved.geometry.kind, ScanKind::Curvilinear);
   const double arcMm = curved.geometry.radiusMm * curved.geometry.sectorDeg * std::acos(-1.0) / 180.0;
   EXPECT_NEAR(arcMm, 127 * (curved.elementWidthMm + curved.kerfMm), 0.01);
@@ -230,7 +230,7 @@ TEST(ProbePreset, BundledPresets)
 
 TEST(ProbePreset, ErrorsNameFileAndKey)
 {
-  std::ifstream stream(dataFolder() + "/probes/phased_p4-2.json");
+  std::ifstream stream(dataFile("probes/phased_p4-2.json"));
   const std::string good((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   const sono::testing::TemporaryFolder folder;
   const std::string path = folder.file("preset.json");

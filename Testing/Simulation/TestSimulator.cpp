@@ -391,7 +391,7 @@ TEST(Simulator, ComputesTheBeamThatIsAskedFor)
   EXPECT_TRUE(simulator.rf(input) == computed); // its table is kept
 
   // The elements of a P4-2, which have gaps: a beam nearly as theirs.
-  ArrayAperture elements = apertureOf(readProbePreset(dataFolder() + "/probes/phased_p4-2.json"));
+  ArrayAperture elements = apertureOf(readProbePreset(dataFile("probes/phased_p4-2.json")));
   const EchoSettings& echo = input.settings.echo;
   elements.centreFrequencyMHz = echo.centreFrequencyMHz;
   elements.fractionalBandwidth = echo.fractionalBandwidth;

@@ -62,8 +62,8 @@ std::shared_ptr<const Scene> thorax()
 {
   static const std::shared_ptr<const Scene> scene = [] {
     LabelVolume volume = makeThoraxPhantom(2.0);
-    const TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
-    assignTissues(volume, LabelTissueMap::read(dataFolder() + "/label_tissues.csv"), table, "air");
+    const TissueTable table = TissueTable::read(dataFile("tissues.csv"));
+    assignTissues(volume, LabelTissueMap::read(dataFile("label_tissues.csv")), table, "air");
     return std::make_shared<Scene>(std::move(volume), table, "air");
   }();
   return scene;

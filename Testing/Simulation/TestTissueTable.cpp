@@ -39,12 +39,12 @@ std::string tableError(const std::string& content)
 
 TissueTable bundledTable()
 {
-  return TissueTable::read(dataFolder() + "/tissues.csv");
+  return TissueTable::read(dataFile("tissues.csv"));
 }
 
 LabelTissueMap bundledMap()
 {
-  return LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  return LabelTissueMap::read(dataFile("label_tissues.csv"));
 }
 
 double reflection(const Tissue* a, const Tissue* b)

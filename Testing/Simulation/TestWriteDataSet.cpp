@@ -461,7 +461,7 @@ TEST_F(DataSetFolder, LooksForViewsByNameAndForWindows)
 
 TEST(PoseOnSkin, FindsTheSurfaceFromBothSides)
 {
-  TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
+  TissueTable table = TissueTable::read(dataFile("tissues.csv"));
   LabelVolume volume = ballInSkin();
   for (LabelInfo& label : volume.labels)
   {

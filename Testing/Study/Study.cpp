@@ -1,7 +1,6 @@
 #include "Study.h"
 
 #include "Core/Progress.h"
-#include "Folders.h"
 #include "Labels/CsvFile.h"
 
 #include <cstdio>
@@ -56,11 +55,6 @@ void Output::table(const std::string& fileName, const std::vector<std::string>& 
 void Output::finish() const
 {
   table("figures_" + part_ + ".csv", { "name", "value", "unit" }, figures_);
-}
-
-std::string dataFile(const std::string& name)
-{
-  return dataFolder() + "/" + name;
 }
 
 std::string number(double value)

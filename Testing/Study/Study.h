@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Folders.h"
+
 #include <filesystem>
 #include <map>
 #include <string>
@@ -31,9 +33,6 @@ private:
   bool quick_;
   std::vector<std::vector<std::string>> figures_;
 };
-
-/// A file of dataFolder().
-std::string dataFile(const std::string& name);
 
 /// A number as tables hold it: six significant digits.
 std::string number(double value);

@@ -48,7 +48,7 @@ void measurePng(const DataSet& set)
 
 void measureDataSet()
 {
-  DataSet set = readDataSet(dataFolder() + "/datasets/apical.json", dataFolder());
+  DataSet set = readDataSet(dataFile("datasets/apical.json"), dataFolder());
   measurePlan(set);
   measurePng(set);
   set.exams = 100;

@@ -91,7 +91,7 @@ void measureA4C()
   RfLines rf;
   printFigure("echo_a4c_s", medianSeconds([&] { rf = formRf(*scene, lines, traced, echo); }), "s");
 
-  ArrayAperture p42 = apertureOf(readProbePreset(dataFolder() + "/probes/phased_p4-2.json"));
+  ArrayAperture p42 = apertureOf(readProbePreset(dataFile("probes/phased_p4-2.json")));
   p42.centreFrequencyMHz = echo.centreFrequencyMHz;
   p42.fractionalBandwidth = echo.fractionalBandwidth;
   EchoSettings withField = echo;

@@ -15,7 +15,7 @@ constexpr std::int64_t images = 100000;
 /// The apical preset with pictures that cost next to nothing: what is kept of an image or a body is kept of these, too.
 DataSet tinySet()
 {
-  DataSet set = readDataSet(dataFolder() + "/datasets/apical.json", dataFolder());
+  DataSet set = readDataSet(dataFile("datasets/apical.json"), dataFolder());
   const std::map<std::string, double> tiny{
     { "lineCount", 8 }, { "depthMm", 60 }, { "pathsPerLine", 1 }, { "samplingMHz", 10 }
   };

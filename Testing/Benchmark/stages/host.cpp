@@ -225,7 +225,7 @@ void makeImage(const DataSetPlan& plan, std::int64_t index, const MadeBody& body
 
 void measureHost()
 {
-  DataSet set = readDataSet(dataFolder() + "/datasets/apical_views.json", dataFolder());
+  DataSet set = readDataSet(dataFile("datasets/apical_views.json"), dataFolder());
   const DataSetPlan plan(set);
   constexpr int bodies = 4;
   constexpr int images = 8; // of each

@@ -20,7 +20,7 @@ namespace {
 
 void measureNames()
 {
-  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(dataFile("label_tissues.csv"));
   const CsvFile names = CsvFile::read(labelNamesFile());
   const auto name = std::size_t(names.requiredColumn("name"));
   const auto tissue = std::size_t(names.requiredColumn("tissue"));

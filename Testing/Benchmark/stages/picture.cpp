@@ -137,7 +137,7 @@ void measureBeams()
 
 void measureSpeckle()
 {
-  const TissueTable tissues = TissueTable::read(dataFolder() + "/tissues.csv");
+  const TissueTable tissues = TissueTable::read(dataFile("tissues.csv"));
   for (const SpeckleBand& band : speckleBands(*tissues.find("liver")))
   {
     printFigure("speckle_snr_" + text(band.depthMm) + "_mm", band.snr, "1", "1.89 to 1.93");

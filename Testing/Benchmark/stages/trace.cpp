@@ -80,7 +80,7 @@ std::unique_ptr<Scene> sceneWithFarLabels(int count, double keepMm)
     }
   }
   volume.collectLabels();
-  TissueTable table = TissueTable::read(dataFolder() + "/tissues.csv");
+  TissueTable table = TissueTable::read(dataFile("tissues.csv"));
   for (LabelInfo& label : volume.labels)
   {
     if (label.id >= 1000)
@@ -89,7 +89,7 @@ std::unique_ptr<Scene> sceneWithFarLabels(int count, double keepMm)
       table.add(test::makeTissue(label.tissue, 1.5 + 1e-3 * (label.id - 1000), 1540.0, 0.5));
     }
   }
-  const LabelTissueMap map = LabelTissueMap::read(dataFolder() + "/label_tissues.csv");
+  const LabelTissueMap map = LabelTissueMap::read(dataFile("label_tissues.csv"));
   assignTissues(volume, map, table, "air");
   return std::make_unique<Scene>(std::move(volume), table, "air");
 }

@@ -12,8 +12,8 @@ from paraview.simple import *
 from PyQt5 import QtCore, QtWidgets
 
 sys.path.insert(0, os.environ["PANEL_SCRIPTS"])
-from panel_hands import (FLAT_IMAGE, begin, child, found, hands, hands_at, knob, looks, main, note, press, settle,  # noqa: E402
-                         trigger, ultrasounds, watch)
+from panel_hands import (FLAT_IMAGE, begin, child, found, hands, hands_at, knob, looks, main, note, picture_with,  # noqa: E402
+                         press, settle, trigger, ultrasounds, watch)
 
 
 def pose():
@@ -63,10 +63,7 @@ def scanner():
         trigger("actionEditUndo")
         yield from settle()
         note(f"undone {i}", ultrasound, value=ultrasound.GetProperty(f"Tgc{i}Db")[0])
-    ultrasound.ScanKind = 0
-    ultrasound.SMProxy.UpdateVTKObjects()
-    RenderAllViews()
-    yield from settle()
+    yield from picture_with(ultrasound, ScanKind=0)
     widths = []
     for place in (None, 80):
         if place is not None:
@@ -261,11 +258,9 @@ def added():
     # An instrument of another shape, from a file.
     middle = np.array(ultrasound.PositionMm) + 40 * np.array(ultrasound.Axial)
     SaveData("ball.stl", Sphere(Center=list(middle), Radius=6))
-    ultrasound.Targets = OpenDataFile("ball.stl")
-    ultrasound.SMProxy.UpdateVTKObjects()
+    ball = OpenDataFile("ball.stl")
     SetActiveSource(ultrasound)
-    RenderAllViews()
-    yield from settle()
+    yield from picture_with(ultrasound, Targets=ball)
     note("instrument", ultrasound, takesNeedle=hands.act_named("actionSonoNeedle") is not None)
 
 
@@ -317,10 +312,7 @@ def cache():
     note("cleared", ultrasound, files=files())
     lines = ultrasound.LineCount
     for name, count in (("other", lines // 2), ("anew", lines)):
-        ultrasound.LineCount = count
-        ultrasound.SMProxy.UpdateVTKObjects()
-        RenderAllViews()
-        yield from settle()
+        yield from picture_with(ultrasound, LineCount=count)
         note(name, ultrasound)
 
 

@@ -78,6 +78,15 @@ def hands_at(steps):
         yield 100
 
 
+def picture_with(ultrasound, **properties):
+    """Sets these by a script, and waits for the picture."""
+    for name, value in properties.items():
+        setattr(ultrasound, name, value)
+    ultrasound.SMProxy.UpdateVTKObjects()
+    RenderAllViews()
+    yield from settle()
+
+
 def begin():
     """The layout of a small thorax."""
     SetActiveSource(ThoraxPhantom(registrationName="thorax", Spacingmm=4))
@@ -85,10 +94,7 @@ def begin():
     trigger("actionSonoSimulate")
     yield from settle()
     (ultrasound,) = ultrasounds()
-    ultrasound.LineCount, ultrasound.PathsPerLine = 24, 64
-    ultrasound.SMProxy.UpdateVTKObjects()
-    RenderAllViews()
-    yield from settle()
+    yield from picture_with(ultrasound, LineCount=24, PathsPerLine=64)
     return ultrasound
 
 
