@@ -84,8 +84,12 @@ void addLabelSurfaces(const Scene& scene, vtkMultiBlockDataSet* blocks, const Pr
     report(part, 0.0);
     if (labels[i].id != 0)
     {
-      const SurfaceField& field = scene.surface(labels[i].id, part);
-      const DrawnSurface drawn = coarseSurface(meshSurface(scene.volume(), field), cubeVoxels * field.smoothingMm);
+      // The skin of a large body takes seconds: each of its steps is told.
+      const SurfaceField& field = scene.surface(labels[i].id, partOf(part, 0.0, 0.5));
+      const auto fine = meshSurface(scene.volume(), field);
+      report(part, 0.7);
+      const DrawnSurface drawn = coarseSurface(fine, cubeVoxels * field.smoothingMm);
+      report(part, 0.9);
       addBlock(polyData(drawn, displayColor(labels[i])), labels[i].name, blocks);
     }
   }
