@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sono {
@@ -50,5 +51,19 @@ private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point last_ = Clock::now();
 };
+
+/// Of seven runs, in seconds.
+template<class Work>
+double medianSeconds(const Work& work)
+{
+  std::vector<double> seconds(7);
+  for (double& each : seconds)
+  {
+    Stopwatch watch;
+    work();
+    each = watch.lap();
+  }
+  return medianOf(std::move(seconds));
+}
 
 } // namespace sono

@@ -22,20 +22,6 @@
 namespace sono {
 namespace {
 
-constexpr int repeats = 7;
-
-double medianSeconds(const std::function<void()>& work)
-{
-  std::vector<double> seconds;
-  for (int i = 0; i < repeats; ++i)
-  {
-    Stopwatch watch;
-    work();
-    seconds.push_back(watch.lap());
-  }
-  return medianOf(seconds);
-}
-
 /// Error of the real RF against the direct sum on eight lines.
 double rfError(const test::SceneS1& s1, const RfLines& lines)
 {

@@ -14,7 +14,6 @@
 namespace sono {
 namespace {
 
-constexpr int repeats = 7; // medians
 constexpr int chainSteps = 50'000'000;
 constexpr int lanes = 64;
 constexpr int vectorSteps = 4'000'000;
@@ -59,19 +58,6 @@ volatile float keptSums[2] = { 0.5f, 0.5f }; // of either thread
 void sumOnce(int thread)
 {
   keptSums[thread] = manySums(0.5f + 0.0f * keptSums[thread]);
-}
-
-template<class Work>
-double medianSeconds(const Work& work)
-{
-  std::vector<double> seconds;
-  for (int i = 0; i < repeats; ++i)
-  {
-    Stopwatch watch;
-    work();
-    seconds.push_back(watch.lap());
-  }
-  return medianOf(seconds);
 }
 
 /// The longest time in which a thread that never waits did not run, and all such times, seconds.
