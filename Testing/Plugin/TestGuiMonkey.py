@@ -63,12 +63,10 @@ KNOWN = {
 # the classes of all proxies after a reset.
 SLOW = re.compile(r"ACT \d+ (loads state|deletes|actionDelete_All)")
 SLOW_S = 15.0
-# How long one of these may take, and any other, while nothing of ours is on the main thread's stack. A state of eight views takes
-# an empty ParaView 10 to 12 s on a slow machine, and one in which much is shown the longer: VTK looks through all weak pointers to
-# the session one by one for each domain of a property that is made, of which there are 45,000 with eight views. An undo makes many,
-# and so does a state in Python. What a debugger takes is included. The summary counts them.
+# And how long while nothing of ours is on the main thread's stack. A state of eight views takes an empty ParaView 10 to 12 s on a
+# slow machine, and one in which much was done the longer: VTK looks through all weak pointers to the session one by one for
+# each property that is made, of which there were 45,000 after 590 actions. What a debugger takes is included.
 SLOWEST_MS = 90_000
-LONGEST_ALONE_MS = 30_000
 OURS = re.compile(r"SonoVDB\.so|vtkSono\w+\.so")
 JUDGED = ("RAISED ", "MESSAGE ", "Traceback ", "critical: ", "fatal: ")  # beside what VTK logs as errors
 
@@ -92,7 +90,7 @@ class Judge:
         self.acts = collections.deque(maxlen=LAST)
         self.done = 0
         self.ended = False
-        self.waits = []  # actions in which the window was silent for long, for ParaView alone
+        self.waits = 0  # longer than SLOW_S, for ParaView alone
         self.faults = []
         self.stack = []
         self.kinds = collections.Counter()
@@ -109,8 +107,8 @@ class Judge:
 
     def hang(self, sentence, stack, place, is_slow):
         """A fault, unless ParaView alone takes that long."""
-        if "#0" in stack and not OURS.search(stack):
-            self.waits.append((place[0], SLOWEST_MS if is_slow else LONGEST_ALONE_MS))
+        if is_slow and "#0" in stack and not OURS.search(stack):
+            self.waits += 1
             print("ParaView's own:", place[0] + sentence + place[1], flush=True)
         else:
             self.fault(f"hang: {sentence}\n{stack}", place)
@@ -132,7 +130,7 @@ class Judge:
         if line.startswith("ACT "):
             self.acts.append(line)
         elif line.startswith("DONE "):
-            if any(at == self.place()[0] and int(line.split()[3]) > most for at, most in self.waits):
+            if int(line.split()[3]) > SLOWEST_MS and self.is_slow():
                 self.fault(f"hang: {line}")
             self.done = int(line.split()[1]) + 1
         elif re.match(r"\d+ +0x", line):
@@ -178,12 +176,10 @@ def spoil(hands, _):
     if hands.number == 0:
         time.sleep(20)
     elif hands.number == 1:
-        time.sleep(8)
+        time.sleep(15)
     elif hands.number == 2:
-        time.sleep(40)
-    elif hands.number == 3:
         vtkLogger.Log(vtkLogger.VERBOSITY_ERROR, "spoilt.py", 1, "nobody knows why")
-    elif hands.number == 4:
+    elif hands.number == 3:
         os.kill(os.getpid(), signal.SIGSEGV)
     yield
 
@@ -201,10 +197,10 @@ class TestGuiMonkey(GuiCase):
             script.write_text(SPOILT)
             code = self.run_monkey(folder, judge, "1", 10, script)
             self.tell_crash(judge, code)
-        self.assertEqual([at for at, _ in judge.waits], ["action 0: ", "action 1: ", "action 2: "])
+        self.assertEqual(judge.waits, 1)
         faults = sorted(judge.faults)  # a debugger may take until the next one
-        self.assertEqual([fault.split(":")[0] for fault in faults], ["action 2", "action 3", "action 4"])
-        for fault, part in zip(faults, ("hang: DONE 2 in 4", "nobody knows why", "SIGSEGV")):
+        self.assertEqual([fault.split(":")[0] for fault in faults], ["action 1", "action 2", "action 3"])
+        for fault, part in zip(faults, ("does not answer", "nobody knows why", "SIGSEGV")):
             self.assertIn(part, fault)
         self.assertFalse(judge.ended)
 
@@ -292,7 +288,7 @@ class TestGuiMonkey(GuiCase):
         if killer:
             killer.cancel()
         print(f"{judge.done} actions in {time.monotonic() - begun:.0f} s; the window was silent for {dog.longest_s:.1f} s at "
-              f"most, {len(judge.waits)} times ParaView alone for long; {dog.stops} runs stopped after 5 s; "
+              f"most, {judge.waits} times ParaView alone for long; {dog.stops} runs stopped after 5 s; "
               f"{sum(judge.explained.values())} errors that are explained, of {len(judge.explained)} kinds", flush=True)
         return code
 
