@@ -117,7 +117,8 @@ class GuiCase(unittest.TestCase):
 
     def paraview(self, folder, *arguments):
         """Runs ParaView with the plugin in a folder, which its dialogs begin with, until it ends by itself."""
-        environment = dict(os.environ, DISPLAY=self.display, HOME=folder, XDG_RUNTIME_DIR=folder)
+        scripts = os.pathsep.join(filter(None, (str(PLAYBACKS), os.environ.get("PYTHONPATH"))))
+        environment = dict(os.environ, DISPLAY=self.display, HOME=folder, XDG_RUNTIME_DIR=folder, PYTHONPATH=scripts)
         return subprocess.run(
             ["paraview", "--dr", f"--plugin-search-paths={PLUGIN.parent}", "--plugins=SonoVDB",
              f"--test-directory={folder}", *arguments],

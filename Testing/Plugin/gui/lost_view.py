@@ -3,13 +3,10 @@ into drawn.txt in the home folder, and ends ParaView. Needs python3-pyqt5."""
 import pathlib
 
 from paraview import simple
-from PyQt5 import QtCore, QtWidgets
+from PyQt5 import QtWidgets
+from stepping import step_through, window
 
 TICK_MS = 500
-
-
-def window():
-    return next(w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, QtWidgets.QMainWindow))
 
 
 def apply_spacing(text):
@@ -48,14 +45,4 @@ def steps():
     QtWidgets.QApplication.instance().quit()
 
 
-def step():
-    try:
-        next(running)
-    except StopIteration:
-        clock.stop()
-
-
-running = steps()
-clock = QtCore.QTimer()
-clock.timeout.connect(step)
-clock.start(TICK_MS)
+clock = step_through(steps(), TICK_MS)

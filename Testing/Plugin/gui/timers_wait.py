@@ -5,12 +5,9 @@ import pathlib
 
 from paraview import simple
 from PyQt5 import QtCore, QtWidgets
+from stepping import step_through, window
 
 TICK_MS = 300
-
-
-def window():
-    return next(w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, QtWidgets.QMainWindow))
 
 
 class Click(QtCore.QObject):
@@ -44,18 +41,8 @@ def steps():
     QtWidgets.QApplication.instance().quit()
 
 
-def step():
-    try:
-        next(running)
-    except StopIteration:
-        clock.stop()
-
-
 click = Click()
 fired = dict.fromkeys(("before", "within", "afterwards"), 0)
-running = steps()
 often = QtCore.QTimer()
 often.timeout.connect(fire)
-clock = QtCore.QTimer()
-clock.timeout.connect(step)
-clock.start(TICK_MS)
+clock = step_through(steps(), TICK_MS)

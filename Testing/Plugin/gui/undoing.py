@@ -6,6 +6,7 @@ import time
 
 from paraview import servermanager, simple
 from PyQt5 import QtCore, QtWidgets
+from stepping import step_through, window
 
 TICK_MS = 300
 
@@ -15,8 +16,7 @@ class pqTimer(QtCore.QTimer):  # Qt knows it by its name, as ParaView's
 
 
 def undo():
-    window = next(w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, QtWidgets.QMainWindow))
-    return next((a for a in window.findChildren(QtWidgets.QAction, "actionEditUndo") if a.isEnabled()), None)
+    return next((a for a in window().findChildren(QtWidgets.QAction, "actionEditUndo") if a.isEnabled()), None)
 
 
 rang = []
@@ -54,14 +54,4 @@ def steps():
     QtWidgets.QApplication.instance().quit()
 
 
-def step():
-    try:
-        next(running)
-    except StopIteration:
-        clock.stop()
-
-
-running = steps()
-clock = QtCore.QTimer()
-clock.timeout.connect(step)
-clock.start(TICK_MS)
+clock = step_through(steps(), TICK_MS)
