@@ -98,17 +98,17 @@ void measureMachine()
     sumOnce(0);
     other.join();
   });
-  printFigure("machine_two_threads", 2.0 * alone / together, "times one", "2: less where two share a core");
+  printFigure("machine_two_threads", 2.0 * alone / together, "times one"); // less than 2 where they share a core
   std::vector<char> from(copiedBytes, 1);
   std::vector<char> to(copiedBytes, 2);
   const double copying = medianSeconds([&] { std::memcpy(to.data(), from.data(), copiedBytes); });
-  printFigure("machine_copy_gb_per_s", 2e-9 * double(copiedBytes) / copying, "GB/s", "read and written");
+  printFigure("machine_copy_gb_per_s", 2e-9 * double(copiedBytes) / copying, "GB/s"); // read and written
   std::array<Pauses, 2> pauses;
   std::thread other([&] { pauses[1] = watchPauses(); });
   pauses[0] = watchPauses();
   other.join();
   printFigure("machine_longest_pause_ms", 1e3 * std::max(pauses[0].longest, pauses[1].longest), "ms");
-  printFigure("machine_paused_share", 100.0 * 0.5 * (pauses[0].all + pauses[1].all) / watchedS, "%", "of two threads");
+  printFigure("machine_paused_share", 100.0 * 0.5 * (pauses[0].all + pauses[1].all) / watchedS, "%");
 }
 
 const Stage stage("machine", measureMachine);
