@@ -57,6 +57,11 @@ constexpr double interactivePieceMm = 2.0;
 /// half again as wide as the beam at its focus.
 constexpr double interactiveDiffuseSteps = 2.5;
 constexpr double interactiveWidestSteps = 2.0;
+/// And of a bent surface's coherent points, whose phases then differ by so many times more.
+constexpr double interactiveTurns = 2.0;
+
+/// While it rests, surfaces that far around its fan are made ready for it.
+constexpr float foreseenMm = 40.0f;
 
 /// Edge of a pixel: twice as wide, since ParaView looks at each pixel of each image for its ranges.
 inline double interactivePixelMm(double pixelMm)

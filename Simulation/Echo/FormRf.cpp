@@ -6,6 +6,7 @@
 #include "Echo/NestedShares.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace sono {
@@ -13,7 +14,8 @@ namespace sono {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int groupLines = 8;      // neighbouring lines that share the generated bricks
+constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
+constexpr int groupsTogether = 16;
 constexpr int bricksPerYield = 32; // milliseconds; a group of deep lines at a high frequency takes seconds
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
@@ -135,7 +137,28 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
   const EchoSetup setup(sources, lines, settings, 0, settings.interactive ? EchoDetail::Moving : EchoDetail::Full);
   RfLines out = setup.emptyRf();
   const ReverberationNodes nodes = setup.finisher.reverberationNodes();
-  const auto formGroup = [&](int group, const YieldPoint& yieldPoint) {
+  // What surfaces and scatterers add to a group are tasks of their own, and those that take longest come first: the
+  // last one is waited for. Of many groups some are taken at a time, since what has been added to one of them waits for
+  // the rest.
+  struct Group
+  {
+    std::vector<LineSum> scatterers, surfaces; // by line
+    std::atomic<int> tasksLeft;
+  };
+  const int tasksOfGroup = setup.surfaces ? 2 : 1;
+  const int groupCount = (out.lineCount + groupLines - 1) / groupLines;
+  std::vector<Group> groups(static_cast<std::size_t>(groupCount));
+  for (Group& group : groups)
+  {
+    group.tasksLeft = tasksOfGroup;
+  }
+  std::atomic<int> begun{ 0 };
+  const auto runTask = [&](int, const YieldPoint& yieldPoint) {
+    const int task = begun++;
+    const int firstTogether = task / tasksOfGroup / groupsTogether * groupsTogether;
+    const int together = std::min(groupsTogether, groupCount - firstTogether);
+    const int among = task - firstTogether * tasksOfGroup;
+    const bool ofSurfaces = setup.surfaces && among < together;
     int bricks = 0;
     const YieldPoint brickDone = [&] {
       if (++bricks % bricksPerYield == 0)
@@ -143,9 +166,10 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
         yieldPoint();
       }
     };
-    const int first = group * groupLines;
+    const int number = firstTogether + among % together;
+    Group& group = groups[std::size_t(number)];
+    const int first = number * groupLines;
     const int last = std::min(first + groupLines, out.lineCount);
-    std::vector<LineSum> sums(std::size_t(last - first), setup.finisher.emptySum());
     const auto beams = [&](auto beamOf, const std::optional<FieldSight>& sight) {
       std::vector<BeamReach> made;
       for (int l = first; l < last; ++l)
@@ -154,39 +178,48 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       }
       return made;
     };
-    if (setup.tissues)
+    const auto sceneBeam = [&](int l) { return setup.sceneBeam(l); };
+    std::vector<LineSum> sums(std::size_t(last - first), setup.finisher.emptySum());
+    if (ofSurfaces)
     {
-      addTissues(*setup.tissues, beams([&](int l) { return setup.sceneBeam(l); }, setup.tissueSight), brickDone, sums);
-    }
-    if (setup.nested)
-    {
-      addNested(setup, beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), brickDone, sums);
-    }
-    if (sources.points)
-    {
-      addPoints(*sources.points, beams([&](int l) { return setup.pointBeam(l); }, setup.pointSight), brickDone, sums);
-    }
-    std::vector<LineSum> surfaces;
-    if (setup.surfaces)
-    {
-      surfaces.assign(sums.size(), setup.finisher.emptySum());
       std::vector<SurfaceIntensity> intensities;
       for (int l = first; l < last; ++l)
       {
         intensities.push_back(setup.finisher.intensity(l));
       }
-      setup.surfaces->add(beams([&](int l) { return setup.sceneBeam(l); }, std::nullopt), intensities, brickDone,
-                          surfaces);
+      setup.surfaces->add(beams(sceneBeam, std::nullopt), intensities, brickDone, sums);
+      group.surfaces = std::move(sums);
+    }
+    else
+    {
+      if (setup.tissues)
+      {
+        addTissues(*setup.tissues, beams(sceneBeam, setup.tissueSight), brickDone, sums);
+      }
+      if (setup.nested)
+      {
+        addNested(setup, beams(sceneBeam, std::nullopt), brickDone, sums);
+      }
+      if (sources.points)
+      {
+        addPoints(*sources.points, beams([&](int l) { return setup.pointBeam(l); }, setup.pointSight), brickDone, sums);
+      }
+      group.scatterers = std::move(sums);
+    }
+    if (--group.tasksLeft > 0)
+    {
+      return;
     }
     LineFinisher::Room room = setup.finisher.room();
     for (int l = first; l < last; ++l)
     {
       const std::size_t at = std::size_t(l - first);
-      setup.finisher.finish(l, sums[at], setup.surfaces ? &surfaces[at] : nullptr, nodes, room,
+      setup.finisher.finish(l, group.scatterers[at], setup.surfaces ? &group.surfaces[at] : nullptr, nodes, room,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
+    group.scatterers = group.surfaces = {};
   };
-  parallelFor((out.lineCount + groupLines - 1) / groupLines, progress, formGroup);
+  parallelFor(tasksOfGroup * groupCount, progress, runTask);
   return out;
 }
 

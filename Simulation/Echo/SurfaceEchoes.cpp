@@ -2,6 +2,7 @@
 
 #include "Core/Policy.h"
 #include "Core/SoundSpeed.h"
+#include "Echo/FaintPieces.h"
 #include "Echo/HeardSurfaces.h"
 #include "Echo/SurfaceLoops.h"
 #include "Echo/SurfacePhase.h"
@@ -74,19 +75,29 @@ struct SurfaceEchoes::Room
   std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
   std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
   PieceList pieces;
+  PieceExtents extents;                     ///< of the pieces; not of targets
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
   std::vector<std::size_t> faceOf;          ///< the same: of the brick's
   std::vector<HeardList> heard;             ///< by line
   PointList diffuse, coherent;
 
-  /// Pieces of faces, or targets, which have none.
-  void hear(const std::vector<std::size_t>& seeing, bool haveFaces, const Group& group)
+  void hearTargets(const std::vector<std::size_t>& seeing, const Group& group)
   {
     heard.resize(group.beams.size());
     for (const std::size_t i : seeing)
     {
-      hearPieces(pieces, haveFaces ? mayHear[i].data() : nullptr, group.beams[i].beam, group.grids[i], group.table,
-                 group.intensities[i], heard[i]);
+      hearPieces(pieces, nullptr, group.beams[i].beam, group.grids[i], group.table, group.intensities[i], heard[i]);
+    }
+  }
+  /// Pieces of faces.
+  void hear(const std::vector<std::size_t>& seeing, const Group& group, const float* diffuseMost)
+  {
+    heard.resize(group.beams.size());
+    for (const std::size_t i : seeing)
+    {
+      const Beam& beam = group.beams[i].beam;
+      hearPieces(pieces, mayHear[i].data(), beam, group.grids[i], group.table, group.intensities[i], heard[i]);
+      leaveFaint(pieces, extents, beam, group.grids[i], group.table, diffuseMost, heard[i]);
     }
   }
   /// Whether any line hears a piece, by one of its two echoes.
@@ -125,6 +136,7 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   const double lambdaMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
   const double diffuseSteps = isCoarse_ ? interactiveDiffuseSteps : 1.0;
   const double widestSteps = isCoarse_ ? interactiveWidestSteps : 1.0;
+  const double turns = isCoarse_ ? interactiveTurns : 1.0;
   const Vec3f spacing = pieces_.spacingMm() * Vec3f(isCoarse_ ? pieces_.coarseApart() : Vec3i(1));
   nets_.spacingMm = spacing;
   nets_.diffuse = cutsFor(spacing, diffuseSteps * diffuseStepPerLambda * lambdaMm);
@@ -132,7 +144,7 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   nets_.fewest = glm::min(nets_.most, cutsFor(spacing, widestSteps * widestPerSigma / blobPerStep *
                                                          std::min(beam.lateralSigmaMm, beam.elevationalSigmaMm))
                                         .cuts);
-  nets_.cutsPerMm = float(blobPerStep * std::sqrt(2.0 * pi / lambdaMm / mostTurnRad));
+  nets_.cutsPerMm = float(blobPerStep * std::sqrt(2.0 * pi / lambdaMm / (turns * mostTurnRad)));
   const float widestMm =
     float(blobPerStep) * std::max({ spacing.x / float(nets_.fewest.x), spacing.y / float(nets_.fewest.y),
                                     spacing.z / float(nets_.fewest.z) });
@@ -192,6 +204,7 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
                    std::bit_or<>());
   }
   room.pieces.clear();
+  room.extents.clear();
   room.pieceOf.clear();
   room.faceOf.clear();
   for (std::size_t n = 0; n < count; ++n)
@@ -222,6 +235,7 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
     const PieceBounds bounds = pieceBounds(piece, longestMm);
     room.pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(piece)),
                      rows_->row(face.below, face.above));
+    room.extents.push(piece, nets_.diffuseNet(piece), nets_.coherentNet(piece));
   }
 }
 
@@ -292,7 +306,7 @@ void SurfaceEchoes::addTargets(const TargetGroup& targets, std::vector<BeamReach
       room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
     }
     room.coherent = room.diffuse;
-    room.hear(seeing, false, group);
+    room.hearTargets(seeing, group);
     room.addTo(seeing, group);
   });
 }
@@ -333,7 +347,7 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
     findPieces(brick, seeing, group, room);
     if (room.pieces.count > 0)
     {
-      room.hear(seeing, true, group);
+      room.hear(seeing, group, rows_->diffuseMost().data());
       expand(seeing, room);
       room.addTo(seeing, group);
     }

@@ -160,6 +160,11 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
         const double tangent = n / perTangent;
         diffuseL_.push_back(float(logAmplitude(roughness.crossSection(tangent, true), lambdaMm / beam.areaMm2)));
         diffuseE_.push_back(float(logAmplitude(roughness.crossSection(tangent, false), lambdaMm / beam.areaMm2)));
+        diffuseMost_.push_back(std::max(diffuseL_.back(), diffuseE_.back()));
+      }
+      for (std::size_t n = diffuseMost_.size() - 1; n > diffuseMost_.size() - nodes; --n)
+      {
+        diffuseMost_[n - 1] = std::max(diffuseMost_[n - 1], diffuseMost_[n]);
       }
     }
   }

@@ -46,6 +46,8 @@ public:
   const std::vector<SurfaceRow>& all() const { return rows_; }
   const std::vector<float>& diffuseL() const { return diffuseL_; }
   const std::vector<float>& diffuseE() const { return diffuseE_; }
+  /// Of each profile, as long as those: the larger of the two from a node on.
+  const std::vector<float>& diffuseMost() const { return diffuseMost_; }
   /// For lookups while this lives.
   SurfaceTable view(double slackMm) const;
 
@@ -56,6 +58,7 @@ private:
   std::vector<SurfaceRow> rows_;
   std::vector<float> diffuseL_;
   std::vector<float> diffuseE_;
+  std::vector<float> diffuseMost_;
 };
 
 /// The same; those made last are kept, since they take tens of milliseconds and the next image wants the same.

@@ -37,9 +37,10 @@ SONO_HD inline double alongRow(double start, double step, double n)
 /// The label of the nearest voxel, i fastest; 0 outside of the grid.
 SONO_HD inline std::uint16_t labelAtIndex(const Vec3d& index, const std::uint16_t* voxels, const Vec3i& size)
 {
-  const double x = floor(index.x + 0.5);
-  const double y = floor(index.y + 0.5);
-  const double z = floor(index.z + 0.5);
+  // Of what is not negative, cutting off is rounding down, and no call.
+  const double x = index.x + 0.5;
+  const double y = index.y + 0.5;
+  const double z = index.z + 0.5;
   if (!(x >= 0.0 && x < size.x && y >= 0.0 && y < size.y && z >= 0.0 && z < size.z))
   {
     return 0;

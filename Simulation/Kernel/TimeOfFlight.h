@@ -216,8 +216,11 @@ SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, 
   float high = 1.0f;
   for (int halving = 0; halving < boundaryHalvings; ++halving)
   {
+    // Which half it is nobody can guess: both are chosen, none is jumped to.
     const float middle = 0.5f * (low + high);
-    (mediumThere(view, space, line, spans, (float(step) + middle) * stepMm).medium == before ? low : high) = middle;
+    const bool isBefore = mediumThere(view, space, line, spans, (float(step) + middle) * stepMm).medium == before;
+    low = isBefore ? middle : low;
+    high = isBefore ? high : middle;
   }
   const float share = 0.5f * (low + high);
   addMedium(view, before, share * stepMm, sum);

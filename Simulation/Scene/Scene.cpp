@@ -3,6 +3,7 @@
 #include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Policy.h"
+#include "Core/WhenIdle.h"
 #include "Kernel/DetailCode.h"
 
 #include <tbb/task_arena.h>
@@ -95,12 +96,13 @@ struct Scene::Making
   std::shared_future<SharedRegion> region; ///< null where memory ran out; its end is waited for
 };
 
-/// Records that a moving probe's first paths will ask for, baked in the background while the probe rests: those that
-/// the resting one's have met, and beside them. Ends when it is dropped.
+/// What a moving probe will ask for, made in the background while the probe rests: the records of its first paths,
+/// which are those that the resting one's have met, and beside them; and the pieces of surfaces around. Ends when it is
+/// dropped.
 struct Scene::Foreseeing
 {
-  Foreseeing(std::shared_ptr<const Making> making, SharedRegion met)
-    : done(std::async(std::launch::async, [this, making = std::move(making), met = std::move(met)] {
+  Foreseeing(std::shared_ptr<const Making> making, SharedRegion met, const SurfacePieces& pieces)
+    : done(std::async(std::launch::async, [this, making = std::move(making), met = std::move(met), &pieces] {
       while (making->region.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
       {
         if (unwanted)
@@ -111,6 +113,12 @@ struct Scene::Foreseeing
       if (const SharedRegion region = making->region.get())
       {
         region->bakeBeside(*met, [this] { return !unwanted; });
+        const VoxelBox near = met->region().box;
+        const Vec3i around(glm::ceil(foreseenMm / pieces.spacingMm()));
+        runWhenIdle();
+        pieces.fitCoarse(
+          { glm::max(near.first - around, making->box.first), glm::min(near.last + around, making->box.last) },
+          [this](double) { return !unwanted; });
       }
     }))
   {
@@ -447,10 +455,11 @@ void Scene::beginInteractiveRegion(const VoxelBox& box, bool allRecords) const
 /// From now on with what the last region has baked, or, for null, no longer.
 void Scene::foresee(std::shared_ptr<const Making> making) const
 {
-  std::unique_ptr<Foreseeing> before; // ends after the lock
+  const SurfacePieces* pieces = making ? &surfacePieces() : nullptr; // before the lock, which it takes
+  std::unique_ptr<Foreseeing> before;                                // ends after the lock
   const std::lock_guard<std::mutex> lock(mutex_);
-  before =
-    std::exchange(foreseeing_, making && region_ ? std::make_unique<Foreseeing>(std::move(making), region_) : nullptr);
+  before = std::exchange(
+    foreseeing_, making && region_ ? std::make_unique<Foreseeing>(std::move(making), region_, *pieces) : nullptr);
 }
 
 bool Scene::hasInteractiveRegion() const

@@ -120,6 +120,29 @@ const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) c
   return piece == &noPiece ? nullptr : piece;
 }
 
+void SurfacePieces::fitCoarse(const VoxelBox& box, const Progress& progress) const
+{
+  const auto brickAt = [&](const Vec3i& voxel) {
+    return glm::clamp(Vec3i((Vec3f(voxel) + 0.5f) * spacingMm_ / edgeMm_), Vec3i(0), bricks_ - 1);
+  };
+  const Vec3i first = brickAt(box.first);
+  const Vec3i last = brickAt(box.last - 1);
+  const Vec3i count = last - first + 1;
+  const int all = count.x * count.y * count.z;
+  for (int b = 0; b < all; ++b)
+  {
+    const Vec3i brick = first + Vec3i(b % count.x, b / count.x % count.y, b / count.x / count.y);
+    for (const std::uint32_t face : coarseFaces(brick))
+    {
+      if (progress && !progress(double(b) / all))
+      {
+        return;
+      }
+      piece(brick, face);
+    }
+  }
+}
+
 int SurfacePieces::blockOf(const Vec3i& brick) const
 {
   if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))
