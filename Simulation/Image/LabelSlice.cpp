@@ -1,6 +1,11 @@
 #include "Image/LabelSlice.h"
 
 #include "Core/ParallelFor.h"
+#include "Core/Simd.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cmath>
 
 namespace sono {
 
@@ -27,6 +32,57 @@ private:
   const ProbePose& pose_;
   Vec3d elevation_;
 };
+
+/// What labelShift asks of a row of pixels.
+struct RowShifts
+{
+  explicit RowShifts(int count)
+    : line(std::size_t(count))
+    , depthMm(std::size_t(count))
+    , lateralMm(std::size_t(count))
+    , axialMm(std::size_t(count))
+  {
+  }
+
+  std::vector<float> line, depthMm;
+  std::vector<float> lateralMm, axialMm; ///< how far away lies what is shown
+};
+
+/// labelShift of each pixel of a row, of lines that are not steered.
+SONO_SIMD_CLONES __attribute__((flatten)) void shiftRow(const PlaneScan& of, const float* offsetMm,
+                                                        const float* __restrict lateralMm, float x, int count,
+                                                        float* __restrict line, float* __restrict depthMm,
+                                                        float* __restrict lateral, float* __restrict axial)
+{
+  const PlaneBeams beams = of.beams;
+  const ScannedArea area = of.area;
+  const BeamSamples samples = of.samples(offsetMm);
+  const float samplesPerMm = of.samplesPerMm;
+  const float morePerMm = of.rangePerMm - 1.0f;
+  const float forward = PlaneBeams::notZero(x);
+  for (int i = 0; beams.parallel && i < count; ++i)
+  {
+    line[i] = beams.lineOfParallel(lateralMm[i]);
+    depthMm[i] = x - beams.faceRadiusMm;
+  }
+  for (int i = 0; !beams.parallel && i < count; ++i)
+  {
+    line[i] = beams.lineOfFan(lateralMm[i], forward);
+    depthMm[i] = beams.depthInFan(lateralMm[i], x);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    axial[i] = offsetMm ? samples.at(line[i], depthMm[i] * samplesPerMm) : 0.0f;
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const float mm = (area.contains(line[i], depthMm[i]) ? axial[i] : 0.0f) + depthMm[i] * morePerMm;
+    const float length = sqrtf(lateralMm[i] * lateralMm[i] + x * x);
+    const bool isStraight = beams.parallel | (length == 0.0f);
+    lateral[i] = isStraight ? 0.0f : mm * (lateralMm[i] / length);
+    axial[i] = isStraight ? mm : mm * (x / length);
+  }
+}
 
 } // namespace
 
@@ -56,16 +112,31 @@ std::vector<std::uint16_t> sliceLabels(const LabelVolume& labels, const ScanGeom
   const std::vector<LabelRow> rows = labelRows(labels, pose, image);
   const PlaneScan scan = offsetScan(geometry, offsets.binCount, offsets.binMm, image.pixelMm);
   const float* offsetMm = offsets.any() ? offsets.mm->data() : nullptr;
+  std::vector<float> lateralMm;
+  for (int i = 0; i < image.width; ++i)
+  {
+    lateralMm.push_back(scan.lateralMm(i));
+  }
   std::vector<std::uint16_t> out(image.mask.size(), 0);
+  tbb::enumerable_thread_specific<RowShifts> rooms([&] { return RowShifts(image.width); });
   parallelFor(image.height, {}, [&](int j) {
+    RowShifts& shifts = rooms.local();
+    const float x = scan.beams.axialFromCentre(scan.axialMm(j));
+    if (scan.fanCount == 1)
+    {
+      shiftRow(scan, offsetMm, lateralMm.data(), x, image.width, shifts.line.data(), shifts.depthMm.data(),
+               shifts.lateralMm.data(), shifts.axialMm.data());
+    }
     const std::size_t at = std::size_t(j) * std::size_t(image.width);
     for (int i = 0; i < image.width; ++i)
     {
       if (image.mask[at + std::size_t(i)])
       {
-        const LabelShift shift =
-          labelShift(scan, offsetMm, scan.lateralMm(i), scan.beams.axialFromCentre(scan.axialMm(j)));
-        out[at + std::size_t(i)] = labelAt(rows[std::size_t(j)], i, shift, labels.voxels.data(), labels.placement.size);
+        const std::size_t n = std::size_t(i);
+        const LabelShift shift = scan.fanCount == 1
+                                   ? LabelShift{ double(shifts.lateralMm[n]) / scan.pixelMm, double(shifts.axialMm[n]) }
+                                   : labelShift(scan, offsetMm, lateralMm[n], x);
+        out[at + n] = labelAt(rows[std::size_t(j)], i, shift, labels.voxels.data(), labels.placement.size);
       }
     }
   });
