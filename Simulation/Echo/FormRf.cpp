@@ -97,6 +97,30 @@ void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beam
   });
 }
 
+/// Neighbouring lines, and what has been added to each of them.
+struct LineGroup
+{
+  std::vector<LineSum> scatterers, surfaces;
+  std::atomic<int> tasksLeft; ///< who does the last one finishes the lines
+};
+
+/// What surfaces or what scatterers add to a group.
+struct GroupTask
+{
+  int group;
+  bool ofSurfaces;
+};
+
+/// The n-th that is begun. Surfaces, which take longer, come first: the last one is waited for. Of many groups some are
+/// taken at a time, since what has been added to one of them waits for the rest.
+GroupTask taskAt(int n, int groupCount, int tasksOfGroup)
+{
+  const int first = n / tasksOfGroup / groupsTogether * groupsTogether;
+  const int together = std::min(groupsTogether, groupCount - first);
+  const int among = n - first * tasksOfGroup;
+  return { first + among % together, tasksOfGroup == 2 && among < together };
+}
+
 } // namespace
 
 std::vector<float> RfLines::rf() const
@@ -137,28 +161,16 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
   const EchoSetup setup(sources, lines, settings, 0, settings.interactive ? EchoDetail::Moving : EchoDetail::Full);
   RfLines out = setup.emptyRf();
   const ReverberationNodes nodes = setup.finisher.reverberationNodes();
-  // What surfaces and scatterers add to a group are tasks of their own, and those that take longest come first: the
-  // last one is waited for. Of many groups some are taken at a time, since what has been added to one of them waits for
-  // the rest.
-  struct Group
-  {
-    std::vector<LineSum> scatterers, surfaces; // by line
-    std::atomic<int> tasksLeft;
-  };
   const int tasksOfGroup = setup.surfaces ? 2 : 1;
   const int groupCount = (out.lineCount + groupLines - 1) / groupLines;
-  std::vector<Group> groups(static_cast<std::size_t>(groupCount));
-  for (Group& group : groups)
+  std::vector<LineGroup> groups(static_cast<std::size_t>(groupCount));
+  for (LineGroup& group : groups)
   {
     group.tasksLeft = tasksOfGroup;
   }
   std::atomic<int> begun{ 0 };
   const auto runTask = [&](int, const YieldPoint& yieldPoint) {
-    const int task = begun++;
-    const int firstTogether = task / tasksOfGroup / groupsTogether * groupsTogether;
-    const int together = std::min(groupsTogether, groupCount - firstTogether);
-    const int among = task - firstTogether * tasksOfGroup;
-    const bool ofSurfaces = setup.surfaces && among < together;
+    const GroupTask task = taskAt(begun++, groupCount, tasksOfGroup);
     int bricks = 0;
     const YieldPoint brickDone = [&] {
       if (++bricks % bricksPerYield == 0)
@@ -166,9 +178,8 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
         yieldPoint();
       }
     };
-    const int number = firstTogether + among % together;
-    Group& group = groups[std::size_t(number)];
-    const int first = number * groupLines;
+    LineGroup& group = groups[std::size_t(task.group)];
+    const int first = task.group * groupLines;
     const int last = std::min(first + groupLines, out.lineCount);
     const auto beams = [&](auto beamOf, const std::optional<FieldSight>& sight) {
       std::vector<BeamReach> made;
@@ -180,7 +191,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     };
     const auto sceneBeam = [&](int l) { return setup.sceneBeam(l); };
     std::vector<LineSum> sums(std::size_t(last - first), setup.finisher.emptySum());
-    if (ofSurfaces)
+    if (task.ofSurfaces)
     {
       std::vector<SurfaceIntensity> intensities;
       for (int l = first; l < last; ++l)
