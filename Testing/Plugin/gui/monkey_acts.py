@@ -367,37 +367,40 @@ def tool_bar(hands, _):
 @act(3)
 def open_file(hands, dialogs):
     path = hands.any_of(sorted(hands.folder.glob("given/*")))
-    before = known(hands)
+    before, opens = known(hands), hands.enabled("actionFileOpen")
     hands.note(f"opens {path.name}")
     dialogs.plan = dialogs.choose_file(path)
-    hands.act_named("actionFileOpen").trigger()
+    opens.trigger()
     yield from made(hands, before)
 
 
 @act(2)
 def save_state(hands, dialogs):
     name = f"state{hands.rng.randrange(3)}.{hands.rng.choice(['pvsm', 'pvsm', 'py'])}"
+    saves = hands.enabled("actionFileSaveServerState")
     hands.note(f"saves {name}")
     dialogs.plan = dialogs.choose_file(hands.folder / name)
-    hands.act_named("actionFileSaveServerState").trigger()
+    saves.trigger()
     yield
 
 
 @act(2)
 def load_state(hands, dialogs):
     path = hands.any_of(sorted(hands.folder.glob("state?.*")))
+    loads = hands.enabled("actionFileLoadServerState")
     hands.note(f"loads {path.name}")
     dialogs.plan = dialogs.choose_file(path)
-    hands.act_named("actionFileLoadServerState").trigger()
+    loads.trigger()
     yield
     yield
 
 
 @act(1)
 def save_screenshot(hands, dialogs):
+    saves = hands.enabled("actionFileSaveScreenshot")
     hands.note("saves a screenshot")
     dialogs.plan = dialogs.choose_file(hands.folder / "shot.png")
-    hands.act_named("actionFileSaveScreenshot").trigger()
+    saves.trigger()
     yield
 
 

@@ -110,10 +110,15 @@ class Hands:
         return {each.objectName(): each for each in menu.findChild(QtWidgets.QMenu, "Alphabetical").actions()
                 if each.isEnabled()}
 
-    def trigger(self, name):
+    def enabled(self, name):
+        """As act_named, where there is one: of a screenshot there is none while an empty frame is selected."""
         act = self.act_named(name)
         if act is None:
             raise Skip
+        return act
+
+    def trigger(self, name):
+        act = self.enabled(name)
         self.note(f"{name}")
         act.trigger()
 
