@@ -171,13 +171,11 @@ void PieceExtents::push(const SurfacePiece& piece, const PieceNet& diffuse, cons
   const float blobU = float(blobPerStep) * coherent.stepU;
   const float blobV = float(blobPerStep) * coherent.stepV;
   const std::size_t n = std::size_t(count++);
-  if (n >= uX.size())
+  if (uX.size() < n + vectorWidth)
   {
-    for (std::vector<float>* values : { &uX, &uY, &uZ, &vX, &vY, &vZ, &riseMm, &turn, &blobUMm, &blobVMm, &blobUPerHalf,
-                                        &blobVPerHalf, &diffuseRootMm, &coherentMm2 })
-    {
-      values->resize(std::size_t(2 * inWholeVectors(count)));
-    }
+    resizeAll({ &uX, &uY, &uZ, &vX, &vY, &vZ, &riseMm, &turn, &blobUMm, &blobVMm, &blobUPerHalf, &blobVPerHalf,
+                &diffuseRootMm, &coherentMm2 },
+              2 * (n + vectorWidth));
   }
   uX[n] = halfU.x;
   uY[n] = halfU.y;

@@ -14,8 +14,8 @@ namespace sono {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int groupLines = 8; // neighbouring lines that share the generated bricks
-constexpr int groupsTogether = 16;
+constexpr int groupLines = 8;      // neighbouring lines that share the generated bricks
+constexpr int groupsTogether = 16; // whose sums are kept at a time: a matrix has thousands of lines
 constexpr int bricksPerYield = 32; // milliseconds; a group of deep lines at a high frequency takes seconds
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,

@@ -81,23 +81,20 @@ struct SurfaceEchoes::Room
   std::vector<HeardList> heard;             ///< by line
   PointList diffuse, coherent;
 
-  void hearTargets(const std::vector<std::size_t>& seeing, const Group& group)
-  {
-    heard.resize(group.beams.size());
-    for (const std::size_t i : seeing)
-    {
-      hearPieces(pieces, nullptr, group.beams[i].beam, group.grids[i], group.table, group.intensities[i], heard[i]);
-    }
-  }
-  /// Pieces of faces.
+  /// Pieces of faces; without `diffuseMost` targets, which have none.
   void hear(const std::vector<std::size_t>& seeing, const Group& group, const float* diffuseMost)
   {
     heard.resize(group.beams.size());
     for (const std::size_t i : seeing)
     {
       const Beam& beam = group.beams[i].beam;
-      hearPieces(pieces, mayHear[i].data(), beam, group.grids[i], group.table, group.intensities[i], heard[i]);
-      leaveFaint(pieces, extents, beam, group.grids[i], group.table, diffuseMost, heard[i]);
+      const LineGrid& grid = group.grids[i];
+      hearPieces(pieces, diffuseMost ? mayHear[i].data() : nullptr, beam, grid, group.table, group.intensities[i],
+                 heard[i]);
+      if (diffuseMost)
+      {
+        leaveFaint(pieces, extents, beam, grid, group.table, diffuseMost, heard[i]);
+      }
     }
   }
   /// Whether any line hears a piece, by one of its two echoes.
@@ -306,7 +303,7 @@ void SurfaceEchoes::addTargets(const TargetGroup& targets, std::vector<BeamReach
       room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
     }
     room.coherent = room.diffuse;
-    room.hearTargets(seeing, group);
+    room.hear(seeing, group, nullptr);
     room.addTo(seeing, group);
   });
 }

@@ -2,9 +2,6 @@
 
 #include "Core/Simd.h"
 
-#include <algorithm>
-#include <initializer_list>
-
 namespace sono {
 
 namespace {
@@ -56,15 +53,6 @@ SONO_SIMD_CLONES __attribute__((flatten)) void layOutNet(const SurfacePiece& pie
       return layOutAlong<1>(piece, net, row, ofPiece, points);
     default:
       return layOutAlong<2>(piece, net, row, ofPiece, points);
-  }
-}
-
-template<class List>
-void resizeAll(std::initializer_list<List*> lists, std::size_t count)
-{
-  for (List* values : lists)
-  {
-    values->resize(std::max(values->size(), count));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
+#include "Image/RowBeams.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -59,17 +60,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void shiftRow(const PlaneScan& of, con
   const BeamSamples samples = of.samples(offsetMm);
   const float samplesPerMm = of.samplesPerMm;
   const float morePerMm = of.rangePerMm - 1.0f;
-  const float forward = PlaneBeams::notZero(x);
-  for (int i = 0; beams.parallel && i < count; ++i)
-  {
-    line[i] = beams.lineOfParallel(lateralMm[i]);
-    depthMm[i] = x - beams.faceRadiusMm;
-  }
-  for (int i = 0; !beams.parallel && i < count; ++i)
-  {
-    line[i] = beams.lineOfFan(lateralMm[i], forward);
-    depthMm[i] = beams.depthInFan(lateralMm[i], x);
-  }
+  beamsOfRow(beams, lateralMm, x, count, line, depthMm);
   for (int i = 0; i < count; ++i)
   {
     axial[i] = offsetMm ? samples.at(line[i], depthMm[i] * samplesPerMm) : 0.0f;

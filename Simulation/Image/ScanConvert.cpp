@@ -2,6 +2,7 @@
 
 #include "Core/ParallelFor.h"
 #include "Core/Simd.h"
+#include "Image/RowBeams.h"
 #include "Kernel/PlaneScan.h"
 
 #include <algorithm>
@@ -24,17 +25,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void convertRow(const PlaneScan& of, c
   const BeamSamples samples = of.samples(values);
   const float samplesPerMm = of.samplesPerMm;
   const float x = beams.axialFromCentre(axialMm);
-  const float forward = PlaneBeams::notZero(x);
-  for (int i = 0; beams.parallel && i < count; ++i)
-  {
-    line[i] = beams.lineOfParallel(lateralMm[i]);
-    depthMm[i] = x - beams.faceRadiusMm;
-  }
-  for (int i = 0; !beams.parallel && i < count; ++i)
-  {
-    line[i] = beams.lineOfFan(lateralMm[i], forward);
-    depthMm[i] = beams.depthInFan(lateralMm[i], x);
-  }
+  beamsOfRow(beams, lateralMm, x, count, line, depthMm);
   for (int i = 0; i < count; ++i)
   {
     level[i] = samples.at(line[i], depthMm[i] * samplesPerMm);
