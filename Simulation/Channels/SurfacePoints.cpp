@@ -236,10 +236,12 @@ ChannelPoints surfacePoints(const EchoSetup& setup, const FanPlaces& fan, const 
     beams.push_back(setup.beams.reachOf(setup.sceneBeam(line), setup.finisher.reachMm(line)));
   }
   ChannelPoints out;
+  std::vector<SurfacePoint> targetPoints;
   for (const TargetGroup& targets : setup.surfaces->targets())
   {
     forSeenBricks(targets.pieces.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>&) {
-      for (const SurfacePoint& point : targets.pieces.brick(brick))
+      targets.pieces.cutBrick(brick, targetPoints);
+      for (const SurfacePoint& point : targetPoints)
       {
         walk.addTarget(point, out);
       }

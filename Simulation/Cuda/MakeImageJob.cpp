@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 namespace sono {
 
@@ -149,14 +151,15 @@ float widestGapMm(const std::vector<BeamReach>& beams)
   return widest;
 }
 
-/// The blocks of pieces that some beam may see. Blocks are much larger than what lies between neighbouring lines: some
-/// of the lines tell.
-std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sceneBeams, const SurfacePieces& pieces)
+/// Calls visit(brick), from several threads and often more than once, for the bricks of a grid that some beam may see,
+/// as `seeing` has the beams meet them. Where that is enough, some of the lines tell for those between.
+void forBricksOfLines(const EchoSetup& setup, const std::vector<Beam>& sceneBeams, const BrickGrid& grid,
+                      bool areSomeEnough, const std::function<std::vector<BeamReach>(std::vector<BeamReach>)>& seeing,
+                      const std::function<void(const Vec3i&)>& visit)
 {
   constexpr int groupLines = 8;
   constexpr int every = 4;
   constexpr float largestGapMm = 10.0f;
-  const SurfaceEchoes& surfaces = *setup.surfaces;
   const int lineCount = int(setup.lines.size());
   const auto beamsOf = [&](int step) {
     std::vector<BeamReach> beams;
@@ -170,35 +173,44 @@ std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sce
     add(lineCount - 1);
     return beams;
   };
-  // A field's sight is made for bricks.
-  const int bricks = surfaces.pieceSight() ? 1 : SurfacePieces::blockBricks;
-  std::vector<BeamReach> beams = beamsOf(every);
-  float gapMm = widestGapMm(beams);
-  if (gapMm > largestGapMm || surfaces.pieceSight())
+  std::vector<BeamReach> beams = beamsOf(areSomeEnough ? every : 1);
+  float gapMm = areSomeEnough ? widestGapMm(beams) : 0.0f;
+  if (gapMm > largestGapMm)
   {
     beams = beamsOf(1);
     gapMm = 0.0f;
   }
-  BrickGrid grid = surfaces.pieceGrid();
-  grid.edgeMm *= float(bricks);
-  std::vector<std::atomic<bool>> seen(std::size_t(pieces.blockCount()));
   const int beamCount = int(beams.size());
   parallelFor((beamCount + groupLines - 1) / groupLines, {}, [&](int group) {
     const auto first = beams.begin() + group * groupLines;
-    std::vector<BeamReach> own =
-      surfaces.seeingPieces({ first, first + std::min(groupLines, beamCount - group * groupLines) });
+    std::vector<BeamReach> own = seeing({ first, first + std::min(groupLines, beamCount - group * groupLines) });
     for (BeamReach& beam : own)
     {
       beam.marginMm += 0.5f * gapMm;
     }
-    forSeenBricks(grid, own, [&](const Vec3i& brick, const std::vector<std::size_t>&) {
-      const int block = pieces.blockOf(bricks == 1 ? brick : brick * SurfacePieces::blockBricks);
+    forSeenBricks(grid, own, [&](const Vec3i& brick, const std::vector<std::size_t>&) { visit(brick); });
+  });
+}
+
+/// The blocks of pieces that some beam may see. Blocks are much larger than what lies between neighbouring lines; a
+/// field's sight is made for bricks.
+std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sceneBeams, const SurfacePieces& pieces)
+{
+  const SurfaceEchoes& surfaces = *setup.surfaces;
+  const bool areBlocks = !surfaces.pieceSight();
+  BrickGrid grid = surfaces.pieceGrid();
+  grid.edgeMm *= float(areBlocks ? SurfacePieces::blockBricks : 1);
+  std::vector<std::atomic<bool>> seen(std::size_t(pieces.blockCount()));
+  forBricksOfLines(
+    setup, sceneBeams, grid, areBlocks,
+    [&](std::vector<BeamReach> beams) { return surfaces.seeingPieces(std::move(beams)); },
+    [&](const Vec3i& brick) {
+      const int block = pieces.blockOf(areBlocks ? brick * SurfacePieces::blockBricks : brick);
       if (block >= 0)
       {
         seen[std::size_t(block)].store(true, std::memory_order_relaxed);
       }
     });
-  });
   std::vector<int> blocks;
   for (std::size_t b = 0; b < seen.size(); ++b)
   {
@@ -210,28 +222,47 @@ std::vector<int> seenBlocks(const EchoSetup& setup, const std::vector<Beam>& sce
   return blocks;
 }
 
-TargetPointJob makeTargetPoints(const TargetPieces& targets)
+/// What of a group some beam may see.
+TargetPointJob makeTargetPoints(const EchoSetup& setup, const std::vector<Beam>& sceneBeams, const TargetGroup& targets)
 {
   TargetPointJob job;
-  const BrickGrid& grid = targets.grid();
+  const BrickGrid& grid = targets.pieces.grid();
   job.edgeMm = grid.edgeMm;
   const Vec3i first(glm::round(grid.lowMm / grid.edgeMm));
-  const Vec3i end(glm::round(grid.highMm / grid.edgeMm));
-  for (int k = first.z; k < end.z; ++k)
+  const Vec3i size = Vec3i(glm::round(grid.highMm / grid.edgeMm)) - first;
+  std::vector<std::atomic<bool>> seen(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z));
+  forBricksOfLines(
+    setup, sceneBeams, grid, false,
+    [&](std::vector<BeamReach> beams) { return SurfaceEchoes::seeingTargets(std::move(beams), targets); },
+    [&](const Vec3i& brick) {
+      const Vec3i at = brick - first;
+      seen[std::size_t(at.x) + std::size_t(size.x) * (std::size_t(at.y) + std::size_t(size.y) * std::size_t(at.z))]
+        .store(true, std::memory_order_relaxed);
+    });
+  std::vector<Vec3i> bricks;
+  for (int n = 0; n < int(seen.size()); ++n)
   {
-    for (int j = first.y; j < end.y; ++j)
+    if (seen[std::size_t(n)])
     {
-      for (int i = first.x; i < end.x; ++i)
-      {
-        const std::vector<SurfacePoint>& points = targets.brick(Vec3i(i, j, k));
-        if (!points.empty())
-        {
-          const int before = int(job.points.size());
-          job.points.insert(job.points.end(), points.begin(), points.end());
-          job.bricks.push_back({ (Vec3f(i, j, k) + 0.5f) * grid.edgeMm, before, int(job.points.size()) });
-        }
-      }
+      bricks.push_back(first + Vec3i(n % size.x, n / size.x % size.y, n / size.x / size.y));
     }
+  }
+  std::vector<std::vector<SurfacePoint>> points(bricks.size());
+  parallelFor(int(bricks.size()), {},
+              [&](int b) { targets.pieces.cutBrick(bricks[std::size_t(b)], points[std::size_t(b)]); });
+  for (std::size_t b = 0; b < bricks.size(); ++b)
+  {
+    if (!points[b].empty())
+    {
+      const int before = int(job.points.size());
+      job.points.insert(job.points.end(), points[b].begin(), points[b].end());
+      job.bricks.push_back({ (Vec3f(bricks[b]) + 0.5f) * grid.edgeMm, before, int(job.points.size()) });
+    }
+  }
+  job.ring = targets.ring;
+  if (targets.sight)
+  {
+    job.sight = makeSight(*targets.sight);
   }
   return job;
 }
@@ -267,12 +298,7 @@ SurfaceJob makeSurfaces(const EchoSetup& setup, const std::vector<Beam>& sceneBe
   {
     if (group.pieces.grid().highMm != group.pieces.grid().lowMm)
     {
-      job.targets.push_back(makeTargetPoints(group.pieces));
-      job.targets.back().ring = group.ring;
-      if (group.sight)
-      {
-        job.targets.back().sight = makeSight(*group.sight);
-      }
+      job.targets.push_back(makeTargetPoints(setup, sceneBeams, group));
     }
   }
   return job;

@@ -80,6 +80,7 @@ struct SurfaceEchoes::Room
   std::vector<std::size_t> faceOf;          ///< the same: of the brick's
   std::vector<HeardList> heard;             ///< by line
   PointList diffuse, coherent;
+  std::vector<SurfacePoint> targets;
 
   /// Pieces of faces; without `diffuseMost` targets, which have none.
   void hear(const std::vector<std::size_t>& seeing, const Group& group, const float* diffuseMost)
@@ -279,6 +280,16 @@ std::vector<BeamReach> SurfaceEchoes::seeingPieces(std::vector<BeamReach> beams)
   return beams;
 }
 
+std::vector<BeamReach> SurfaceEchoes::seeingTargets(std::vector<BeamReach> beams, const TargetGroup& targets)
+{
+  for (BeamReach& beam : beams)
+  {
+    beam.sight = targets.sight.get();
+    beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
+  }
+  return beams;
+}
+
 SurfaceTable SurfaceEchoes::pieceTable() const
 {
   const Vec3f spacing = pieces_.spacingMm();
@@ -288,21 +299,19 @@ SurfaceTable SurfaceEchoes::pieceTable() const
 void SurfaceEchoes::addTargets(const TargetGroup& targets, std::vector<BeamReach> beams, const YieldPoint& brickDone,
                                Group& group, Room& room) const
 {
-  for (BeamReach& beam : beams)
-  {
-    beam.sight = targets.sight.get();
-    beam.depthMm += beam.depthMm > 0.0f ? surfaceCrossingMm : 0.0f;
-  }
+  beams = seeingTargets(std::move(beams), targets);
   forSeenBricks(targets.pieces.grid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
     brickDone();
     room.pieces.clear();
     room.diffuse.clear();
-    for (const SurfacePoint& point : targets.pieces.brick(brick))
+    room.coherent.clear();
+    targets.pieces.cutBrick(brick, room.targets);
+    for (const SurfacePoint& point : room.targets)
     {
       room.diffuse.push(point, room.pieces.count);
+      room.coherent.push(point, room.pieces.count);
       room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
     }
-    room.coherent = room.diffuse;
     room.hear(seeing, group, nullptr);
     room.addTo(seeing, group);
   });

@@ -57,6 +57,8 @@ public:
   float longestStepMm() const; ///< between pieces
   /// Beams of the scene as the pieces' bricks meet them.
   std::vector<BeamReach> seeingPieces(std::vector<BeamReach> beams) const;
+  /// The same of the bricks of some targets.
+  static std::vector<BeamReach> seeingTargets(std::vector<BeamReach> beams, const TargetGroup& targets);
   SurfaceTable pieceTable() const;
   SurfaceTable targetTable() const { return rows_->view(0.0); }
 
