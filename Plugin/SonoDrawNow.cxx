@@ -7,11 +7,13 @@
 
 void sonoDrawNow(vtkSMViewProxy* view)
 {
-  const auto settle = [] {
-    QCoreApplication::processEvents(QEventLoop::ExcludeUserInputEvents | QEventLoop::ExcludeSocketNotifiers |
-                                    QEventLoop::X11ExcludeTimers);
-  };
-  settle();
+  sonoShowSoFar();
   view->StillRender();
-  settle();
+  sonoShowSoFar();
+}
+
+void sonoShowSoFar()
+{
+  QCoreApplication::processEvents(QEventLoop::ExcludeUserInputEvents | QEventLoop::ExcludeSocketNotifiers |
+                                  QEventLoop::X11ExcludeTimers);
 }

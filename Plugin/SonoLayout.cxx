@@ -298,9 +298,9 @@ vtkSMViewProxy* sonoShowLayout(vtkSMSourceProxy* ultrasound)
   showPlainly(line, 2, yellow, 2.0, solid, controller);
   sonoDrawNow(solid);
   showPlainly(line, 1, yellow, 1.0, flat, controller);
-  flat->StillRender();
+  sonoDrawNow(flat);
   fillChart(chart, line, controller);
-  chart->StillRender();
+  sonoDrawNow(chart);
   return solid;
 }
 

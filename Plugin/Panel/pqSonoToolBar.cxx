@@ -1,9 +1,11 @@
 #include "pqSonoToolBar.h"
 
+#include "SonoDrawNow.h"
 #include "SonoExamples.h"
 #include "SonoLayout.h"
 #include "SonoMenu.h"
 #include "SonoNeedleHere.h"
+#include "SonoTimersWait.h"
 #include "SonoUltrasoundHere.h"
 #include "pqSonoDelete.h"
 #include "pqSonoFlatMenu.h"
@@ -129,6 +131,8 @@ void pqSonoToolBar::simulate()
 
 void pqSonoToolBar::showLayout()
 {
+  const SonoTimersWait waiting; // where events are looked at
+  sonoShowSoFar();
   pqPipelineSource* source = pqActiveObjects::instance().activeSource();
   if (!hasPicture(source))
   {
@@ -142,6 +146,7 @@ void pqSonoToolBar::showLayout()
   unshown_ = nullptr;
   vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
   pqActiveObjects::instance().setActiveSource(source);
+  sonoShowSoFar();
   // Where the probe can be seen and dragged.
   pqActiveObjects::instance().setActiveView(
     pqApplicationCore::instance()->getServerManagerModel()->findItem<pqView*>(solid));
