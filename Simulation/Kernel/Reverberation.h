@@ -188,6 +188,8 @@ struct TissueBins
     const int middle = bin / 4 * 4 + 2;
     return middle < count ? middle : count - 1;
   }
+  /// The first bin of the next group.
+  SONO_HD int nextGroup(int bin) const { return bin / 4 * 4 + 4; }
 };
 
 /// A boundary's echo of so much weighs as the speckle of level 1 where it is asked how much its sound was attenuated.

@@ -234,8 +234,20 @@ SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, 
   return sum;
 }
 
-/// Depth at a range, by the ranges at multiples of a step of depth, [0, steps], which rise. Beyond the last
-/// c0 holds.
+/// Depth at a range, by the ranges at multiples of a step of depth, [0, steps], which rise; the range lies between
+/// those of a step and the next.
+SONO_HD inline float depthAfterStep(const float* rangeMm, int steps, float stepMm, int step, float wantedMm)
+{
+  const int next = step + 1;
+  const float own = 1.0f / (rangeMm[next] - rangeMm[step]);
+  const float before = step > 0 ? 1.0f / (rangeMm[step] - rangeMm[step - 1]) : own;
+  const float behind = next < steps ? 1.0f / (rangeMm[next + 1] - rangeMm[next]) : own;
+  const float depth =
+    bentBetween(float(step), float(next), wantedMm - rangeMm[step], rangeMm[next] - wantedMm, { before, own, behind });
+  return depth * stepMm;
+}
+
+/// The same of any range; beyond the last c0 holds.
 SONO_HD inline float depthOfRange(const float* rangeMm, int steps, float stepMm, float wantedMm)
 {
   if (wantedMm >= rangeMm[steps])
@@ -249,12 +261,7 @@ SONO_HD inline float depthOfRange(const float* rangeMm, int steps, float stepMm,
     const int middle = (low + high) / 2;
     (rangeMm[middle] <= wantedMm ? low : high) = middle;
   }
-  const float own = 1.0f / (rangeMm[high] - rangeMm[low]);
-  const float before = low > 0 ? 1.0f / (rangeMm[low] - rangeMm[low - 1]) : own;
-  const float behind = high < steps ? 1.0f / (rangeMm[high + 1] - rangeMm[high]) : own;
-  const float depth =
-    bentBetween(float(low), float(high), wantedMm - rangeMm[low], rangeMm[high] - wantedMm, { before, own, behind });
-  return depth * stepMm;
+  return depthAfterStep(rangeMm, steps, stepMm, low, wantedMm);
 }
 
 /// How a line's depths lie on its ranges: depth less range, mm, at multiples of a bin of range, in between as bentAt().

@@ -2,6 +2,7 @@
 
 #include "Core/Simd.h"
 #include "Kernel/BeamDeposit.h"
+#include "Trace/ReverberationBins.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,9 @@ LineTally::LineTally(int binCount, double binMm, int sums, int echoCount, double
   , reverberation_(std::size_t(tissueBins_.count))
   , absorbed_{ std::vector<AbsorbedSums>(std::size_t(tissueBins_.count)),
                std::vector<AbsorbedSums>(std::size_t(binCount)) }
-  , cellMm_(std::size_t(tissueBins_.count))
+  , cellMm_(std::size_t(tissueBins_.count + binsTogether), 1.0f)
+  , tissueLevels_(cellMm_.size())
+  , tissuePowers_(cellMm_.size())
   , echoes_(std::size_t(echoCount))
   , firstEcho_(echoCount)
   , binMm_(float(binMm))
@@ -226,54 +229,72 @@ void LineTally::sharedSegments(const std::vector<PathSegment>& segments, int pat
   segments_ += std::uint64_t(paths - 1) * segments.size();
 }
 
-template<class Add>
-inline void LineTally::addToTissueBins(const TissueEcho& echo, const DepthSpan& span, const Add& add)
+void LineTally::findCells()
 {
-  if (!(span.high > span.low) || echo.level == 0.0f)
+  reverberated_ = true;
+  for (int b = 0; b < tissueBins_.count; ++b)
   {
-    return;
+    cellMm_[std::size_t(b)] = resolutionCell(*view_, *axis_, (float(b) + 0.5f) * tissueBins_.mm).sideMm;
   }
-  if (!reverberated_)
+}
+
+void LineTally::absorb(const TissueEcho& echo, const DepthSpan& span, const BinSpan& bins)
+{
+  for (int group = bins.first; group <= bins.last; group = tissueBins_.nextGroup(group))
   {
-    reverberated_ = true;
-    for (std::size_t b = 0; b < cellMm_.size(); ++b)
+    const int b = tissueBins_.absorptionBin(group);
+    if (b >= bins.first && b <= bins.last)
     {
-      cellMm_[b] = resolutionCell(*view_, *axis_, (float(b) + 0.5f) * tissueBins_.mm).sideMm;
-    }
-  }
-  const BinSpan covered = binSpan(span, tissueBins_.mm);
-  for (int b = covered.first; b <= covered.last; ++b)
-  {
-    const BinEcho inBin = echoInBin(echo, span, b, tissueBins_.mm);
-    const double level = add(b, inBin, reverberation_[std::size_t(b)]);
-    if (b == tissueBins_.absorptionBin(b))
-    {
+      const double level = double(std::fabs(tissueLevels_[std::size_t(b - bins.first)]));
       absorbed_.tissue[std::size_t(b)].weight += level;
-      absorbed_.tissue[std::size_t(b)].weightedNp += level * double(inBin.absorbedNp);
+      absorbed_.tissue[std::size_t(b)].weightedNp +=
+        level * double(echoInBin(echo, span, b, tissueBins_.mm).absorbedNp);
     }
   }
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void LineTally::addReverberation(const PathSegment& s)
+void LineTally::addReverberation(const PathSegment& s)
 {
+  const float endMm = tissueBins_.endMm();
+  const auto isHeard = [&](const TissueEcho& echo, const DepthSpan& span) {
+    if (!(span.high > span.low) || echo.level == 0.0f)
+    {
+      return false;
+    }
+    if (!reverberated_)
+    {
+      findCells();
+    }
+    return true;
+  };
   const TissueEcho own = ownWayEcho(*view_, s);
-  addToTissueBins(own, depthSpan(own.r0, own.mu, s.length, tissueBins_.endMm()),
-                  [&](int b, const BinEcho& inBin, ReverberationSums& sums) {
-                    const float sign = signInBin(own, inBin, lineKey_, b, cellMm_[std::size_t(b)]);
-                    const double level = double(inBin.level * inBin.share);
-                    sums.of[sign > 0.0f ? plusSum : minusSum] += level;
-                    return level;
-                  });
-  if (isStraightBack(*axis_, s))
+  const DepthSpan ownSpan = depthSpan(own.r0, own.mu, s.length, endMm);
+  if (isHeard(own, ownSpan))
   {
-    const TissueEcho straight = straightBackEcho(way_, *axis_, line_, s);
-    addToTissueBins(straight, heardSpan(straight, s.length, tissueBins_.endMm()),
-                    [&](int, const BinEcho& inBin, ReverberationSums& sums) {
-                      const float heard = inBin.level * heardInBin(inBin);
-                      const double level = double(heard * inBin.share);
-                      sums.of[straightPowerSum] += level * double(heard);
-                      return level;
-                    });
+    const BinSpan bins = binSpan(ownSpan, tissueBins_.mm);
+    ownWayLevels(own, ownSpan, tissueBins_.mm, bins, lineKey_, cellMm_.data(), tissueLevels_.data());
+    for (int b = bins.first; b <= bins.last; ++b)
+    {
+      const float level = tissueLevels_[std::size_t(b - bins.first)];
+      reverberation_[std::size_t(b)].of[level > 0.0f ? plusSum : minusSum] += double(std::fabs(level));
+    }
+    absorb(own, ownSpan, bins);
+  }
+  if (!isStraightBack(*axis_, s))
+  {
+    return;
+  }
+  const TissueEcho straight = straightBackEcho(way_, *axis_, line_, s);
+  const DepthSpan straightSpan = heardSpan(straight, s.length, endMm);
+  if (isHeard(straight, straightSpan))
+  {
+    const BinSpan bins = binSpan(straightSpan, tissueBins_.mm);
+    straightBackLevels(straight, straightSpan, tissueBins_.mm, bins, tissueLevels_.data(), tissuePowers_.data());
+    for (int b = bins.first; b <= bins.last; ++b)
+    {
+      reverberation_[std::size_t(b)].of[straightPowerSum] += double(tissuePowers_[std::size_t(b - bins.first)]);
+    }
+    absorb(straight, straightSpan, bins);
   }
 }
 

@@ -63,9 +63,10 @@ public:
 private:
   void addEcho(float rangeMm, float amplitude);
   void addReverberation(const PathSegment& s);
-  /// `add` puts what an echo leaves in a bin to its sums and returns its level, for the mean of what was absorbed.
-  template<class Add>
-  void addToTissueBins(const TissueEcho& echo, const DepthSpan& span, const Add& add);
+  /// Before the line's first reverberation.
+  void findCells();
+  /// What the media have taken of an echo whose levels are in `tissueLevels_`.
+  void absorb(const TissueEcho& echo, const DepthSpan& span, const BinSpan& bins);
   template<int Sums>
   void deposit(const BeamSegment& g, const DepthSpan& span);
 
@@ -77,7 +78,9 @@ private:
   std::vector<ReverberationSums> reverberation_; ///< of the paths since it was taken
   bool reverberated_ = false;                    ///< since the line began
   AbsorbedByBin absorbed_;
-  std::vector<float> cellMm_; ///< see resolutionCell, in the middle of each bin; of a line that has reverberated
+  std::vector<float> cellMm_;       ///< see resolutionCell, in the middle of each bin; of a line that has reverberated
+  std::vector<float> tissueLevels_; ///< of one echo, by bin from the first that it covers
+  std::vector<float> tissuePowers_; ///< the same, straight back
   std::vector<std::complex<double>> echoes_;
   int firstEcho_; ///< of the samples that are not zero
   int lastEcho_ = -1;

@@ -187,10 +187,18 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
     absorbed += double(step.absorbedNp);
   }
   float* offset = out.depthOffsetMm.data() + std::size_t(line) * std::size_t(out.binCount);
+  const float* ranges = way.rangeMm.data();
+  int before = 0;
   for (int b = 0; b < out.binCount; ++b)
   {
     const float wanted = float(b) * float(out.binMm);
-    offset[b] = depthOfRange(way.rangeMm.data(), steps, way.stepMm, wanted) - wanted;
+    while (before + 1 < steps && ranges[before + 1] <= wanted)
+    {
+      ++before; // found faster than looked for, as depthOfRange does
+    }
+    offset[b] = (wanted < ranges[steps] ? depthAfterStep(ranges, steps, way.stepMm, before, wanted)
+                                        : depthOfRange(ranges, steps, way.stepMm, wanted)) -
+                wanted;
   }
   return way;
 }
