@@ -5,6 +5,7 @@
 #define float double
 #define sono sonoInDouble
 #include "Trace/Deposit.cpp"
+#include "Trace/ReverberationBins.cpp"
 #undef float
 #undef sono
 
