@@ -37,6 +37,7 @@
 
 #include <QAction>
 #include <QMenu>
+#include <QPointer>
 #include <QTimer>
 #include <QToolButton>
 
@@ -132,8 +133,13 @@ void pqSonoToolBar::simulate()
 void pqSonoToolBar::showLayout()
 {
   const SonoTimersWait waiting; // where events are looked at
+  const QPointer<pqPipelineSource> source = pqActiveObjects::instance().activeSource();
+  unshown_ = nullptr; // what waits for Apply would take its turn now
   sonoShowSoFar();
-  pqPipelineSource* source = pqActiveObjects::instance().activeSource();
+  if (!source)
+  {
+    return;
+  }
   if (!hasPicture(source))
   {
     // What is shown without data keeps the colours and the camera that it gets for want of them.
@@ -143,7 +149,6 @@ void pqSonoToolBar::showLayout()
                      Qt::ConnectionType(Qt::QueuedConnection | Qt::UniqueConnection));
     return;
   }
-  unshown_ = nullptr;
   vtkSMProxy* solid = sonoShowLayout(vtkSMSourceProxy::SafeDownCast(source->getProxy()));
   pqActiveObjects::instance().setActiveSource(source);
   sonoShowSoFar();

@@ -143,7 +143,7 @@ struct TargetPointJob
   };
 
   std::vector<SurfacePoint> points;
-  std::vector<Brick> bricks; ///< those with points
+  std::vector<Brick> bricks; ///< those with points, of those that a beam may see
   float edgeMm = 1.0f;
   std::optional<SightJob> sight;
   RodRing ring;

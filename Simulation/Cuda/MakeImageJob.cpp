@@ -240,11 +240,18 @@ TargetPointJob makeTargetPoints(const EchoSetup& setup, const std::vector<Beam>&
         .store(true, std::memory_order_relaxed);
     });
   std::vector<Vec3i> bricks;
-  for (int n = 0; n < int(seen.size()); ++n)
+  std::size_t n = 0;
+  for (int k = 0; k < size.z; ++k)
   {
-    if (seen[std::size_t(n)])
+    for (int j = 0; j < size.y; ++j)
     {
-      bricks.push_back(first + Vec3i(n % size.x, n / size.x % size.y, n / size.x / size.y));
+      for (int i = 0; i < size.x; ++i, ++n)
+      {
+        if (seen[n])
+        {
+          bricks.push_back(first + Vec3i(i, j, k));
+        }
+      }
     }
   }
   std::vector<std::vector<SurfacePoint>> points(bricks.size());
@@ -298,7 +305,11 @@ SurfaceJob makeSurfaces(const EchoSetup& setup, const std::vector<Beam>& sceneBe
   {
     if (group.pieces.grid().highMm != group.pieces.grid().lowMm)
     {
-      job.targets.push_back(makeTargetPoints(setup, sceneBeams, group));
+      TargetPointJob points = makeTargetPoints(setup, sceneBeams, group);
+      if (!points.bricks.empty())
+      {
+        job.targets.push_back(std::move(points));
+      }
     }
   }
   return job;

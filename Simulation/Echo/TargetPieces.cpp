@@ -12,7 +12,7 @@ namespace {
 constexpr float brickEdgeMm = 4.0f;
 /// Parts that bricks begin with: most lie in one.
 constexpr double partMm = 1.0;
-constexpr float justOutsideMm = 1e-3f;
+constexpr double justOutsideMm = 1e-3;
 /// A blob is this many times as wide as its triangle: with three the sum over a regular net is even to 1e-4.
 constexpr float blobPerTriangle = 3.0f;
 
@@ -24,7 +24,7 @@ Vec3i brickOf(const Vec3f& position)
 /// Whether a triangle's box comes within a hair of a box.
 bool meets(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& low, const Vec3d& high)
 {
-  constexpr double hairMm = 1e-3;
+  constexpr double hairMm = 2.0 * justOutsideMm;
   return glm::all(glm::lessThan(glm::min(a, glm::min(b, c)), high + hairMm)) &&
          glm::all(glm::greaterThan(glm::max(a, glm::max(b, c)), low - hairMm));
 }
@@ -76,6 +76,8 @@ TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>&
 {
   const auto triangles = localTriangles(targets, scene.rotationToLocal(), scene.worldFromLocal(Vec3d(0.0)));
   grid_.edgeMm = brickEdgeMm;
+  const Vec3d volumeMm = Vec3d(scene.placement().size) * scene.placement().spacingMm;
+  const auto meetsVolume = [&](const Part& part) { return meets(part.a, part.b, part.c, Vec3d(0.0), volumeMm); };
   for (std::size_t t = 0; t < triangles.size(); ++t)
   {
     const BvhTriangle& triangle = triangles[t];
@@ -91,8 +93,7 @@ TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>&
       continue;
     }
     origins_.push_back({ int(t), triangle.target, Vec3f(across / twiceArea) });
-    const auto all = [](const Part&) { return true; };
-    halve(whole, std::max(partMm, longestMm), all, [&](const Part& part) {
+    halve(whole, std::max(partMm, longestMm), meetsVolume, [&](const Part& part) {
       const Vec3i low = brickOf(Vec3f(glm::min(part.a, glm::min(part.b, part.c))));
       const Vec3i high = brickOf(Vec3f(glm::max(part.a, glm::max(part.b, part.c))));
       for (int k = low.z; k <= high.z; ++k)
@@ -145,7 +146,7 @@ void TargetPieces::point(const Part& part, const Origin& origin, const Vec3i& br
   const Vec3i size = scene_.placement().size;
   const Vec3f perMm = 1.0f / Vec3f(scene_.placement().spacingMm);
   const Vec3f middle((part.a + part.b + part.c) / 3.0);
-  const Vec3i voxel(glm::floor((middle + origin.normal * justOutsideMm) * perMm));
+  const Vec3i voxel(glm::floor((middle + origin.normal * float(justOutsideMm)) * perMm));
   if (brickOf(middle) != brick || glm::any(glm::lessThan(voxel, Vec3i(0))) ||
       glm::any(glm::greaterThanEqual(voxel, size)))
   {

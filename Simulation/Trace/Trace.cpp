@@ -194,7 +194,7 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
     const float wanted = float(b) * float(out.binMm);
     while (before + 1 < steps && ranges[before + 1] <= wanted)
     {
-      ++before; // found faster than looked for, as depthOfRange does
+      ++before; // depthOfRange would look for it anew
     }
     offset[b] = (wanted < ranges[steps] ? depthAfterStep(ranges, steps, way.stepMm, before, wanted)
                                         : depthOfRange(ranges, steps, way.stepMm, wanted)) -

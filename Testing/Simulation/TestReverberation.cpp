@@ -261,6 +261,35 @@ TEST(Reverberation, WhatComesStraightBackIsHeardAsFarAsItIsOnTheAxis)
   }
 }
 
+TEST(Reverberation, WhatTheMediaTookIsThatInTheMiddleOfFourBins)
+{
+  // Of one path whose exponent grows straight with its range, past the end of the line, whose last group has two bins.
+  constexpr int bins = 102;
+  const TraceLine axis{ Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f) };
+  const TraceView view;
+  LineTally tally(bins, 0.5, binSumCount, 0, 0.0154, 1.6);
+  tally.begin(view, axis, 0, {});
+  PathSegment s{};
+  s.direction = Vec3f(0.0f, 0.0f, 1.0f);
+  s.length = 100.0f;
+  s.intensity = 1.0f;
+  s.decayPerMm = 0.02f;
+  s.absorbed = 0.3f;
+  s.rangeMm = 10.0f;
+  s.scatter = 1.0f;
+  s.reflections = 1;
+  tally.segment(s);
+  const std::vector<float> np = tally.takeReverberatedNp(nullptr);
+  ASSERT_EQ(np.size(), std::size_t(bins));
+  for (int b = 0; b < bins; ++b)
+  {
+    const int middle = std::min(b / 4 * 4 + 2, bins - 1);
+    const double rangeMm = 0.5 * (middle + 0.5);
+    EXPECT_NEAR(np[std::size_t(b)], rangeMm > 10.0 ? 0.3 + 0.02 * (rangeMm - 10.0) : 0.0, 1e-5) << b;
+  }
+  EXPECT_EQ(tally.takeReverberatedNp(nullptr), std::vector<float>(bins, 0.0f));
+}
+
 TEST(Reverberation, NodesThatLinesShareGiveTheNoiseOfEachBehindThePulse)
 {
   constexpr int lines = 33;
