@@ -49,8 +49,10 @@ void TargetPieces::halve(const Part& part, double longestMm, const Goes& goes, c
     visit(part);
     return;
   }
-  Part one{ part.a, part.b, part.c, 2u * part.half };
-  Part other{ part.a, part.b, part.c, 2u * part.half + 1u };
+  Part one = part;
+  Part other = part;
+  one.half = 2u * part.half;
+  other.half = one.half + 1u;
   if (ab == most)
   {
     one.b = other.a = 0.5 * (part.a + part.b);
@@ -85,7 +87,7 @@ TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>&
     {
       continue;
     }
-    const Part whole{ Vec3d(triangle.a), Vec3d(triangle.b), Vec3d(triangle.c), 1u };
+    const Part whole{ Vec3d(triangle.a), Vec3d(triangle.b), Vec3d(triangle.c), 1u, origins_.size() };
     const Vec3d across = glm::cross(whole.b - whole.a, whole.c - whole.a);
     const double twiceArea = glm::length(across);
     if (!(twiceArea > 0.0))
@@ -102,7 +104,7 @@ TargetPieces::TargetPieces(const Scene& scene, const std::vector<TargetSurface>&
         {
           for (int i = low.x; i <= high.x; ++i)
           {
-            bricks_[Vec3i(i, j, k)].push_back({ part, origins_.size() - 1 });
+            bricks_[Vec3i(i, j, k)].push_back(part);
           }
         }
       }
@@ -133,16 +135,15 @@ void TargetPieces::cutBrick(const Vec3i& brick, std::vector<SurfacePoint>& point
   const Vec3d low = Vec3d(brick) * double(brickEdgeMm);
   const Vec3d high = low + double(brickEdgeMm);
   const auto meetsBrick = [&](const Part& part) { return meets(part.a, part.b, part.c, low, high); };
-  for (const PartOf& each : found->second)
+  for (const Part& each : found->second)
   {
-    halve(each.part, longestMm_, meetsBrick,
-          [&](const Part& part) { point(part, origins_[each.origin], brick, points); });
+    halve(each, longestMm_, meetsBrick, [&](const Part& part) { point(part, brick, points); });
   }
 }
 
-void TargetPieces::point(const Part& part, const Origin& origin, const Vec3i& brick,
-                         std::vector<SurfacePoint>& points) const
+void TargetPieces::point(const Part& part, const Vec3i& brick, std::vector<SurfacePoint>& points) const
 {
+  const Origin& origin = origins_[part.origin];
   const Vec3i size = scene_.placement().size;
   const Vec3f perMm = 1.0f / Vec3f(scene_.placement().spacingMm);
   const Vec3f middle((part.a + part.b + part.c) / 3.0);

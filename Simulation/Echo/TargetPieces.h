@@ -5,6 +5,7 @@
 #include "Scene/Scene.h"
 #include "Trace/Targets.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -33,6 +34,7 @@ private:
     Vec3d b;
     Vec3d c;
     std::uint32_t half; ///< 1: the triangle; of halving n come 2 n and 2 n + 1
+    std::size_t origin; ///< number of its triangle's
   };
   /// A part's triangle.
   struct Origin
@@ -48,15 +50,10 @@ private:
       return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
     }
   };
-  struct PartOf
-  {
-    Part part;
-    std::size_t origin;
-  };
 
   template<class Goes, class Visit>
   static void halve(const Part& part, double longestMm, const Goes& goes, const Visit& visit);
-  void point(const Part& part, const Origin& origin, const Vec3i& brick, std::vector<SurfacePoint>& points) const;
+  void point(const Part& part, const Vec3i& brick, std::vector<SurfacePoint>& points) const;
 
   const Scene& scene_;
   const SurfaceRows& rows_;
@@ -64,7 +61,7 @@ private:
   std::uint64_t seed_;
   BrickGrid grid_;
   std::vector<Origin> origins_;
-  std::map<Vec3i, std::vector<PartOf>, Before> bricks_; ///< those that a part's box meets
+  std::map<Vec3i, std::vector<Part>, Before> bricks_; ///< those that a part's box meets
 };
 
 } // namespace sono

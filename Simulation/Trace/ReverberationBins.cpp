@@ -6,10 +6,21 @@ namespace sono {
 
 namespace {
 
-/// With those behind the last, whose share is 0: a rest would be gone through one by one.
-int countOf(const BinSpan& bins)
+/// Calls visit(i, bin, echo) for the bins and those behind the last, whose share is 0: a rest would be gone through one
+/// by one.
+template<class Visit>
+__attribute__((always_inline)) inline void forBins(const TissueEcho& echo, const DepthSpan& span, float binMm,
+                                                   const BinSpan& bins, const Visit& visit)
 {
-  return (bins.last - bins.first + binsTogether) / binsTogether * binsTogether;
+  const TissueEcho own = echo;
+  const DepthSpan within = span;
+  const int first = bins.first;
+  const int count = (bins.last - bins.first + binsTogether) / binsTogether * binsTogether;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i)
+  {
+    visit(i, first + i, echoInBin(own, within, first + i, binMm));
+  }
 }
 
 } // namespace
@@ -19,33 +30,20 @@ SONO_SIMD_CLONES __attribute__((flatten)) void ownWayLevels(const TissueEcho& ec
                                                             const float* cellMm, float* levels)
 {
   const TissueEcho own = echo;
-  const DepthSpan within = span;
-  const int first = bins.first;
-  const int count = countOf(bins);
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i)
-  {
-    const BinEcho inBin = echoInBin(own, within, first + i, binMm);
-    levels[i] = signInBin(own, inBin, lineKey, first + i, cellMm[first + i]) * inBin.level * inBin.share;
-  }
+  forBins(own, span, binMm, bins, [=](int i, int bin, const BinEcho& inBin) {
+    levels[i] = signInBin(own, inBin, lineKey, bin, cellMm[bin]) * inBin.level * inBin.share;
+  });
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void straightBackLevels(const TissueEcho& echo, const DepthSpan& span,
                                                                   float binMm, const BinSpan& bins, float* levels,
                                                                   float* powers)
 {
-  const TissueEcho straight = echo;
-  const DepthSpan within = span;
-  const int first = bins.first;
-  const int count = countOf(bins);
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i)
-  {
-    const BinEcho inBin = echoInBin(straight, within, first + i, binMm);
+  forBins(echo, span, binMm, bins, [=](int i, int, const BinEcho& inBin) {
     const float heard = inBin.level * heardInBin(inBin);
     levels[i] = heard * inBin.share;
     powers[i] = levels[i] * heard;
-  }
+  });
 }
 
 } // namespace sono
