@@ -12,6 +12,7 @@
 #include "pqUndoStack.h"
 #include "pqView.h"
 #include "vtkCommand.h"
+#include "vtkImageSliceRepresentation.h"
 #include "vtkLight.h"
 #include "vtkNew.h"
 #include "vtkPVDataRepresentation.h"
@@ -22,6 +23,7 @@
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSmartPointer.h"
+#include "vtkSonoImageMapper.h"
 
 #include <QWidget>
 
@@ -54,6 +56,18 @@ std::set<vtkObject*> partsOf(vtkSMProxy* representation)
     }
   }
   return parts;
+}
+
+/// Pictures that a GPU makes and draws stay there.
+void drawOnGpu(vtkSMProxy* representation)
+{
+  for (vtkObject* part : partsOf(representation))
+  {
+    if (auto* slice = vtkImageSliceRepresentation::SafeDownCast(part))
+    {
+      vtkSonoImageMapper::UseIn(slice);
+    }
+  }
 }
 
 QList<pqView*> visibleViews()
@@ -148,6 +162,7 @@ void SonoMovingViews::take(pqView* view)
     if (shown && shown->isVisible())
     {
       this->mute(shown->getProxy());
+      drawOnGpu(shown->getProxy());
       this->Shown[view].append(shown);
     }
   }

@@ -127,12 +127,20 @@ std::shared_ptr<DeviceImager::Download> DeviceImager::beginDownload(std::shared_
     check(cudaEventRecord(w.converted, stream), "computing");
     check(cudaStreamWaitEvent(copyStream(), w.converted), "computing");
     const std::size_t count = picture->bytes.size();
-    const std::shared_ptr<void> bytes = pinnedMemory(count);
+    const bool stays = picture->images == 1 && picturesStay();
+    const std::shared_ptr<void> bytes = stays ? managedMemory(count) : pinnedMemory(count);
     begun->picture = picture;
     begun->labels = labels;
     begun->copy.bytes = pinnedSpan<std::uint8_t>(bytes, count);
     begun->copy.mask = picture->hostMask;
-    download(picture->bytes.data(), count, static_cast<std::uint8_t*>(bytes.get()), copyStream(), w.traffic);
+    if (stays)
+    {
+      leaveOnDevice(picture->bytes.data(), count, bytes.get(), copyStream());
+    }
+    else
+    {
+      download(picture->bytes.data(), count, static_cast<std::uint8_t*>(bytes.get()), copyStream(), w.traffic);
+    }
     if (labels)
     {
       const std::shared_ptr<void> memory = pinnedMemory(count * sizeof(std::uint16_t));

@@ -1,9 +1,12 @@
 #include "Cuda/DeviceMemory.cuh"
 
 #include "Core/Policy.h"
+#include "Cuda/DeviceImager.h"
+#include "Cuda/GreyTexture.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -39,6 +42,15 @@ __global__ void clearWords(std::uint32_t* words, std::size_t count)
   for (std::size_t i = std::size_t(blockIdx.x) * blockDim.x + threadIdx.x; i < count; i += step)
   {
     words[i] = 0;
+  }
+}
+
+__global__ void copyBytes(const std::uint8_t* from, std::size_t count, std::uint8_t* to)
+{
+  const std::size_t i = std::size_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < count)
+  {
+    to[i] = from[i];
   }
 }
 
@@ -90,10 +102,23 @@ private:
   std::size_t used_ = 0;
 };
 
-/// Blocks of pinned memory that nobody holds any more, since pinning costs more than copying.
-class PinnedPool
+/// Memory that host and device read, as CUDA makes it and takes it back.
+struct SharedMemory
+{
+  cudaError_t (*make)(void** memory, std::size_t bytes);
+  cudaError_t (*unmake)(void* memory);
+  const char* making;
+};
+
+/// Blocks of such memory that nobody holds any more, since making it costs more than copying.
+class MemoryPool
 {
 public:
+  explicit MemoryPool(SharedMemory kind)
+    : kind_(kind)
+  {
+  }
+
   /// Sizes in steps of an eighth, so that those of another depth or sector find what is free: pinning takes the
   /// driver's lock, for which all lanes wait.
   static std::size_t roomFor(std::size_t bytes)
@@ -120,7 +145,7 @@ public:
       }
     }
     void* memory = nullptr;
-    check(cudaMallocHost(&memory, bytes), "pinning memory for its results");
+    check(kind_.make(&memory, bytes), kind_.making);
     return memory;
   }
   void give(void* memory, std::size_t bytes)
@@ -128,7 +153,7 @@ public:
     const std::lock_guard<std::mutex> lock(mutex_);
     if (freeBytes_ + bytes > keptPinnedBytes)
     {
-      cudaFreeHost(memory);
+      kind_.unmake(memory);
       return;
     }
     free_.emplace(bytes, memory);
@@ -136,17 +161,19 @@ public:
   }
 
 private:
+  const SharedMemory kind_;
   std::mutex mutex_;
   std::multimap<std::size_t, void*> free_;
   std::size_t freeBytes_ = 0;
 };
 
-// Never destroyed: at the end of a process the driver may go first.
-PinnedPool& pinnedPool()
+std::shared_ptr<void> fromPool(MemoryPool& pool, std::size_t wanted)
 {
-  static auto* const pool = new PinnedPool;
-  return *pool;
+  const std::size_t bytes = MemoryPool::roomFor(wanted);
+  return { pool.take(bytes), [bytes, &pool](void* memory) { pool.give(memory, bytes); } };
 }
+
+std::atomic<bool> staying{ false }; // see picturesStay()
 
 } // namespace
 
@@ -313,10 +340,46 @@ void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t str
   check(await(stream), "uploading"); // what was uploaded may go
 }
 
+// Pools are never destroyed: at the end of a process the driver may go first.
+
 std::shared_ptr<void> pinnedMemory(std::size_t wanted)
 {
-  const std::size_t bytes = PinnedPool::roomFor(wanted);
-  return { pinnedPool().take(bytes), [bytes](void* memory) { pinnedPool().give(memory, bytes); } };
+  static auto* const pool =
+    new MemoryPool({ [](void** memory, std::size_t bytes) { return cudaMallocHost(memory, bytes); }, cudaFreeHost,
+                     "pinning memory for its results" });
+  return fromPool(*pool, wanted);
+}
+
+std::shared_ptr<void> managedMemory(std::size_t wanted)
+{
+  static auto* const pool =
+    new MemoryPool({ [](void** memory, std::size_t bytes) { return cudaMallocManaged(memory, bytes); }, cudaFree,
+                     "allocating memory for its pictures" });
+  return fromPool(*pool, wanted);
+}
+
+bool picturesStay()
+{
+  return staying && currentLane->waiting == Waiting::Busy;
+}
+
+void leaveOnDevice(const std::uint8_t* from, std::size_t bytes, void* to, cudaStream_t stream)
+{
+  constexpr int threads = 256;
+  copyBytes<<<unsigned((bytes + threads - 1) / threads), threads, 0, stream>>>(from, bytes,
+                                                                               static_cast<std::uint8_t*>(to));
+  check(cudaGetLastError(), "copying");
+}
+
+void keepPicturesOnGpu()
+{
+  bool canAll = cudaStatus().usable;
+  for (const int device : cudaStatus().devices)
+  {
+    int can = 0;
+    canAll = canAll && cudaDeviceGetAttribute(&can, cudaDevAttrConcurrentManagedAccess, device) == cudaSuccess && can;
+  }
+  staying = canAll;
 }
 
 } // namespace sono

@@ -152,6 +152,13 @@ void uploadBytes(void* to, const void* from, std::size_t bytes, cudaStream_t str
 
 /// Memory of the host that the device writes at the bus's full speed; from a pool.
 std::shared_ptr<void> pinnedMemory(std::size_t bytes);
+/// Memory whose pages lie where they were written or read last, device or host; from a pool.
+std::shared_ptr<void> managedMemory(std::size_t bytes);
+/// Whether keepPicturesOnGpu() was asked for, and the thread's lane is not that of a worker, whose pictures go into
+/// files and tensors.
+bool picturesStay();
+/// A copy into managed memory by the device, where it then lies.
+void leaveOnDevice(const std::uint8_t* from, std::size_t bytes, void* to, cudaStream_t stream);
 
 /// An array on the device that only grows.
 template<class T>

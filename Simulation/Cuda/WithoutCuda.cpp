@@ -1,6 +1,7 @@
 #include "Cuda/DeviceImager.h"
 
 #include "Cuda/DeviceChannels.h"
+#include "Cuda/GreyTexture.h"
 #include "Cuda/OwnImager.h"
 
 // Stands in for the GPU where SonoVDB was built without nvcc: there is no imager, so nobody can ask it for anything.
@@ -127,6 +128,29 @@ DeviceBytes DeviceImager::upload(const std::vector<std::uint8_t>&)
 }
 
 void giveBackAfter(DeviceBytes, std::uintptr_t) {}
+
+struct GreyTexture::Registered
+{
+};
+
+std::unique_ptr<GreyTexture> GreyTexture::of(unsigned, int, int)
+{
+  return nullptr;
+}
+
+GreyTexture::~GreyTexture() = default;
+
+bool GreyTexture::fill(const std::uint8_t*, const GreyColours&)
+{
+  return false;
+}
+
+bool isOnGpu(const void*)
+{
+  return false;
+}
+
+void keepPicturesOnGpu() {}
 
 int DeviceImager::imagesThatFit(double)
 {

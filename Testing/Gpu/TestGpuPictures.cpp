@@ -1,5 +1,7 @@
 #include "GpuThorax.h"
 
+#include "Cuda/GreyTexture.h"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -121,6 +123,30 @@ TEST(GpuPictures, DoNotDependOnSurfacesThatOthersHadFitted)
   {
     EXPECT_TRUE(inOrder[i] == inReverse[poses.size() - 1 - i]) << i;
   }
+}
+
+TEST(GpuPictures, StayOnTheGpuUntilTheHostReadsThem)
+{
+  SONO_GPU_OR_SKIP();
+  const std::vector<ImageInput> inputs = exam();
+  const std::shared_ptr<Scene> scene = makePhantomScene(makeThoraxPhantom(2.0));
+  const auto pictureOf = [&](const ImageInput& input) {
+    Simulator simulator(scene);
+    return simulator.picture(simulator.image(input));
+  };
+  const ScanPicture onHost = pictureOf(inputs[0]);
+  const ScanPicture other = pictureOf(inputs[5]);
+  EXPECT_FALSE(isOnGpu(onHost.grey.data.get()));
+  keepPicturesOnGpu();
+  ScanPicture onGpu = pictureOf(inputs[0]);
+  EXPECT_TRUE(isOnGpu(onGpu.grey.data.get()));
+  EXPECT_FALSE(isOnGpu(onGpu.mask.data.get()));
+  EXPECT_EQ(differing(onGpu.grey, onHost.grey), 0);
+  EXPECT_GT(differing(onGpu.grey, other.grey), 1000);
+  onGpu = {}; // whose memory, which the host has read, the next one gets
+  onGpu = pictureOf(inputs[5]);
+  EXPECT_TRUE(isOnGpu(onGpu.grey.data.get()));
+  EXPECT_EQ(differing(onGpu.grey, other.grey), 0);
 }
 
 } // namespace
