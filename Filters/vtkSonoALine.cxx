@@ -10,6 +10,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -155,5 +156,9 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     const sono::Vec3d end = place.originMm + probe.geometry.depthMm * place.axis;
     drawLine(shown, drawnFlat(place.originMm, probe), drawnFlat(end, probe), vtkPolyData::GetData(output, 1));
     drawLine(shown, place.originMm, end, vtkPolyData::GetData(output, 2));
+    for (int port : { 1, 2 }) // of the input's fields, which VTK passes on, nothing that draws a line has a use
+    {
+      vtkPolyData::GetData(output, port)->GetFieldData()->Initialize();
+    }
   });
 }

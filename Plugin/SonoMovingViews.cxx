@@ -70,6 +70,29 @@ void drawOnGpu(vtkSMProxy* representation)
   }
 }
 
+/// What the rulers and the grey bar of a flat image do not show.
+bool isOnNoScale(const std::string& property)
+{
+  return property == "PositionMm" || property == "Axial" || property == "Lateral" || property == "Preview" ||
+         property == "GainDb" || property.compare(0, 3, "Tgc") == 0;
+}
+
+/// Has the scale made anew where a setting changes that it shows.
+class DropScale : public vtkCommand
+{
+public:
+  static DropScale* New() { return new DropScale; }
+  void Execute(vtkObject*, unsigned long, void* property) override
+  {
+    if (!isOnNoScale(static_cast<const char*>(property)))
+    {
+      this->Scale->drop();
+    }
+  }
+
+  SonoKeptDrawing* Scale = nullptr;
+};
+
 QList<pqView*> visibleViews()
 {
   QList<pqView*> views = pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>();
@@ -117,8 +140,12 @@ void drawLightly(vtkSMViewProxy* view)
 
 SonoMovingViews::SonoMovingViews(vtkSMProxy* source)
   : Source(source)
-  , Anatomy(std::make_unique<SonoKeptAnatomy>(source))
+  , Anatomy(std::make_unique<SonoKeptDrawing>(source, SonoKept::Anatomy))
+  , Scale(std::make_unique<SonoKeptDrawing>(source, SonoKept::Scale))
 {
+  vtkNew<DropScale> drop;
+  drop->Scale = this->Scale.get();
+  this->ScaleWatch = source->AddObserver(vtkCommand::PropertyModifiedEvent, drop);
   for (pqView* view : visibleViews())
   {
     this->take(view);
@@ -137,6 +164,7 @@ SonoMovingViews::~SonoMovingViews()
   if (this->Anatomy)
   {
     this->Anatomy->drop(); // it may be another one by now
+    this->Scale->drop();
   }
   this->drawInFull();
 }
@@ -199,7 +227,7 @@ bool SonoMovingViews::isMarked(const pqDataRepresentation* shown, Marked which) 
   {
     return true;
   }
-  if (this->Anatomy->holds(shown))
+  if (this->Anatomy->holds(shown) || this->Scale->holds(shown))
   {
     return false;
   }
@@ -265,6 +293,8 @@ void SonoMovingViews::drawInFull()
   }
   this->Shown.clear();
   this->Anatomy.reset();
+  this->Source->RemoveObserver(this->ScaleWatch);
+  this->Scale.reset();
   if (this->Slow.empty())
   {
     return; // nothing was lightened

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "SonoKeptAnatomy.h"
+#include "SonoKeptDrawing.h"
 
 #include <QList>
 #include <QMap>
@@ -23,7 +23,8 @@ class vtkSMProxy;
  *
  * After each picture ParaView gathers what there is to choose from in panels, from all that is shown; that takes longer
  * than to draw it. So the proxies of representations do not learn that these ran, and find out what there is to choose
- * from when all rests. Nor does the anatomy run, which does not change with the pose (SonoKeptAnatomy).
+ * from when all rests. Nor do the anatomy and the flat image's scale run, which do not change with the pose
+ * (SonoKeptDrawing).
  *
  * Where drawing itself is slow, as in software, a slow view shows fewer triangles, as when it is turned, without
  * peeling and without smoothed edges, in the light of one lamp, at every second picture only, and charts wait until
@@ -77,7 +78,9 @@ private:
   void makeLamp();
 
   vtkSmartPointer<vtkSMProxy> Source;
-  std::unique_ptr<SonoKeptAnatomy> Anatomy;                     // until drawInFull
+  std::unique_ptr<SonoKeptDrawing> Anatomy;                     // until drawInFull
+  std::unique_ptr<SonoKeptDrawing> Scale;                       // the same
+  unsigned long ScaleWatch = 0;                                 // over what it shows
   QList<QPointer<pqView>> Views;                                // the slow ones last
   QList<QPointer<pqView>> Slow;                                 // of them
   vtkSmartPointer<vtkSMProxy> Lamp;                             // which lights these

@@ -1,6 +1,6 @@
 #include "SonoRefining.h"
 
-#include "SonoKeptAnatomy.h"
+#include "SonoKeptDrawing.h"
 #include "SonoTell.h"
 #include "SonoUltrasoundHere.h"
 
@@ -53,7 +53,7 @@ void SonoRefining::look()
   if (sonoUltrasoundHere(this->Source)->HasBetter())
   {
     SCOPED_UNDO_EXCLUDE();
-    const SonoKeptAnatomy anatomy(this->Source);
+    const SonoKeptDrawing anatomy(this->Source, SonoKept::Anatomy);
     this->Source->MarkModified(this->Source);
     pqApplicationCore::instance()->render();
   }

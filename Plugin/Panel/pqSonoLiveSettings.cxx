@@ -233,7 +233,7 @@ void pqSonoLiveSettings::rest()
   {
     shown->drawInFull();
   }
-  const SonoKeptAnatomy anatomy(this->Proxy);
+  const SonoKeptDrawing anatomy(this->Proxy, SonoKept::Anatomy);
   this->IsSetting = true;
   this->BeforePicture();
   {

@@ -200,7 +200,7 @@ void pqSonoNeedleFollow::rest()
   {
     shown->drawInFull();
   }
-  const SonoKeptAnatomy anatomy(pictures_.front() ? pictures_.front()->getProxy() : nullptr);
+  const SonoKeptDrawing anatomy(pictures_.front() ? pictures_.front()->getProxy() : nullptr, SonoKept::Anatomy);
   {
     // So that undo finds where it was, not a place on the way.
     SCOPED_UNDO_EXCLUDE();

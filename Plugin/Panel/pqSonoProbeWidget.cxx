@@ -336,7 +336,7 @@ void pqSonoProbeWidget::rest()
   }
   const auto after = this->pose();
   this->Refining.begin();
-  std::unique_ptr<SonoKeptAnatomy> anatomy;
+  std::unique_ptr<SonoKeptDrawing> anatomy;
   const bool isOtherMoment = std::exchange(this->IsOtherMoment, false);
   if (sonoAnyWaits(this->proxy()) || isOtherMoment)
   {
@@ -349,7 +349,7 @@ void pqSonoProbeWidget::rest()
       this->push(after, false);
     }
     shown->drawRested(); // what follows makes nothing of the picture anew
-    anatomy = std::make_unique<SonoKeptAnatomy>(this->proxy());
+    anatomy = std::make_unique<SonoKeptDrawing>(this->proxy(), SonoKept::Anatomy);
   }
   {
     // So that undo finds the pose before the movement, not one on the way.

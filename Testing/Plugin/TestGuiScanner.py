@@ -26,6 +26,29 @@ with open(sys.argv[2], "w", encoding="utf-8") as file:
                "mean": sum(grey.GetValue(i) for i in range(grey.GetNumberOfValues())) / grey.GetNumberOfValues()}, file)
 """
 
+# Beside the scene: how often the flat image's scale ran, and what of it is drawn.
+SCALE = """
+exec(open(SCENE, encoding="utf-8").read())
+shown = Show(FlatImageScale(Input=OutputPort(ultrasound, FLAT_IMAGE)), view)
+drawn = shown.SMProxy.GetClientSideObject().GetActiveRepresentation()
+runs = []
+drawn.AddObserver("UpdateDataEvent", lambda *_: runs.append(1), 1e6)  # before anybody who might keep it from the others
+SetActiveSource(thorax)
+
+
+def note_scale(*_):
+    scale = drawn.GetActor().GetMapper().GetInputDataObject(0, 0)
+    blocks = [scale.GetBlock(i) for i in range(scale.GetNumberOfBlocks())] if scale.IsA("vtkMultiBlockDataSet") else [scale]
+    line = {"GainDb": value("GainDb"), "DynamicRangeDb": value("DynamicRangeDb"), "ran": len(runs),
+            "points": [block.GetNumberOfPoints() for block in blocks]}
+    with open("scale.jsonl", "a", encoding="utf-8") as file:
+        file.write(json.dumps(line) + chr(10))
+
+
+view.SMProxy.AddObserver("EndEvent", note_scale)
+Render()
+"""
+
 
 class TestGuiScanner(GuiCase):
     def play_panel(self, name, folder, scene="scanner.py", act=lambda person: None):
@@ -71,6 +94,22 @@ class TestGuiScanner(GuiCase):
         self.assertGreater(self.deep(drawn[-1]) - self.near(drawn[-1]), self.deep(before) - self.near(before) + 20)
         self.assertEqual(reloaded["Tgc8Db"], 32)
         self.assertGreater(reloaded["mean"], 0)
+
+    def test_the_scale_runs_for_what_it_shows(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder, "scene.py")
+            scene.write_text(f"SCENE = {str(PLAYBACKS / 'scanner.py')!r}\n{SCALE}")
+            self.play_panel("scanner_display.xml", folder, scene)
+            drawn = [json.loads(line) for line in pathlib.Path(folder, "scale.jsonl").read_text().splitlines()]
+        gains = [round(line["GainDb"]) for line in drawn]
+        first = gains.index(8)
+        stepped = drawn[first:gains.index(12, first) + 1]
+        self.assertGreater(drawn[first - 1]["ran"], 0)
+        self.assertEqual({line["ran"] for line in stepped}, {drawn[first - 1]["ran"]})
+        ranges = [round(line["DynamicRangeDb"]) for line in drawn]
+        narrow = ranges.index(36)
+        self.assertGreater(drawn[narrow]["ran"], drawn[narrow - 1]["ran"])
+        self.assertNotEqual(drawn[narrow]["points"], drawn[narrow - 1]["points"])
 
     @staticmethod
     def near(line):

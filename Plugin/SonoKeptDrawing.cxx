@@ -1,4 +1,4 @@
-#include "SonoKeptAnatomy.h"
+#include "SonoKeptDrawing.h"
 
 #include "SonoTell.h"
 #include "SonoUltrasoundHere.h"
@@ -10,21 +10,30 @@
 #include "pqServerManagerModel.h"
 #include "pqView.h"
 #include "vtkPVView.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSonoUltrasound.h"
 
 #include <algorithm>
+#include <string>
 
 namespace {
 
-bool isAnatomy(const pqDataRepresentation* shown, vtkSMProxy* source)
+bool isThat(const pqDataRepresentation* shown, vtkSMProxy* source, SonoKept what)
 {
   const pqOutputPort* port = shown->isVisible() ? shown->getOutputPortFromInput() : nullptr;
-  return port && port->getSource()->getProxy() == source && port->getPortNumber() == vtkSonoUltrasound::ANATOMY;
+  vtkSMProxy* drawn = port ? port->getSource()->getProxy() : nullptr;
+  if (what == SonoKept::Anatomy)
+  {
+    return drawn == source && port && port->getPortNumber() == vtkSonoUltrasound::ANATOMY;
+  }
+  const std::string name = drawn ? drawn->GetXMLName() : "";
+  const bool isOnFlatImage = name == "SonoFlatScale" || (name == "SonoALine" && port->getPortNumber() == 1);
+  return isOnFlatImage && vtkSMPropertyHelper(drawn, "Input").GetAsProxy() == source;
 }
 
 } // namespace
 
-SonoKeptAnatomy::SonoKeptAnatomy(vtkSMProxy* source)
+SonoKeptDrawing::SonoKeptDrawing(vtkSMProxy* source, SonoKept what)
 {
   if (!sonoIsUltrasound(source))
   {
@@ -34,7 +43,7 @@ SonoKeptAnatomy::SonoKeptAnatomy(vtkSMProxy* source)
   {
     const pqView* view = shown->getView();
     auto* drawn = view ? vtkPVView::SafeDownCast(view->getProxy()->GetClientSideObject()) : nullptr;
-    if (drawn && isAnatomy(shown, source))
+    if (drawn && isThat(shown, source, what))
     {
       sonoTell(shown->getProxy(), "SetForcedCacheKey", drawn->GetCacheKey());
       sonoTell(shown->getProxy(), "SetForceUseCache", 1);
@@ -43,7 +52,7 @@ SonoKeptAnatomy::SonoKeptAnatomy(vtkSMProxy* source)
   }
 }
 
-SonoKeptAnatomy::~SonoKeptAnatomy()
+SonoKeptDrawing::~SonoKeptDrawing()
 {
   for (const auto& shown : this->Kept)
   {
@@ -54,12 +63,12 @@ SonoKeptAnatomy::~SonoKeptAnatomy()
   }
 }
 
-bool SonoKeptAnatomy::holds(const pqDataRepresentation* shown) const
+bool SonoKeptDrawing::holds(const pqDataRepresentation* shown) const
 {
   return std::find(this->Kept.begin(), this->Kept.end(), shown) != this->Kept.end();
 }
 
-void SonoKeptAnatomy::drop()
+void SonoKeptDrawing::drop()
 {
   for (const auto& shown : this->Kept)
   {
