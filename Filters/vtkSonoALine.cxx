@@ -50,6 +50,7 @@ void drawLine(int line, const sono::Vec3d& from, const sono::Vec3d& to, vtkPolyD
   cells->InsertNextCell({ points->InsertNextPoint(&from.x), points->InsertNextPoint(&to.x) });
   polyData->SetPoints(points);
   polyData->SetLines(cells);
+  polyData->GetFieldData()->Initialize(); // for the input's, which VTK passes on, nothing that draws a line has a use
   sono::writeNumber("Line", line, polyData->GetFieldData());
 }
 
@@ -156,9 +157,5 @@ int vtkSonoALine::RequestData(vtkInformation*, vtkInformationVector** input, vtk
     const sono::Vec3d end = place.originMm + probe.geometry.depthMm * place.axis;
     drawLine(shown, drawnFlat(place.originMm, probe), drawnFlat(end, probe), vtkPolyData::GetData(output, 1));
     drawLine(shown, place.originMm, end, vtkPolyData::GetData(output, 2));
-    for (int port : { 1, 2 }) // of the input's fields, which VTK passes on, nothing that draws a line has a use
-    {
-      vtkPolyData::GetData(output, port)->GetFieldData()->Initialize();
-    }
   });
 }

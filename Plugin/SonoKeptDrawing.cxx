@@ -26,9 +26,8 @@ bool isThat(const pqDataRepresentation* shown, vtkSMProxy* source, SonoKept what
   {
     return drawn == source && port && port->getPortNumber() == vtkSonoUltrasound::ANATOMY;
   }
-  const std::string name = drawn ? drawn->GetXMLName() : "";
-  const bool isOnFlatImage = name == "SonoFlatScale" || (name == "SonoALine" && port->getPortNumber() == 1);
-  return isOnFlatImage && vtkSMPropertyHelper(drawn, "Input").GetAsProxy() == source;
+  return drawn && std::string("SonoFlatScale") == drawn->GetXMLName() &&
+         vtkSMPropertyHelper(drawn, "Input").GetAsProxy() == source;
 }
 
 } // namespace

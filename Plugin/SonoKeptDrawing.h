@@ -9,7 +9,7 @@ class vtkSMProxy;
 enum class SonoKept
 {
   Anatomy, ///< as Simulate Ultrasound passes it on
-  Scale    ///< rulers, grey bar and the line that is looked at, on its flat image
+  Scale    ///< rulers and grey bar on its flat image
 };
 
 /**

@@ -59,9 +59,15 @@ std::set<vtkObject*> partsOf(vtkSMProxy* representation)
 }
 
 /// Pictures that a GPU makes and draws stay there.
-void drawOnGpu(vtkSMProxy* representation)
+void drawOnGpu(const pqDataRepresentation* shown)
 {
-  for (vtkObject* part : partsOf(representation))
+  const pqOutputPort* output = shown->getOutputPortFromInput();
+  if (!output || sonoImageKind(output->getSource()->getProxy(), static_cast<unsigned int>(output->getPortNumber())) ==
+                   SonoImageKind::None)
+  {
+    return;
+  }
+  for (vtkObject* part : partsOf(shown->getProxy()))
   {
     if (auto* slice = vtkImageSliceRepresentation::SafeDownCast(part))
     {
@@ -84,7 +90,8 @@ public:
   static DropScale* New() { return new DropScale; }
   void Execute(vtkObject*, unsigned long, void* property) override
   {
-    if (!isOnNoScale(static_cast<const char*>(property)))
+    const auto* name = static_cast<const char*>(property); // null: of a stage, and of no property of the filter's own
+    if (!name || !isOnNoScale(name))
     {
       this->Scale->drop();
     }
@@ -190,7 +197,7 @@ void SonoMovingViews::take(pqView* view)
     if (shown && shown->isVisible())
     {
       this->mute(shown->getProxy());
-      drawOnGpu(shown->getProxy());
+      drawOnGpu(shown);
       this->Shown[view].append(shown);
     }
   }

@@ -11,7 +11,7 @@ packages=(
   # the simulator; libopenvdb-dev needs libboost-iostreams-dev without saying so
   libopenvdb-dev libboost-iostreams-dev libnanovdb-dev libembree-dev libtbb-dev libglm-dev libnifti-dev libteem-dev libdlpack-dev
   nlohmann-json3-dev libpugixml-dev zlib1g-dev libisal-dev libdeflate-dev libdcmtk-dev libhdf5-dev
-  libopenigtlink-dev
+  libopenigtlink-dev libgl-dev
 )
 if [[ ${1:-} != simulation ]]; then
   packages+=(

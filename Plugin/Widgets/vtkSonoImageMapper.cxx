@@ -83,7 +83,7 @@ vtkSonoImageMapper::vtkSonoImageMapper()
 
 vtkSonoImageMapper::~vtkSonoImageMapper()
 {
-  this->Gpu->Close(); // before the texels go
+  this->Close(); // before the texels go
 }
 
 void vtkSonoImageMapper::PrintSelf(ostream& os, vtkIndent indent)
@@ -100,7 +100,10 @@ void vtkSonoImageMapper::UseIn(vtkImageSliceRepresentation* representation)
     return;
   }
   vtkSonoImageMapper* mine = vtkSonoImageMapper::New();
-  mine->ShallowCopy(mapper);
+  mine->ShallowCopy(mapper); // which leaves out where it lies
+  mine->SetUseXYPlane(mapper->GetUseXYPlane());
+  mine->SetSlice(mapper->GetSlice());
+  mine->SetSliceMode(mapper->GetSliceMode());
   if (mapper->GetNumberOfInputConnections(0) > 0)
   {
     mine->SetInputConnection(mapper->GetInputConnection(0, 0));
@@ -133,7 +136,7 @@ bool vtkSonoImageMapper::Open(vtkOpenGLRenderWindow* window, int width, int heig
   {
     return this->Gpu->IsOpen();
   }
-  this->Gpu->Close();
+  this->Close();
   this->Window = window;
   this->Width = width;
   this->Height = height;
@@ -220,9 +223,20 @@ void vtkSonoImageMapper::Render(vtkRenderer* renderer, vtkActor* actor)
   }
 }
 
+void vtkSonoImageMapper::Close()
+{
+  if (this->Gpu->IsOpen() && this->Window)
+  {
+    this->Window->PushContext();
+    this->Gpu->Close();
+    this->Window->PopContext();
+  }
+  this->Gpu->Close();
+}
+
 void vtkSonoImageMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->Gpu->Close();
+  this->Close();
   this->Window = nullptr;
   this->Shown->ReleaseGraphicsResources(window);
   this->Quad->ReleaseGraphicsResources(window);

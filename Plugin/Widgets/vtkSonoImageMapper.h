@@ -55,6 +55,7 @@ private:
 
   vtkUnsignedCharArray* Greys(vtkImageData* image);
   bool Open(vtkOpenGLRenderWindow* window, int width, int height);
+  void Close();
   bool Fill(vtkImageData* image, vtkUnsignedCharArray* greys);
   void Place(vtkImageData* image);
   bool RenderOnGpu(vtkRenderer* renderer, vtkActor* actor);

@@ -13,7 +13,7 @@ simple.LoadPlugin(os.environ["SONOVDB_PLUGIN"], remote=False, ns=vars(simple))
 
 XML_FOLDER = pathlib.Path(os.environ["SONOVDB_DESCRIPTIONS"])
 # What others derive from, what works for a panel, what a loop in Python gets.
-NO_PROXIES = {"vtkSonoFrameWriter", "vtkSonoPhasesAhead", "vtkSonoGpuImage"}
+NO_PROXIES = {"vtkSonoFrameWriter", "vtkSonoPhasesAhead", "vtkSonoGpuImage", "vtkSonoGpuTexture"}
 CLASSES = {name: kind for name, kind in vars(vtkSonoFilters).items() if name.startswith("vtkSono")}
 for name in NO_PROXIES:
     del CLASSES[name]
