@@ -64,7 +64,7 @@ SonoKeptDrawing::~SonoKeptDrawing()
 
 bool SonoKeptDrawing::holds(const pqDataRepresentation* shown) const
 {
-  return std::find(this->Kept.begin(), this->Kept.end(), shown) != this->Kept.end();
+  return this->IsHolding && std::find(this->Kept.begin(), this->Kept.end(), shown) != this->Kept.end();
 }
 
 void SonoKeptDrawing::drop()
@@ -77,5 +77,5 @@ void SonoKeptDrawing::drop()
       sonoTell(shown->getProxy(), "MarkModified");
     }
   }
-  this->Kept.clear();
+  this->IsHolding = false;
 }

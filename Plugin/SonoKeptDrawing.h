@@ -28,11 +28,12 @@ public:
   ~SonoKeptDrawing();
 
   bool holds(const pqDataRepresentation* shown) const;
-  /// Makes it anew with the next picture.
+  /// Makes it anew with the next picture; holds nothing from then on, and may be asked again.
   void drop();
 
 private:
   Q_DISABLE_COPY(SonoKeptDrawing)
 
   QList<QPointer<pqDataRepresentation>> Kept;
+  bool IsHolding = true;
 };

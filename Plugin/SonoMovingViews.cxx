@@ -117,14 +117,14 @@ bool isSlow(pqView* view)
 }
 
 /// Whether an output is another one for other greys.
-bool showsGrey(vtkSMProxy* source, unsigned int port, bool withScale)
+bool showsGrey(vtkSMProxy* source, unsigned int port)
 {
   const std::string name = source->GetXMLName();
   if (sonoIsUltrasound(source))
   {
     return sonoImageKind(source, port) != SonoImageKind::None || port == vtkSonoUltrasound::BMODE_LINES;
   }
-  return name == "SonoFlatScale" ? withScale : name != "SonoALine";
+  return name != "SonoFlatScale" && name != "SonoALine"; // DropScale has the scale made anew
 }
 
 void drawOnInteraction(pqView* view, bool wanted)
@@ -240,8 +240,7 @@ bool SonoMovingViews::isMarked(const pqDataRepresentation* shown, Marked which) 
   }
   const pqOutputPort* output = shown->getOutputPortFromInput();
   return which == Marked::ButAnatomy || !output ||
-         showsGrey(output->getSource()->getProxy(), static_cast<unsigned int>(output->getPortNumber()),
-                   which == Marked::GreyAndScale);
+         showsGrey(output->getSource()->getProxy(), static_cast<unsigned int>(output->getPortNumber()));
 }
 
 void SonoMovingViews::markModified(pqView* view, Marked which)
@@ -343,9 +342,9 @@ bool SonoMovingViews::drawQuick(Marked which)
   return isAny;
 }
 
-void SonoMovingViews::drawGrey(bool withScale)
+void SonoMovingViews::drawGrey()
 {
-  if (!this->drawQuick(withScale ? Marked::GreyAndScale : Marked::Grey))
+  if (!this->drawQuick(Marked::Grey))
   {
     return this->draw();
   }

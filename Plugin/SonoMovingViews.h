@@ -50,8 +50,8 @@ public:
   /// Runs the pipeline and shows a picture on the way.
   void draw();
   /// The same of another grey: slow views wait until all rests, unless there are no others, and what does not show
-  /// greys stays as it is. `withScale`: the bar beside a flat image has changed, too.
-  void drawGrey(bool withScale);
+  /// greys stays as it is.
+  void drawGrey();
   /// Has the picture of the probe that rests on the screen, in slow views as on the way, so that it need not wait until
   /// these are drawn in full; then drawInFull.
   void drawRested();
@@ -68,7 +68,6 @@ private:
   {
     All,
     ButAnatomy,
-    GreyAndScale,
     Grey
   };
   bool isMarked(const pqDataRepresentation* shown, Marked which) const;

@@ -22,7 +22,6 @@
 
 #include <QGuiApplication>
 
-#include <algorithm>
 #include <utility>
 
 namespace {
@@ -199,10 +198,7 @@ void pqSonoLiveSettings::showStep()
     SCOPED_UNDO_EXCLUDE();
     this->set(next);
   }
-  // Gain and its slope over the depth are on no scale.
-  this->Shown->drawGrey(std::any_of(next.begin(), next.end(), [](const auto& setting) {
-    return setting.first != "GainDb" && setting.first.compare(0, 3, "Tgc") != 0;
-  }));
+  this->Shown->drawGrey();
   this->SinceStep.start();
   this->Rest.start(); // however long that took
 }

@@ -38,9 +38,8 @@ SetActiveSource(thorax)
 
 def note_scale(*_):
     scale = drawn.GetActor().GetMapper().GetInputDataObject(0, 0)
-    blocks = [scale.GetBlock(i) for i in range(scale.GetNumberOfBlocks())] if scale.IsA("vtkMultiBlockDataSet") else [scale]
     line = {"GainDb": value("GainDb"), "DynamicRangeDb": value("DynamicRangeDb"), "ran": len(runs),
-            "points": [block.GetNumberOfPoints() for block in blocks]}
+            "points": scale.GetNumberOfPoints()}
     with open("scale.jsonl", "a", encoding="utf-8") as file:
         file.write(json.dumps(line) + chr(10))
 
