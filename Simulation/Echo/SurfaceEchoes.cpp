@@ -28,8 +28,6 @@ constexpr double widestPerSigma = 0.75;
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.
 constexpr double diffuseStepPerLambda = 1.2;
-/// Faces and pieces lie all over the memory, and are asked for while those before are looked at.
-constexpr std::size_t facesAhead = 8;
 
 double blobMm(const EchoSettings& s, const BeamExtent& beam)
 {
@@ -79,6 +77,7 @@ struct SurfaceEchoes::Room
   std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
   std::vector<std::size_t> faceOf;          ///< the same: of the brick's
   std::vector<HeardList> heard;             ///< by line
+  std::vector<float> anyDiffuse, anyCoherent; ///< of the pieces: not 0 where any line hears that echo
   PointList diffuse, coherent;
   std::vector<SurfacePoint> targets;
 
@@ -98,10 +97,25 @@ struct SurfaceEchoes::Room
       }
     }
   }
-  /// Whether any line hears a piece, by one of its two echoes.
-  bool isHeard(const std::vector<std::size_t>& seeing, std::vector<float> HeardList::*echo, std::size_t piece) const
+  /// Of all lines that see the brick; they have heard it.
+  void findHeard(const std::vector<std::size_t>& seeing)
   {
-    return std::any_of(seeing.begin(), seeing.end(), [&](std::size_t i) { return (heard[i].*echo)[piece] > 0.0f; });
+    const auto add = [](const std::vector<float>& ofLine, std::vector<float>& any) {
+      std::transform(any.begin(), any.end(), ofLine.begin(), any.begin(), [](float a, float b) { return a + b; });
+    };
+    anyDiffuse.assign(std::size_t(pieces.count), 0.0f);
+    anyCoherent.assign(std::size_t(pieces.count), 0.0f);
+    for (const std::size_t i : seeing)
+    {
+      if (heard[i].anyDiffuse)
+      {
+        add(heard[i].diffuse, anyDiffuse);
+      }
+      if (heard[i].anyCoherent)
+      {
+        add(heard[i].coherent, anyCoherent);
+      }
+    }
   }
   void addTo(const std::vector<std::size_t>& seeing, const Group& group)
   {
@@ -179,15 +193,12 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
                                Room& room) const
 {
   const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
-  const std::vector<std::uint32_t>* coarse = isCoarse_ ? &pieces_.coarseFaces(brick) : nullptr;
-  const std::size_t count = coarse ? coarse->size() : faces.size();
-  const auto numberOf = [&](std::size_t n) { return coarse ? std::size_t((*coarse)[n]) : n; };
+  const std::size_t count = isCoarse_ ? pieces_.coarseCount(brick) : faces.size();
   const float longestMm = longestStepMm();
   room.faces.clear();
   for (std::size_t n = 0; n < count; ++n)
   {
-    const SurfacePieces::Face& face = faces[numberOf(n)];
-    __builtin_prefetch(&faces[numberOf(std::min(n + facesAhead, count - 1))]);
+    const SurfacePieces::Face& face = faces[n];
     const int row = rows_->row(face.below, face.above);
     room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
                     rows_->at(row ^ 1));
@@ -211,11 +222,11 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
     {
       continue;
     }
-    const std::size_t f = numberOf(n);
     const SurfacePiece* piece =
-      group.table.counts(rows_->row(faces[f].below, faces[f].above)) ? pieces_.piece(brick, f) : nullptr;
+      group.table.counts(rows_->row(faces[n].below, faces[n].above)) ? pieces_.piece(brick, n) : nullptr;
     if (piece)
     {
+      // Pieces lie all over the memory, and are asked for while the next are looked up.
       __builtin_prefetch(piece);
       __builtin_prefetch(reinterpret_cast<const char*>(piece + 1) - 1);
       for (const std::size_t i : seeing)
@@ -223,7 +234,7 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
         room.mayHear[i][room.pieceOf.size()] = room.mayHear[i][n]; // none overtakes its face
       }
       room.pieceOf.push_back(piece);
-      room.faceOf.push_back(f);
+      room.faceOf.push_back(n);
     }
   }
   for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
@@ -239,19 +250,20 @@ void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t
 
 void SurfaceEchoes::expand(const std::vector<std::size_t>& seeing, Room& room) const
 {
+  room.findHeard(seeing);
   room.diffuse.clear();
   room.coherent.clear();
   for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
   {
     const SurfacePiece& piece = *room.pieceOf[p];
     const int row = room.pieces.row[p];
-    if (room.isHeard(seeing, &HeardList::diffuse, p))
+    if (room.anyDiffuse[p] > 0.0f)
     {
       const int first = room.diffuse.count;
       addNet(piece, nets_.diffuseNet(piece), row, int(p), room.diffuse);
       setPhases(seed_, piece.voxel, piece.axis, first, room.diffuse);
     }
-    if (room.isHeard(seeing, &HeardList::coherent, p))
+    if (room.anyCoherent[p] > 0.0f)
     {
       addNet(piece, nets_.coherentNet(piece), row, int(p), room.coherent);
     }

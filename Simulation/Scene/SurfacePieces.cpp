@@ -78,7 +78,9 @@ const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
     // Of two threads that make the same brick one is too late.
     auto mine = std::make_unique<Brick>();
     mine->faces = findFaces(brick);
-    mine->coarse = coarseOf(mine->faces);
+    const auto coarseEnd = std::stable_partition(mine->faces.begin(), mine->faces.end(),
+                                                 [this](const Face& face) { return isCoarse(face); });
+    mine->coarseCount = std::size_t(coarseEnd - mine->faces.begin());
     mine->pieces = std::make_unique<std::atomic<const SurfacePiece*>[]>(mine->faces.size());
     if (place.compare_exchange_strong(there, mine.get(), std::memory_order_acq_rel))
     {
@@ -95,11 +97,10 @@ const std::vector<SurfacePieces::Face>& SurfacePieces::faces(const Vec3i& brick)
   return there ? there->faces : none;
 }
 
-const std::vector<std::uint32_t>& SurfacePieces::coarseFaces(const Vec3i& brick) const
+std::size_t SurfacePieces::coarseCount(const Vec3i& brick) const
 {
-  static const std::vector<std::uint32_t> none;
   const Brick* there = at(brick);
-  return there ? there->coarse : none;
+  return there ? there->coarseCount : 0;
 }
 
 const SurfacePiece* SurfacePieces::piece(const Vec3i& brick, std::size_t face) const
@@ -132,7 +133,8 @@ void SurfacePieces::fitCoarse(const VoxelBox& box, const Progress& progress) con
   for (int b = 0; b < all; ++b)
   {
     const Vec3i brick = first + Vec3i(b % count.x, b / count.x % count.y, b / count.x / count.y);
-    for (const std::uint32_t face : coarseFaces(brick))
+    const std::size_t faces = coarseCount(brick);
+    for (std::size_t face = 0; face < faces; ++face)
     {
       if (progress && !progress(double(b) / all))
       {
@@ -184,21 +186,10 @@ std::vector<SurfacePieces::Face> SurfacePieces::findFaces(const Vec3i& brick) co
   return faces;
 }
 
-std::vector<std::uint32_t> SurfacePieces::coarseOf(const std::vector<Face>& faces) const
+bool SurfacePieces::isCoarse(const Face& face) const
 {
-  std::vector<std::uint32_t> coarse;
-  for (std::size_t f = 0; f < faces.size(); ++f)
-  {
-    const auto isOne = [&](int axis) {
-      return faces[f].axis == axis || faces[f].voxel[axis] % coarseApart_[axis] == 0;
-    };
-    if (isOne(0) && isOne(1) && isOne(2))
-    {
-      coarse.push_back(std::uint32_t(f));
-    }
-  }
-  coarse.shrink_to_fit();
-  return coarse;
+  const auto isOne = [&](int axis) { return face.axis == axis || face.voxel[axis] % coarseApart_[axis] == 0; };
+  return isOne(0) && isOne(1) && isOne(2);
 }
 
 } // namespace sono

@@ -7,6 +7,7 @@
 #include "Scene/VoxelBox.h"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -53,13 +54,13 @@ public:
   Vec3i firstBrick(int block) const;
   /// None outside of the volume. Stays where it is while this lives.
   const std::vector<Face>& faces(const Vec3i& brick) const;
-  /// Numbers of those of a brick's faces that stand for all where a probe is being moved (Policy.h): every so many
+  /// So many of a brick's faces, which come first, stand for all where a probe is being moved (Policy.h): every so many
   /// columns along each of two axes, coarseApart() voxels from one to the next.
-  const std::vector<std::uint32_t>& coarseFaces(const Vec3i& brick) const;
+  std::size_t coarseCount(const Vec3i& brick) const;
   const Vec3i& coarseApart() const { return coarseApart_; }
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
-  /// Makes those of coarseFaces() of the bricks between two voxels, for a probe that will be moved. Ends early, without
+  /// Makes those of the coarse faces of the bricks between two voxels, for a probe that will be moved. Ends early, without
   /// an exception, where `progress` says so.
   void fitCoarse(const VoxelBox& box, const Progress& progress) const;
 
@@ -67,7 +68,7 @@ private:
   struct Brick
   {
     std::vector<Face> faces;
-    std::vector<std::uint32_t> coarse;
+    std::size_t coarseCount = 0;
     std::unique_ptr<std::atomic<const SurfacePiece*>[]> pieces; ///< parallel to the faces; null: not yet made
 
     ~Brick();
@@ -75,7 +76,7 @@ private:
 
   const Brick* at(const Vec3i& brick) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
-  std::vector<std::uint32_t> coarseOf(const std::vector<Face>& faces) const;
+  bool isCoarse(const Face& face) const;
 
   std::uint64_t id_;
   const std::uint8_t* tissues_;

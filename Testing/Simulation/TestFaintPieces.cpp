@@ -162,7 +162,7 @@ TEST(SurfacePieces, AreFittedAheadAsWhenTheyAreAskedFor)
   {
     const Vec3i brick(b % ahead.bricks().x, b / ahead.bricks().x % ahead.bricks().y,
                       b / ahead.bricks().x / ahead.bricks().y);
-    for (const std::uint32_t face : ahead.coarseFaces(brick))
+    for (std::size_t face = 0; face < ahead.coarseCount(brick); ++face)
     {
       --told;
       const SurfacePiece* one = ahead.piece(brick, face);
