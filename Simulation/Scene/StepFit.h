@@ -341,9 +341,13 @@ SONO_LANES inline void pull(const Shape& shape, const Floats& x, float y, const 
   const float k1 = shape.q.c1 + shape.q.c5 * y;
   const float k2 = shape.q.c3;
   const float bulge = shape.bulge;
-  const Floats least = Floats{} + 0.1f;
-  const Floats room = 0.5f - bulge * h;
-  const Floats perHalf = 1.0f / (room > least ? room : least);
+  Floats perHalf = Floats{} + 2.0f;
+  if (bulge != 0.0f)
+  {
+    const Floats least = Floats{} + 0.1f;
+    const Floats room = 0.5f - bulge * h;
+    perHalf = 1.0f / (room > least ? room : least);
+  }
   const Floats e = (h - (k0 + x * (k1 + x * k2) + bulge * h * h)) * perHalf;
   const Floats far = e < 0.0f ? -e : e;
   const Floats most = Floats{} + wall;

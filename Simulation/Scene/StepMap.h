@@ -68,34 +68,36 @@ public:
     Vec3i next = voxel;
     ++next[axis];
     const std::uint8_t above = at(next);
-    const std::ptrdiff_t base = voxel.x + pitch_[1] * voxel.y + pitch_[2] * voxel.z;
+    const std::ptrdiff_t pitchU = pitch_[u];
+    const std::ptrdiff_t pitchV = pitch_[v];
+    const std::ptrdiff_t pitchAlong = pitch_[axis];
+    const std::uint8_t* const middle = tissues_ + voxel.x + pitch_[1] * voxel.y + pitch_[2] * voxel.z;
+    const int lowest = -voxel[axis];
+    const int highest = size_[axis] - 2 - voxel[axis];
     for (int r = first; r <= last; ++r)
     {
+      const bool isInside = voxel[u] >= r && voxel[u] + r < size_[u] && voxel[v] >= r && voxel[v] + r < size_[v];
       // The ring's places, side by side.
-      forEach(8 * r, [&](int place) {
-        const int side = place / (2 * r);
-        const int n = place - side * 2 * r - r;
+      forCells(4, 2 * r, [&](int side, int place) {
+        const int n = place - r;
         const int i = side == 0 ? n : (side == 1 ? r : (side == 2 ? -n : -r));
         const int j = side == 0 ? -r : (side == 1 ? n : (side == 2 ? r : -n));
-        step(i, j) = unknown;
-        const int from = step(i == r ? r - 1 : (i == -r ? 1 - r : i), j == r ? r - 1 : (j == -r ? 1 - r : j));
-        if (from == unknown || unsigned(voxel[u] + i) >= unsigned(size_[u]) ||
-            unsigned(voxel[v] + j) >= unsigned(size_[v]))
+        std::int8_t& own = step(i, j);
+        own = unknown;
+        const int from = step(std::max(1 - r, std::min(i, r - 1)), std::max(1 - r, std::min(j, r - 1)));
+        if (from == unknown || (!isInside && (unsigned(voxel[u] + i) >= unsigned(size_[u]) ||
+                                              unsigned(voxel[v] + j) >= unsigned(size_[v]))))
         {
           return;
         }
+        const std::uint8_t* const column = middle + i * pitchU + j * pitchV;
         for (int n = 0; n <= 2 * mostStep; ++n)
         {
           const int h = from + ((n & 1) ? (n + 1) / 2 : -n / 2);
-          const int at = voxel[axis] + h;
-          if (at < 0 || at + 1 >= size_[axis])
+          const std::uint8_t* t = column + h * pitchAlong;
+          if (h >= lowest && h <= highest && t[0] == below && t[pitchAlong] == above)
           {
-            continue;
-          }
-          const std::uint8_t* t = tissues_ + base + i * pitch_[u] + j * pitch_[v] + h * pitch_[axis];
-          if (t[0] == below && t[pitch_[axis]] == above)
-          {
-            step(i, j) = std::int8_t(h);
+            own = std::int8_t(h);
             return;
           }
         }
