@@ -360,16 +360,32 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
   }
   beams = seeingPieces(std::move(beams));
   group.table = pieceTable();
-  forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+  // A brick lies anywhere in memory: it is asked for while the one before is listened to.
+  Vec3i awaited(0);
+  std::vector<std::size_t> seeingAwaited;
+  const auto addAwaited = [&] {
     brickDone();
-    findPieces(brick, seeing, group, room);
+    findPieces(awaited, seeingAwaited, group, room);
     if (room.pieces.count > 0)
     {
-      room.hear(seeing, group, rows_->diffuseMost().data());
-      expand(seeing, room);
-      room.addTo(seeing, group);
+      room.hear(seeingAwaited, group, rows_->diffuseMost().data());
+      expand(seeingAwaited, room);
+      room.addTo(seeingAwaited, group);
     }
+  };
+  forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
+    pieces_.prefetch(brick);
+    if (!seeingAwaited.empty())
+    {
+      addAwaited();
+    }
+    awaited = brick;
+    seeingAwaited = seeing;
   });
+  if (!seeingAwaited.empty())
+  {
+    addAwaited();
+  }
 }
 
 } // namespace sono

@@ -64,15 +64,25 @@ SurfacePieces::Brick::~Brick()
   }
 }
 
-const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
+/// Null outside of the volume.
+std::atomic<const SurfacePieces::Brick*>* SurfacePieces::placeOf(const Vec3i& brick) const
 {
   if (glm::any(glm::lessThan(brick, Vec3i(0))) || glm::any(glm::greaterThanEqual(brick, bricks_)))
   {
     return nullptr;
   }
-  auto& place = made_[std::size_t(brick.x) +
-                      std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z))];
-  const Brick* there = place.load(std::memory_order_acquire);
+  return &made_[std::size_t(brick.x) +
+                std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z))];
+}
+
+const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
+{
+  auto* const place = placeOf(brick);
+  if (!place)
+  {
+    return nullptr;
+  }
+  const Brick* there = place->load(std::memory_order_acquire);
   if (!there)
   {
     // Of two threads that make the same brick one is too late.
@@ -82,12 +92,27 @@ const SurfacePieces::Brick* SurfacePieces::at(const Vec3i& brick) const
                                                  [this](const Face& face) { return isCoarse(face); });
     mine->coarseCount = std::size_t(coarseEnd - mine->faces.begin());
     mine->pieces = std::make_unique<std::atomic<const SurfacePiece*>[]>(mine->faces.size());
-    if (place.compare_exchange_strong(there, mine.get(), std::memory_order_acq_rel))
+    if (place->compare_exchange_strong(there, mine.get(), std::memory_order_acq_rel))
     {
       there = mine.release();
     }
   }
   return there;
+}
+
+void SurfacePieces::prefetch(const Vec3i& brick) const
+{
+  constexpr int linesAhead = 4; // what follows is read in turn, which a processor foresees
+  const auto* const place = placeOf(brick);
+  const Brick* const there = place ? place->load(std::memory_order_acquire) : nullptr;
+  if (there)
+  {
+    const char* const faces = reinterpret_cast<const char*>(there->faces.data());
+    for (int line = 0; line < linesAhead; ++line)
+    {
+      __builtin_prefetch(faces + 64 * line);
+    }
+  }
 }
 
 const std::vector<SurfacePieces::Face>& SurfacePieces::faces(const Vec3i& brick) const

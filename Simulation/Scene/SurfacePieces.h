@@ -54,6 +54,8 @@ public:
   Vec3i firstBrick(int block) const;
   /// None outside of the volume. Stays where it is while this lives.
   const std::vector<Face>& faces(const Vec3i& brick) const;
+  /// Asks the memory for a brick's first faces, if they are known.
+  void prefetch(const Vec3i& brick) const;
   /// So many of a brick's faces, which come first, stand for all where a probe is being moved (Policy.h): every so many
   /// columns along each of two axes, coarseApart() voxels from one to the next.
   std::size_t coarseCount(const Vec3i& brick) const;
@@ -74,6 +76,7 @@ private:
     ~Brick();
   };
 
+  std::atomic<const Brick*>* placeOf(const Vec3i& brick) const;
   const Brick* at(const Vec3i& brick) const;
   std::vector<Face> findFaces(const Vec3i& brick) const;
   bool isCoarse(const Face& face) const;
