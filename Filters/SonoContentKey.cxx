@@ -171,12 +171,19 @@ void giveNothing(vtkInformation* outInfo)
 bool isOutputWanted(vtkAlgorithm* producer, int port)
 {
   vtkInformation* outInfo = producer->GetOutputInformation(port);
-  const int count = vtkExecutive::CONSUMERS()->Length(outInfo);
+  // Whoever is connected shares it with the producer.
+  const int connected = outInfo->GetReferenceCount() - 1;
+  if (isPostFilter(producer))
+  {
+    return connected > 0;
+  }
+  // VTK 9.2 never takes one that was deleted off the list: then nobody of it may be asked.
+  const int listed = vtkExecutive::CONSUMERS()->Length(outInfo);
   vtkExecutive** consumers = vtkExecutive::CONSUMERS()->GetExecutives(outInfo);
-  return count == 0 ? !isPostFilter(producer) : std::any_of(consumers, consumers + count, [](vtkExecutive* consumer) {
-    vtkAlgorithm* algorithm = consumer->GetAlgorithm();
-    return !isPostFilter(algorithm) || isOutputWanted(algorithm, 0);
-  });
+  return listed == 0 || connected < listed || std::any_of(consumers, consumers + listed, [](vtkExecutive* consumer) {
+           vtkAlgorithm* algorithm = consumer->GetAlgorithm();
+           return !isPostFilter(algorithm) || isOutputWanted(algorithm, 0);
+         });
 }
 
 bool isAskedNothing(vtkInformation* outInfo)

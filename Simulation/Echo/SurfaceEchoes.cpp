@@ -73,10 +73,10 @@ struct SurfaceEchoes::Room
   std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
   std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
   PieceList pieces;
-  PieceExtents extents;                     ///< of the pieces; not of targets
-  std::vector<const SurfacePiece*> pieceOf; ///< by piece; not of targets
-  std::vector<std::size_t> faceOf;          ///< the same: of the brick's
-  std::vector<HeardList> heard;             ///< by line
+  PieceExtents extents;                       ///< of the pieces; not of targets
+  std::vector<const SurfacePiece*> pieceOf;   ///< by piece; not of targets
+  std::vector<std::size_t> faceOf;            ///< the same: of the brick's
+  std::vector<HeardList> heard;               ///< by line
   std::vector<float> anyDiffuse, anyCoherent; ///< of the pieces: not 0 where any line hears that echo
   PointList diffuse, coherent;
   std::vector<SurfacePoint> targets;

@@ -62,8 +62,8 @@ public:
   const Vec3i& coarseApart() const { return coarseApart_; }
   /// The piece of a face of that brick; null where columns of another axis stand for it. It stays as well.
   const SurfacePiece* piece(const Vec3i& brick, std::size_t face) const;
-  /// Makes those of the coarse faces of the bricks between two voxels, for a probe that will be moved. Ends early, without
-  /// an exception, where `progress` says so.
+  /// Makes those of the coarse faces of the bricks between two voxels, for a probe that will be moved. Ends early,
+  /// without an exception, where `progress` says so.
   void fitCoarse(const VoxelBox& box, const Progress& progress) const;
 
 private:

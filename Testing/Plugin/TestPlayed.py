@@ -1,4 +1,5 @@
 """A beating heart that is played again in ParaView, which updates all outputs of a filter, whatever is shown."""
+import gc
 import os
 import sys
 import unittest
@@ -51,6 +52,25 @@ class TestPlayed(unittest.TestCase):
             grey.append(vtk_to_numpy(Fetch(shown).GetPointData().GetArray("BMode")))
         self.assertGreater(len(grey[0]), 1000)
         self.assertTrue((grey[0] == grey[1]).all())
+
+    def test_an_output_whose_only_user_is_gone_is_nobodys(self):
+        ultrasound = heart()
+        lines = ultrasound.GetClientSideObject().GetOutputDataObject(self.port(ultrasound))
+        for time in TIMES:
+            ultrasound.UpdatePipeline(time)
+        shown = simple.Calculator(Input=simple.OutputPort(ultrasound, self.port(ultrasound)), Function="1")
+        for time in TIMES:
+            ultrasound.UpdatePipeline(time)
+            self.assertGreater(lines.GetNumberOfPoints(), 1000)
+        gone = []
+        shown.GetClientSideObject().AddObserver("DeleteEvent", lambda *_: gone.append(True))
+        simple.Delete(shown)
+        del shown
+        gc.collect()
+        self.assertEqual(gone, [True])
+        for time in TIMES:
+            ultrasound.UpdatePipeline(time)
+            self.assertEqual(lines.GetNumberOfPoints(), 0)
 
     @staticmethod
     def port(producer):
