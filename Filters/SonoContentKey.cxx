@@ -16,6 +16,8 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationExecutivePortVectorKey.h"
+#include "vtkInformationKey.h"
+#include "vtkInformationKeyLookup.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -184,6 +186,16 @@ bool isOutputWanted(vtkAlgorithm* producer, int port)
            vtkAlgorithm* algorithm = consumer->GetAlgorithm();
            return !isPostFilter(algorithm) || isOutputWanted(algorithm, 0);
          });
+}
+
+void pickNoArrays(vtkAlgorithm* producer)
+{
+  vtkInformationKey* const picked =
+    vtkInformationKeyLookup::Find("POST_ARRAYS_TO_PROCESS", "vtkPVPostFilterExecutive"); // ParaView's
+  if (picked && isPostFilter(producer))
+  {
+    picked->Remove(producer->GetInformation());
+  }
 }
 
 bool isAskedNothing(vtkInformation* outInfo)

@@ -53,6 +53,10 @@ void giveNothing(vtkInformation* outInfo);
 /// updates it.
 bool isOutputWanted(vtkAlgorithm* producer, int port);
 
+/// Of data none of whose arrays is picked ParaView need not hand on what it has handed on: with a filter that can pick
+/// arrays it does at each request, also where the data have nothing to pick from. From within RequestUpdateExtent.
+void pickNoArrays(vtkAlgorithm* producer);
+
 /// Whether a request for data would leave what a port has as it is; so it does where nothing is connected.
 bool isInputUpToDate(vtkAlgorithm* consumer, int port);
 

@@ -17,6 +17,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
@@ -195,6 +196,10 @@ int vtkSonoUltrasound::RequestUpdateExtent(vtkInformation* request, vtkInformati
   {
     sono::askNothing(input[LABELS_OR_SCENE]->GetInformationObject(0));
     return 1;
+  }
+  if (vtkMultiBlockDataSet::GetData(input[LABELS_OR_SCENE]))
+  {
+    sono::pickNoArrays(this->GetInputAlgorithm(LABELS_OR_SCENE, 0));
   }
   for (int port : { LABELS_OR_SCENE, PULSE_ECHO_FIELD })
   {

@@ -135,6 +135,25 @@ class TestUltrasound(unittest.TestCase):
         self.assertFalse((grey(ultrasound) == before).all())
         self.assertEqual(made(), scene_and_lines)
 
+    def test_a_scene_is_not_handed_on_anew_with_each_picture(self):
+        """By ParaView's own filter between the two, a hundred surfaces a time; a scene that changed is."""
+        scene = simple.UltrasoundScene(Input=simple.ThoraxPhantom(Spacingmm=4))
+        ultrasound = simple.SimulateUltrasound(Input=scene, LineCount=12, DepthMm=90, PathsPerLine=20)
+        first = grey(ultrasound)
+        between = ultrasound.GetClientSideObject().GetInputAlgorithm(0, 0)
+        self.assertEqual(between.GetClassName(), "vtkPVPostFilter")
+        runs = []
+        between.AddObserver("StartEvent", lambda *_: runs.append(True))
+        for moved in (1, 2, 3):
+            ultrasound.PositionMm = [ultrasound.PositionMm[0] + moved, *ultrasound.PositionMm[1:]]
+            ultrasound.GetClientSideObject().Update(0)
+        moved = grey_now(ultrasound)
+        self.assertNotEqual(moved.tobytes(), first.tobytes())
+        self.assertEqual(runs, [])
+        scene.FallbackTissue = "liver"
+        ultrasound.UpdatePipeline()
+        self.assertEqual(len(runs), 1)
+
     def test_state_file_brings_the_picture_back(self):
         before = grey(make_ultrasound(GainDb=3, Tgc5Db=12, GreyMap="S-Shaped", **POSE))
         with tempfile.TemporaryDirectory() as folder:
