@@ -105,7 +105,7 @@ void SurfacePieces::prefetch(const Vec3i& brick) const
   constexpr int linesAhead = 4; // what follows is read in turn, which a processor foresees
   const auto* const place = placeOf(brick);
   const Brick* const there = place ? place->load(std::memory_order_acquire) : nullptr;
-  if (there)
+  if (there && !there->faces.empty())
   {
     const char* const faces = reinterpret_cast<const char*>(there->faces.data());
     for (int line = 0; line < linesAhead; ++line)
