@@ -120,17 +120,12 @@ void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept
   const TissueBins& tissueBins = kept.tissueBins;
   for (int t = 0; t < tissueBins.count; ++t)
   {
-    const float own = kept.ownLevel[kept.at(line, t)];
-    ReverberationAround further;
-    float unspread = 1.0f;
-    if (own > 0.0f) // elsewhere nobody asks how far it has spread
-    {
-      further = sumFurther(line, 0, out.lineCount, t, tissueBins.count, tissueBins.mm,
-                           [&](int l, int b) { return kept.around[kept.at(l, b)]; });
-      const float rangeMm = (float(t) + 0.5f) * tissueBins.mm;
-      unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
-    }
-    const float level = reverberationLevel(kept.around[kept.at(line, t)], further, unspread, own);
+    const ReverberationAround further = sumFurther(line, 0, out.lineCount, t, tissueBins.count, tissueBins.mm,
+                                                   [&](int l, int b) { return kept.around[kept.at(l, b)]; });
+    const float rangeMm = (float(t) + 0.5f) * tissueBins.mm;
+    const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
+    const float level =
+      reverberationLevel(kept.around[kept.at(line, t)], further, unspread, kept.ownLevel[kept.at(line, t)]);
     for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
     {
       out.reverberation[std::size_t(line) * std::size_t(out.binCount) + std::size_t(b)] = level;
