@@ -100,16 +100,16 @@ BrickBox boxOf(const Walk& walk, const BrickGrid& grid, double fromMm, double to
 
 /// The scatterers of a row of bricks along x.
 void addRow(const Walk& walk, const NestedScatterers& nested, const DensityView& density, int level,
-            const NestedScatterers::BrickLine& bricks, NestedScatterers::Row& row, ChannelPoints& out)
+            const NestedBricks& bricks, NestedScatterers::Generated& row, ChannelPoints& out)
 {
   const double edge = double(nestedCellMm(level)) * nestedBrickCells;
   const double reachMm = 0.5 * std::sqrt(3.0) * edge;
-  std::vector<int> wanted(std::size_t(bricks.count), 0);
+  std::vector<int> wanted(std::size_t(bricks.count()), 0);
   std::vector<NestedShare> shares(wanted.size());
   bool any = false;
-  for (int b = 0; b < bricks.count; ++b)
+  for (int b = 0; b < bricks.count(); ++b)
   {
-    const Vec3i brick = bricks.first + Vec3i(b, 0, 0);
+    const Vec3i brick = bricks.brick(b);
     const Vec3d place = walk.placeOf(Vec3d(nestedBrickCentre(brick, level)));
     const double depthMm = walk.fan.depthMm(place.x, place.z);
     if (depthMm < -reachMm || depthMm > walk.deepestMm + reachMm ||
@@ -132,7 +132,7 @@ void addRow(const Walk& walk, const NestedScatterers& nested, const DensityView&
     return;
   }
   nested.generate(level, bricks, wanted.data(), row);
-  for (int b = 0; b < bricks.count; ++b)
+  for (int b = 0; b < bricks.count(); ++b)
   {
     if (wanted[std::size_t(b)] == 0)
     {
@@ -179,14 +179,17 @@ void addTissues(const Walk& walk, const EchoSetup& setup, int perCell, const Pro
     const Vec3i size = glm::max(box.end - box.first, Vec3i(0));
     std::vector<ChannelPoints> slices(std::size_t(size.x > 0 && size.y > 0 ? size.z : 0));
     const double part = 1.0 / (view.coarsest - view.finest + 1);
-    parallelFor(
-      int(slices.size()), partOf(progress, part * (level - view.finest), part * (level - view.finest + 1)), [&](int k) {
-        NestedScatterers::Row row;
-        for (int j = 0; j < size.y; ++j)
-        {
-          addRow(walk, nested, view, level, { box.first + Vec3i(0, j, k), 0, size.x }, row, slices[std::size_t(k)]);
-        }
-      });
+    parallelFor(int(slices.size()), partOf(progress, part * (level - view.finest), part * (level - view.finest + 1)),
+                [&](int k) {
+                  NestedScatterers::Generated row;
+                  NestedBricks bricks;
+                  for (int j = 0; j < size.y; ++j)
+                  {
+                    bricks.clear();
+                    bricks.append(box.first + Vec3i(0, j, k), 0, size.x);
+                    addRow(walk, nested, view, level, bricks, row, slices[std::size_t(k)]);
+                  }
+                });
     for (const ChannelPoints& slice : slices)
     {
       out.append(slice);

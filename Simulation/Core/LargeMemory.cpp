@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t pageBytes = 4096;
 constexpr std::size_t partBytes = std::size_t(1) << 21;
-constexpr std::size_t leastBytes = 8 * partBytes; // below, starting the cores costs as much
+constexpr std::size_t leastBytes = 2 * partBytes; // below, starting the cores costs as much
 
 } // namespace
 

@@ -20,9 +20,18 @@ std::vector<T> roomFor(std::size_t count)
   return numbers;
 }
 
-/// `count` numbers, in memory that all cores touched.
+/// `count` numbers, all 0, in memory that all cores touched.
 template<class T>
-std::vector<T> largeVector(std::size_t count, T value = T{})
+std::vector<T> largeVector(std::size_t count)
+{
+  std::vector<T> numbers = roomFor<T>(count);
+  numbers.resize(count);
+  return numbers;
+}
+
+/// The same, all of a value.
+template<class T>
+std::vector<T> largeVector(std::size_t count, T value)
 {
   std::vector<T> numbers = roomFor<T>(count);
   numbers.resize(count, value);

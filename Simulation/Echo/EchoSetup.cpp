@@ -1,5 +1,6 @@
 #include "Echo/EchoSetup.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/Policy.h"
 #include "Core/Require.h"
 #include "Echo/Pulse.h"
@@ -159,7 +160,7 @@ RfLines rfLayout(int lineCount, const EchoSettings& settings)
 RfLines EchoSetup::emptyRf() const
 {
   RfLines out = rfLayout(int(lines.size()), settings);
-  out.iq.resize(std::size_t(out.lineCount) * std::size_t(out.sampleCount));
+  out.iq = largeVector<std::complex<float>>(std::size_t(out.lineCount) * std::size_t(out.sampleCount));
   return out;
 }
 

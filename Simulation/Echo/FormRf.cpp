@@ -1,5 +1,6 @@
 #include "Echo/FormRf.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
@@ -8,15 +9,18 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
+#include <mutex>
 
 namespace sono {
 
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int groupLines = 8;      // neighbouring lines that share the generated bricks
-constexpr int groupsTogether = 16; // whose sums are kept at a time: a matrix has thousands of lines
-constexpr int bricksPerYield = 32; // milliseconds; a group of deep lines at a high frequency takes seconds
+constexpr int groupLines = 8;       // neighbouring lines that share the generated bricks
+constexpr int groupsTogether = 4;   // whose sums are kept at a time: a matrix has thousands of lines
+constexpr int bricksTogether = 256; // whose scatterers are made and heard at once: as many as stay close to a core
+constexpr int bricksPerYield = 32;  // milliseconds; a group of deep lines at a high frequency takes seconds
 
 void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
                 std::vector<LineSum>& sums)
@@ -33,16 +37,70 @@ void addTissues(const TissueScatterers& tissues, const std::vector<BeamReach>& b
   });
 }
 
-/// Bricks of each level, row by row, of each line those that it takes.
+/// What lines take of the scatterers of bricks, some rows at a time.
+class NestedLines
+{
+public:
+  NestedLines(const EchoSetup& setup, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+    : nested_(*setup.nested)
+    , density_(setup.density->view())
+    , grid_(lineGrid(sums.front()))
+    , beams_(beams)
+    , sums_(sums)
+    , shares_(beams.size())
+  {
+  }
+
+  void add(int level, const BrickRow& row)
+  {
+    for (std::size_t i = 0; i < beams_.size(); ++i)
+    {
+      shares_[i].meet(beams_[i].beam, i, row, bricks_.count(), density_, level);
+    }
+    bricks_.append(row.brick(0), row.axis(), row.count());
+    if (bricks_.count() >= bricksTogether)
+    {
+      finish(level);
+    }
+  }
+  /// Adds what the rows of the level so far echo.
+  void finish(int level)
+  {
+    wanted_.assign(std::size_t(bricks_.count()), 0);
+    for (std::size_t i = 0; i < beams_.size(); ++i)
+    {
+      shares_[i].share(beams_[i].beam, level, wanted_.data());
+    }
+    nested_.generate(level, bricks_, wanted_.data(), scatterers_);
+    for (std::size_t i = 0; i < beams_.size(); ++i)
+    {
+      if (shares_[i].takesAny())
+      {
+        splat(shares_[i].hear(scatterers_, beams_[i].beam.axis), beams_[i].beam, grid_, sums_[i]);
+      }
+      shares_[i].clear();
+    }
+    bricks_.clear();
+  }
+
+private:
+  const NestedScatterers& nested_;
+  DensityView density_;
+  LineGrid grid_;
+  const std::vector<BeamReach>& beams_;
+  std::vector<LineSum>& sums_;
+  NestedBricks bricks_;
+  std::vector<NestedShares> shares_; // of each beam
+  std::vector<int> wanted_;
+  NestedScatterers::Generated scatterers_;
+};
+
+/// Bricks of each level, of each line those that it takes.
 void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
                std::vector<LineSum>& sums)
 {
-  const NestedScatterers& nested = *setup.nested;
   const DensityView density = setup.density->view();
-  const LineGrid grid = lineGrid(sums.front());
-  NestedScatterers::Row scatterers;
-  std::vector<NestedShares> shares(beams.size());
-  std::vector<int> wanted;
+  NestedLines lines(setup, beams, sums);
   for (int level = density.finest; level <= density.coarsest; ++level)
   {
     const ScattererDensity::Range range = setup.density->range(level);
@@ -54,32 +112,11 @@ void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, cons
       beam.depthMm = std::min(beam.depthMm, range.toMm);
       beam.sight = setup.nestedSight.empty() ? nullptr : &setup.nestedSight[std::size_t(level - density.finest)];
     }
-    forBrickRows(nested.grid(level), reaching, [&](const BrickRow& row) {
+    forBrickRows(setup.nested->grid(level), reaching, [&](const BrickRow& row) {
       yieldPoint();
-      wanted.assign(std::size_t(row.count()), 0);
-      bool isWanted = false;
-      for (std::size_t i = 0; i < beams.size(); ++i)
-      {
-        shares[i].look(beams[i].beam, i, row, density, level);
-        for (int b = shares[i].first(); b <= shares[i].last(); ++b)
-        {
-          wanted[std::size_t(b)] = std::max(wanted[std::size_t(b)], shares[i].count(b));
-          isWanted = true;
-        }
-      }
-      if (!isWanted)
-      {
-        return;
-      }
-      nested.generate(level, { row.brick(0), row.axis(), row.count() }, wanted.data(), scatterers);
-      for (std::size_t i = 0; i < beams.size(); ++i)
-      {
-        if (shares[i].first() <= shares[i].last())
-        {
-          splat(shares[i].hear(scatterers, beams[i].beam.axis), beams[i].beam, grid, sums[i]);
-        }
-      }
+      lines.add(level, row);
     });
+    lines.finish(level);
   }
 }
 
@@ -96,6 +133,47 @@ void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beam
     }
   });
 }
+
+/// Sums that are done with, for the next lines: memory that is given back comes anew page by page, each with a fault.
+class SumPool
+{
+public:
+  explicit SumPool(const LineFinisher& finisher)
+    : finisher_(finisher)
+  {
+  }
+  /// So many, all zeros.
+  std::vector<LineSum> take(int count)
+  {
+    std::vector<LineSum> sums;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const std::size_t kept = std::min(std::size_t(count), free_.size());
+      sums.insert(sums.end(), std::make_move_iterator(free_.end() - std::ptrdiff_t(kept)),
+                  std::make_move_iterator(free_.end()));
+      free_.resize(free_.size() - kept);
+    }
+    for (LineSum& sum : sums)
+    {
+      std::fill(sum.iq.begin(), sum.iq.end(), 0.0f);
+    }
+    while (sums.size() < std::size_t(count))
+    {
+      sums.push_back(finisher_.emptySum());
+    }
+    return sums;
+  }
+  void give(std::vector<LineSum> sums)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    free_.insert(free_.end(), std::make_move_iterator(sums.begin()), std::make_move_iterator(sums.end()));
+  }
+
+private:
+  const LineFinisher& finisher_;
+  std::mutex mutex_;
+  std::vector<LineSum> free_;
+};
 
 /// Neighbouring lines, and what has been added to each of them.
 struct LineGroup
@@ -144,7 +222,7 @@ std::vector<float> RfLines::rf() const
 
 std::vector<float> RfLines::envelope() const
 {
-  std::vector<float> out(iq.size());
+  std::vector<float> out = largeVector<float>(iq.size());
   parallelFor(lineCount, {}, [&](int line) {
     const std::size_t row = std::size_t(line) * std::size_t(sampleCount);
     for (std::size_t s = row; s < row + std::size_t(sampleCount); ++s)
@@ -168,6 +246,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
   {
     group.tasksLeft = tasksOfGroup;
   }
+  SumPool pool(setup.finisher);
   std::atomic<int> begun{ 0 };
   const auto runTask = [&](int, const YieldPoint& yieldPoint) {
     const GroupTask task = taskAt(begun++, groupCount, tasksOfGroup);
@@ -190,7 +269,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       return made;
     };
     const auto sceneBeam = [&](int l) { return setup.sceneBeam(l); };
-    std::vector<LineSum> sums(std::size_t(last - first), setup.finisher.emptySum());
+    std::vector<LineSum> sums = pool.take(last - first);
     if (task.ofSurfaces)
     {
       std::vector<SurfaceIntensity> intensities;
@@ -228,7 +307,8 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       setup.finisher.finish(l, group.scatterers[at], setup.surfaces ? &group.surfaces[at] : nullptr, nodes, room,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
-    group.scatterers = group.surfaces = {};
+    pool.give(std::move(group.scatterers));
+    pool.give(std::move(group.surfaces));
   };
   parallelFor(tasksOfGroup * groupCount, progress, runTask);
   return out;

@@ -13,30 +13,30 @@ namespace {
 constexpr float never = 2.0f;                   // no probability is above it
 constexpr double npPerDb = 0.11512925464970229; // ln(10) / 20
 
-using Row = NestedScatterers::Row;
+using Generated = NestedScatterers::Generated;
 
 /// nestedBrickHash of each brick.
-SONO_SIMD_CLONES __attribute__((flatten)) void hashBricks(std::uint64_t seed, int level,
-                                                          const NestedScatterers::BrickLine& bricks,
+SONO_SIMD_CLONES __attribute__((flatten)) void hashBricks(std::uint64_t seed, int level, const NestedBricks& bricks,
                                                           std::uint32_t* hash)
 {
-  const Vec3i first = bricks.first;
-  const Vec3i step(bricks.axis == 0, bricks.axis == 1, bricks.axis == 2);
+  const std::int32_t* x = bricks.x();
+  const std::int32_t* y = bricks.y();
+  const std::int32_t* z = bricks.z();
   const int up = nestedRootLevel - (level + 2);
-  const int count = inWholeVectors(bricks.count);
+  const int count = inWholeVectors(bricks.count());
+#pragma GCC ivdep
   for (int n = 0; n < count; ++n)
   {
-    hash[n] =
-      nestedRoot(seed, { (first.x + n * step.x) >> up, (first.y + n * step.y) >> up, (first.z + n * step.z) >> up });
+    hash[n] = nestedRoot(seed, { x[n] >> up, y[n] >> up, z[n] >> up });
   }
   for (int l = up - 1; l >= 0; --l)
   {
+#pragma GCC ivdep
     for (int n = 0; n < count; ++n)
     {
-      const std::uint32_t x = std::uint32_t(((first.x + n * step.x) >> l) & 1);
-      const std::uint32_t y = std::uint32_t(((first.y + n * step.y) >> l) & 1);
-      const std::uint32_t z = std::uint32_t(((first.z + n * step.z) >> l) & 1);
-      hash[n] = nestedDescend(hash[n], x | (y << 1) | (z << 2));
+      const std::uint32_t child =
+        std::uint32_t(((x[n] >> l) & 1) | (((y[n] >> l) & 1) << 1) | (((z[n] >> l) & 1) << 2));
+      hash[n] = nestedDescend(hash[n], child);
     }
   }
 }
@@ -52,25 +52,27 @@ inline void descend(std::int32_t& i, std::int32_t& j, std::int32_t& k, std::uint
 
 /// nestedFinestCell and nestedCandidate, level by level for all, of which brick and number are known; with the voxel
 /// that each lies in. Those outside of the volume are never present.
-SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedScatterers::BrickLine& bricks, int level, int count,
-                                                    const Vec3f& perMm, const Vec3i& volume, Row& row, float* sign)
+SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedBricks& bricks, int level, int count,
+                                                    const Vec3f& perMm, const Vec3i& volume, Generated& out,
+                                                    float* sign)
 {
   const Vec3i size = volume;
-  std::int32_t* i = row.i.data();
-  std::int32_t* j = row.j.data();
-  std::int32_t* k = row.k.data();
-  std::uint32_t* hash = row.hash.data();
-  const std::int32_t* brick = row.brick.data();
-  const std::int32_t* number = row.number.data();
-  const std::uint32_t* brickHash = row.brickHash.data();
-  const Vec3i first = bricks.first;
-  const Vec3i step(bricks.axis == 0, bricks.axis == 1, bricks.axis == 2);
+  std::int32_t* i = out.i.data();
+  std::int32_t* j = out.j.data();
+  std::int32_t* k = out.k.data();
+  std::uint32_t* hash = out.hash.data();
+  const std::int32_t* brick = out.brick.data();
+  const std::int32_t* number = out.number.data();
+  const std::uint32_t* brickHash = out.brickHash.data();
+  const std::int32_t* brickI = bricks.x();
+  const std::int32_t* brickJ = bricks.y();
+  const std::int32_t* brickK = bricks.z();
 #pragma GCC ivdep
   for (int n = 0; n < count; ++n)
   {
-    std::int32_t ci = first.x + brick[n] * step.x;
-    std::int32_t cj = first.y + brick[n] * step.y;
-    std::int32_t ck = first.z + brick[n] * step.z;
+    std::int32_t ci = brickI[brick[n]];
+    std::int32_t cj = brickJ[brick[n]];
+    std::int32_t ck = brickK[brick[n]];
     std::uint32_t h = brickHash[brick[n]];
     descend(ci, cj, ck, h, childOfRank(h, std::uint32_t(number[n] & 7)));
     descend(ci, cj, ck, h, childOfRank(h, std::uint32_t(number[n] >> 3)));
@@ -87,10 +89,10 @@ SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedScatterers::Bric
       descend(i[n], j[n], k[n], hash[n], chosenChild(hash[n]));
     }
   }
-  float* x = row.x.data();
-  float* y = row.y.data();
-  float* z = row.z.data();
-  float* presence = row.presence.data();
+  float* x = out.x.data();
+  float* y = out.y.data();
+  float* z = out.z.data();
+  float* presence = out.presence.data();
 #pragma GCC ivdep
   for (int n = 0; n < count; ++n)
   {
@@ -111,12 +113,12 @@ SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedScatterers::Bric
 }
 
 /// Leaves the candidates of these numbers, ascending, with their amplitudes.
-SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int count, Row& row)
+SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int count, Generated& out)
 {
-  float* x = row.x.data();
-  float* y = row.y.data();
-  float* z = row.z.data();
-  float* amplitude = row.amplitude.data();
+  float* x = out.x.data();
+  float* y = out.y.data();
+  float* z = out.z.data();
+  float* amplitude = out.amplitude.data();
 #pragma GCC ivdep
   for (int to = 0; to < count; ++to) // none overtakes its candidate
   {
@@ -128,38 +130,38 @@ SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int co
   }
 }
 
-/// Numbers the candidates of a row, and makes room for them.
-int layOut(const NestedScatterers::BrickLine& bricks, const int* wanted, Row& row)
+/// Numbers the candidates, and makes room for them.
+int layOut(int brickCount, const int* wanted, Generated& out)
 {
   std::size_t count = 0;
-  for (int b = 0; b < bricks.count; ++b)
+  for (int b = 0; b < brickCount; ++b)
   {
     count += std::size_t(wanted[b]);
   }
-  for (std::vector<float>* values : { &row.x, &row.y, &row.z, &row.amplitude, &row.presence, &row.factor })
+  for (std::vector<float>* values : { &out.x, &out.y, &out.z, &out.amplitude, &out.presence, &out.factor })
   {
     values->resize(count + vectorWidth);
   }
-  for (std::vector<std::int32_t>* values : { &row.i, &row.j, &row.k, &row.brick, &row.number, &row.kept })
+  for (std::vector<std::int32_t>* values : { &out.i, &out.j, &out.k, &out.brick, &out.number, &out.kept })
   {
     values->resize(count + vectorWidth);
   }
-  row.hash.resize(count + vectorWidth);
-  row.brickHash.resize(std::size_t(inWholeVectors(bricks.count)));
-  row.firstCandidate.resize(std::size_t(bricks.count));
-  row.reached.resize(count + 1);
+  out.hash.resize(count + vectorWidth);
+  out.brickHash.resize(std::size_t(inWholeVectors(brickCount)));
+  out.firstCandidate.resize(std::size_t(brickCount));
+  out.reached.resize(count + 1);
   std::size_t n = 0;
-  for (int b = 0; b < bricks.count; ++b)
+  for (int b = 0; b < brickCount; ++b)
   {
-    row.firstCandidate[std::size_t(b)] = int(n);
+    out.firstCandidate[std::size_t(b)] = int(n);
     for (int number = 0; number < wanted[b]; ++number, ++n)
     {
-      row.brick[n] = b;
-      row.number[n] = number;
+      out.brick[n] = b;
+      out.number[n] = number;
     }
   }
-  std::fill_n(row.brick.begin() + std::ptrdiff_t(count), vectorWidth, 0);
-  std::fill_n(row.number.begin() + std::ptrdiff_t(count), vectorWidth, 0);
+  std::fill_n(out.brick.begin() + std::ptrdiff_t(count), vectorWidth, 0);
+  std::fill_n(out.number.begin() + std::ptrdiff_t(count), vectorWidth, 0);
   return int(count);
 }
 
@@ -206,30 +208,30 @@ BrickGrid NestedScatterers::grid(int level) const
   return grid;
 }
 
-void NestedScatterers::generate(int level, const BrickLine& bricks, const int* wanted, Row& row) const
+void NestedScatterers::generate(int level, const NestedBricks& bricks, const int* wanted, Generated& out) const
 {
   const Vec3i size = scene_.placement().size;
   const std::uint8_t* tissues = scene_.tissueVoxels().data();
-  const int candidates = layOut(bricks, wanted, row);
-  hashBricks(seed_, level, bricks, row.brickHash.data());
-  draw(bricks, level, inWholeVectors(candidates), 1.0f / Vec3f(scene_.placement().spacingMm), size, row,
-       row.amplitude.data());
-  row.before.assign(std::size_t(bricks.count) + 1, 0);
+  const int candidates = layOut(bricks.count(), wanted, out);
+  hashBricks(seed_, level, bricks, out.brickHash.data());
+  draw(bricks, level, inWholeVectors(candidates), 1.0f / Vec3f(scene_.placement().spacingMm), size, out,
+       out.amplitude.data());
+  out.before.assign(std::size_t(bricks.count()) + 1, 0);
   // Pointers of their own let the compiler see that none changes.
-  std::int32_t* const kept = row.kept.data();
-  int* const reached = row.reached.data();
-  float* const factor = row.factor.data();
-  const float* const presence = row.presence.data();
-  const std::int32_t* const i = row.i.data();
-  const std::int32_t* const j = row.j.data();
-  const std::int32_t* const k = row.k.data();
+  std::int32_t* const kept = out.kept.data();
+  int* const reached = out.reached.data();
+  float* const factor = out.factor.data();
+  const float* const presence = out.presence.data();
+  const std::int32_t* const i = out.i.data();
+  const std::int32_t* const j = out.j.data();
+  const std::int32_t* const k = out.k.data();
   const auto voxelOf = [&](int n) {
     return std::size_t(i[n]) + std::size_t(size.x) * (std::size_t(j[n]) + std::size_t(size.y) * std::size_t(k[n]));
   };
   bool anyAligned = false;
   int n = 0;
   int to = 0;
-  for (int b = 0; b < bricks.count; ++b)
+  for (int b = 0; b < bricks.count(); ++b)
   {
     for (const int end = n + wanted[b]; n < end; ++n)
     {
@@ -243,14 +245,14 @@ void NestedScatterers::generate(int level, const BrickLine& bricks, const int* w
       anyAligned |= isThere & (fibreScale_[tissue] > 0.0f);
       to += isThere;
     }
-    row.before[std::size_t(b) + 1] = to;
+    out.before[std::size_t(b) + 1] = to;
   }
   anyAligned &= fibres_ != nullptr;
   reached[n] = to;
-  row.hasFibres = anyAligned;
+  out.hasFibres = anyAligned;
   if (anyAligned)
   {
-    for (std::vector<float>* values : { &row.fibreX, &row.fibreY, &row.fibreZ })
+    for (std::vector<float>* values : { &out.fibreX, &out.fibreY, &out.fibreZ })
     {
       values->resize(std::size_t(to) + vectorWidth);
     }
@@ -260,11 +262,11 @@ void NestedScatterers::generate(int level, const BrickLine& bricks, const int* w
     const int from = kept[a];
     const float scale = fibreScale_[tissues[voxelOf(from)]];
     const Vec3f fibre = scale > 0.0f ? fibres_->at({ i[from], j[from], k[from] }) * scale : Vec3f(0.0f);
-    row.fibreX[std::size_t(a)] = fibre.x;
-    row.fibreY[std::size_t(a)] = fibre.y;
-    row.fibreZ[std::size_t(a)] = fibre.z;
+    out.fibreX[std::size_t(a)] = fibre.x;
+    out.fibreY[std::size_t(a)] = fibre.y;
+    out.fibreZ[std::size_t(a)] = fibre.z;
   }
-  keep(kept, factor, to, row);
+  keep(kept, factor, to, out);
 }
 
 } // namespace sono

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Echo/BrickWalk.h"
+#include "Echo/NestedBricks.h"
 #include "Kernel/NestedCells.h"
 #include "Kernel/Scatterer.h"
 #include "Scene/FibreField.h"
@@ -22,17 +23,9 @@ class NestedScatterers
 public:
   static constexpr int cellCount = nestedBrickCells * nestedBrickCells * nestedBrickCells;
 
-  /// A row of bricks: from `first` on, `count` along an axis.
-  struct BrickLine
-  {
-    Vec3i first;
-    int axis;
-    int count;
-  };
-
-  /// The scatterers of such a row, brick by brick, ascending by the number of their candidates. The arrays hold a
-  /// vector more, of anything.
-  struct Row
+  /// The scatterers of bricks, brick by brick, ascending by the number of their candidates. The arrays hold a vector
+  /// more, of anything.
+  struct Generated
   {
     std::vector<float> x, y, z, amplitude;
     std::vector<float> fibreX, fibreY, fibreZ; ///< times the root of the anisotropy; only where `hasFibres`
@@ -47,7 +40,7 @@ public:
     }
 
     // The candidates, on the way there.
-    std::vector<std::int32_t> brick, number; ///< in the row, in the brick
+    std::vector<std::int32_t> brick, number; ///< among the bricks, in the brick
     std::vector<int> firstCandidate;         ///< of each brick
     std::vector<int> reached;                ///< scatterers before each candidate, and all
     std::vector<std::int32_t> i, j, k;       ///< cell, then voxel
@@ -70,7 +63,7 @@ public:
   const FibreField* fibres() const { return fibres_; }
   /// The scatterers among the first candidates of each brick, as many as `wanted` says of it; amplitudes for one
   /// candidate a mm^3.
-  void generate(int level, const BrickLine& bricks, const int* wanted, Row& row) const;
+  void generate(int level, const NestedBricks& bricks, const int* wanted, Generated& out) const;
 
 private:
   const Scene& scene_;

@@ -14,8 +14,7 @@ namespace {
 
 // This file is compiled without fused multiplication and addition: see roundedProduct.
 
-/// A row's bricks as a beam meets them; arrays by brick, up to whole vectors. Loops are from `from` to in front of
-/// `to`.
+/// Bricks as a beam meets them; arrays by brick, up to whole vectors.
 struct MetBricks
 {
   float* depthMm;
@@ -25,8 +24,9 @@ struct MetBricks
   std::int32_t* parentAt;
 };
 
+/// `count` of a row.
 SONO_SIMD_CLONES __attribute__((flatten)) void meetBricks(const Beam& b, const Vec3i& first, const Vec3i& step,
-                                                          const DensityView& d, int level, int from, int to,
+                                                          const DensityView& d, int level, int count,
                                                           const MetBricks& out)
 {
   const Vec3f origin = b.origin;
@@ -40,7 +40,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void meetBricks(const Beam& b, const V
   std::int32_t* at = out.at;
   std::int32_t* parentAt = out.parentAt;
 #pragma GCC ivdep
-  for (int n = from; n < to; ++n)
+  for (int n = 0; n < count; ++n)
   {
     const Vec3i brick(first.x + n * step.x, first.y + n * step.y, first.z + n * step.z);
     const Vec3f q = nestedBrickCentre(brick, level) - origin;
@@ -67,13 +67,13 @@ struct TakenBricks
 /// relativeWeight of a Gaussian for each brick, in place of its lateral place, and at the nearest place, in place of
 /// the elevational one.
 template<class ProfileOf>
-inline void weighBricks(const ProfileOf& profileOf, const MetBricks& met, const Vec2f& halfMm, int from, int to)
+inline void weighBricks(const ProfileOf& profileOf, const MetBricks& met, const Vec2f& halfMm, int count)
 {
   const float* depthMm = met.depthMm;
   float* lateralMm = met.lateralMm;
   float* elevationalMm = met.elevationalMm;
 #pragma GCC ivdep
-  for (int n = from; n < to; ++n)
+  for (int n = 0; n < count; ++n)
   {
     const ProfileAt at = profileOf(larger(depthMm[n], 0.0f));
     const float l = std::fabs(lateralMm[n]);
@@ -86,26 +86,26 @@ inline void weighBricks(const ProfileOf& profileOf, const MetBricks& met, const 
 }
 
 SONO_SIMD_CLONES __attribute__((flatten)) void weighByGaussian(const Beam& b, const MetBricks& met, const Vec2f& halfMm,
-                                                               int from, int to)
+                                                               int count)
 {
-  withProfile(b, [&](const auto& profile) { weighBricks(profile, met, halfMm, from, to); });
+  withProfile(b, [&](const auto& profile) { weighBricks(profile, met, halfMm, count); });
 }
 
 /// By the weights of bricks and of their nearest places. What is decided stays in memory from loop to loop: otherwise
 /// the compiler makes branches of it.
 SONO_SIMD_CLONES __attribute__((flatten)) void takeShares(const float* weight, const float* most, float edgeMm,
-                                                          int from, int to, const TakenBricks& bricks)
+                                                          int count, const TakenBricks& bricks)
 {
   const TakenBricks out = bricks;
 #pragma GCC ivdep
-  for (int n = from; n < to; ++n)
+  for (int n = 0; n < count; ++n)
   {
     out.scale[n] = nestedEighths(out.perMm3[n], edgeMm, weight[n]);
     out.faded[n] = out.perMm3[n] > 0.0f ? 1.0f : 0.0f;
     out.perMm3[n] = most[n] >= nestedLeastWeight ? 1.0f : 0.0f;
   }
 #pragma GCC ivdep
-  for (int n = from; n < to; ++n)
+  for (int n = 0; n < count; ++n)
   {
     const NestedShare share = nestedShareOf(out.scale[n], edgeMm);
     out.count[n] = int(float(share.count) * out.faded[n] * out.perMm3[n]);
@@ -127,153 +127,182 @@ SONO_SIMD_CLONES __attribute__((flatten)) void hearAlong(const Vec3f& axis, cons
   }
 }
 
-/// What a beam takes of each brick of a row.
+/// What a beam takes of the bricks of these numbers.
 struct TakenParts
 {
+  const std::int32_t* brick;
   const std::int32_t* count;
   const std::int32_t* whole;
   const float* scale;
   const float* faded;
 };
 
-/// Places and amplitudes of scatterers.
-struct HeardScatterers
-{
-  float *x, *y, *z, *amplitude;
-};
+/// Arrays of what scatterers are, a value of each.
+constexpr int placeArrays = 3; // x, y, z
+constexpr int fibreArrays = 3; // the same of fibres, behind the places
 
 /// A beam takes four of a brick on average: wider vectors would write mostly what is written over.
 constexpr int fewScatterers = vectorWidth / 2;
 
-/// Brick by brick, written in whole vectors, each over the rest of the one before; how many there are.
-SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatterers::Row& row, int first, int last,
-                                                             const TakenParts& parts, const HeardScatterers& to)
+__attribute__((always_inline)) inline void copyFew(const float* from, float* to)
+{
+  std::memcpy(to, from, fewScatterers * sizeof(float));
+}
+
+/// Of each of `arrays` and the amplitudes, brick by brick, written in whole vectors, each over the rest of the one
+/// before; how many there are.
+template<int Arrays>
+__attribute__((always_inline)) inline int takeArrays(const NestedScatterers::Generated& from, int bricks,
+                                                     const TakenParts& parts, float* const* to, float* toAmplitude)
 {
   const TakenParts part = parts;
-  const HeardScatterers out = to;
-  const int* before = row.before.data();
-  const int* firstCandidate = row.firstCandidate.data();
-  const int* reached = row.reached.data();
+  const float* const source[placeArrays + fibreArrays] = { from.x.data(),      from.y.data(),      from.z.data(),
+                                                           from.fibreX.data(), from.fibreY.data(), from.fibreZ.data() };
+  const float* const amplitudes = from.amplitude.data();
+  const int* before = from.before.data();
+  const int* firstCandidate = from.firstCandidate.data();
+  const int* reached = from.reached.data();
   int heard = 0;
-  for (int b = first; b <= last; ++b)
+  for (int k = 0; k < bricks; ++k)
   {
+    const int b = part.brick[k];
     const int* ofBrick = reached + firstCandidate[b];
-    const int from = before[b];
-    const int taken = ofBrick[part.count[b]] - from;
-    const int whole = ofBrick[std::min(part.whole[b], part.count[b])] - from;
-    const float scale = part.scale[b];
-    const float faded = part.faded[b];
-    const float *x = row.x.data() + from, *y = row.y.data() + from, *z = row.z.data() + from;
-    const float* amplitude = row.amplitude.data() + from;
-    float *toX = out.x + heard, *toY = out.y + heard, *toZ = out.z + heard, *toAmplitude = out.amplitude + heard;
+    const int first = before[b];
+    const int taken = ofBrick[part.count[k]] - first;
+    const int whole = ofBrick[std::min(part.whole[k], part.count[k])] - first;
+    const float scale = part.scale[k];
+    const float faded = part.faded[k];
     for (int n = 0; n < taken; n += fewScatterers)
     {
-      std::memcpy(toX + n, x + n, fewScatterers * sizeof(float));
-      std::memcpy(toY + n, y + n, fewScatterers * sizeof(float));
-      std::memcpy(toZ + n, z + n, fewScatterers * sizeof(float));
-    }
-    const int end = inWholeVectors(taken);
-#pragma GCC ivdep
-    for (int n = 0; n < end; ++n)
-    {
-      toAmplitude[n] = amplitude[n] * (n < whole ? scale : faded);
+      for (int a = 0; a < Arrays; ++a)
+      {
+        copyFew(source[a] + first + n, to[a] + heard + n);
+      }
+      for (int m = 0; m < fewScatterers; ++m)
+      {
+        toAmplitude[heard + n + m] = amplitudes[first + n + m] * (n + m < whole ? scale : faded);
+      }
     }
     heard += taken;
   }
   return heard;
 }
 
+SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatterers::Generated& from, int bricks,
+                                                             const TakenParts& parts, float* const* to,
+                                                             float* toAmplitude)
+{
+  return takeArrays<placeArrays>(from, bricks, parts, to, toAmplitude);
+}
+
+/// The same with their fibres.
+SONO_SIMD_CLONES __attribute__((flatten)) int takeWithFibres(const NestedScatterers::Generated& from, int bricks,
+                                                             const TakenParts& parts, float* const* to,
+                                                             float* toAmplitude)
+{
+  return takeArrays<placeArrays + fibreArrays>(from, bricks, parts, to, toAmplitude);
+}
+
 } // namespace
 
-void NestedShares::resize(std::size_t bricks)
-{
-  for (std::vector<std::int32_t>* values : { &count_, &whole_, &at_, &parentAt_ })
-  {
-    values->resize(std::max(values->size(), bricks));
-  }
-  for (std::vector<float>* values : { &scale_, &faded_, &depthMm_, &lateralMm_, &elevationalMm_, &perMm3_ })
-  {
-    values->resize(std::max(values->size(), bricks));
-  }
-}
-
-void NestedShares::look(const Beam& beam, std::size_t index, const BrickRow& row, const DensityView& density, int level)
+void NestedShares::meet(const Beam& beam, std::size_t index, const BrickRow& row, int before,
+                        const DensityView& density, int level)
 {
   const BrickRow::Span span = row.span(index);
-  first_ = 0;
-  last_ = -1;
-  if (span.last < span.first)
+  const int count = span.last - span.first + 1;
+  if (count <= 0)
   {
     return;
   }
-  resize(std::size_t(row.count() + vectorWidth));
-  const int end = span.first + inWholeVectors(span.last - span.first + 1);
-  const MetBricks met{ depthMm_.data(), lateralMm_.data(), elevationalMm_.data(), at_.data(), parentAt_.data() };
-  const Vec3i first = row.brick(0);
-  meetBricks(beam, first, row.brick(1) - first, density, level, span.first, end, met);
+  const std::size_t room = std::size_t(met_ + count + vectorWidth);
+  for (std::vector<std::int32_t>* values : { &brick_, &at_, &parentAt_ })
+  {
+    values->resize(std::max(values->size(), room));
+  }
+  for (std::vector<float>* values : { &depthMm_, &lateralMm_, &elevationalMm_, &perMm3_ })
+  {
+    values->resize(std::max(values->size(), room));
+  }
+  const std::size_t from = std::size_t(met_);
+  const Vec3i first = row.brick(span.first);
+  meetBricks(beam, first, row.brick(span.first + 1) - first, density, level, inWholeVectors(count),
+             { depthMm_.data() + from, lateralMm_.data() + from, elevationalMm_.data() + from, at_.data() + from,
+               parentAt_.data() + from });
   const bool isByGaussian = isGaussian(beam);
-  bool takesAny = false;
-  std::fill(perMm3_.begin() + span.last + 1, perMm3_.begin() + end, 0.0f);
-  for (int n = span.first; n <= span.last; ++n)
+  for (int n = 0; n < count; ++n)
   {
-    const std::size_t k = std::size_t(n);
-    const bool isTaken = density.takesAt(level, at_[k], parentAt_[k]) && (isByGaussian || row.sees(index, n));
+    const std::size_t k = from + std::size_t(n);
+    brick_[k] = before + span.first + n;
+    const bool isTaken =
+      density.takesAt(level, at_[k], parentAt_[k]) && (isByGaussian || row.sees(index, span.first + n));
     perMm3_[k] = isTaken ? density.perMm3[at_[k]] : 0.0f;
-    takesAny |= isTaken;
-  }
-  if (!takesAny)
-  {
-    return;
   }
   const Vec2f halfMm = nestedHalfExtent(beam, level);
-  if (isByGaussian)
+  for (int n = 0; !isByGaussian && n < count; ++n)
   {
-    weighByGaussian(beam, met, halfMm, span.first, end);
+    const std::size_t k = from + std::size_t(n);
+    const Vec3f q = nestedBrickCentre(row.brick(span.first + n), level) - beam.origin;
+    const float most = perMm3_[k] > 0.0f ? relativeWeight(beam, q, depthMm_[k], halfMm) : 0.0f;
+    lateralMm_[k] = most >= nestedLeastWeight ? relativeWeight(beam, q, depthMm_[k]) : 0.0f;
+    elevationalMm_[k] = most;
   }
-  for (int n = span.first; !isByGaussian && n <= span.last; ++n)
+  met_ += count;
+}
+
+void NestedShares::share(const Beam& beam, int level, int* wanted)
+{
+  const int count = inWholeVectors(met_);
+  for (std::vector<std::int32_t>* values : { &count_, &whole_ })
   {
-    const Vec3f q = nestedBrickCentre(row.brick(n), level) - beam.origin;
-    const float depthMm = met.depthMm[n];
-    const float most = perMm3_[std::size_t(n)] > 0.0f ? relativeWeight(beam, q, depthMm, halfMm) : 0.0f;
-    met.lateralMm[n] = most >= nestedLeastWeight ? relativeWeight(beam, q, depthMm) : 0.0f;
-    met.elevationalMm[n] = most;
+    values->resize(std::max(values->size(), std::size_t(count)));
   }
-  takeShares(met.lateralMm, met.elevationalMm, nestedCellMm(level), span.first, end,
+  for (std::vector<float>* values : { &scale_, &faded_, &perMm3_ })
+  {
+    values->resize(std::max(values->size(), std::size_t(count)));
+  }
+  std::fill(perMm3_.begin() + met_, perMm3_.begin() + count, 0.0f);
+  const MetBricks met{ depthMm_.data(), lateralMm_.data(), elevationalMm_.data(), at_.data(), parentAt_.data() };
+  if (isGaussian(beam))
+  {
+    weighByGaussian(beam, met, nestedHalfExtent(beam, level), count);
+  }
+  takeShares(met.lateralMm, met.elevationalMm, nestedCellMm(level), count,
              { perMm3_.data(), count_.data(), whole_.data(), scale_.data(), faded_.data() });
-  first_ = span.first;
-  last_ = span.last;
-  while (first_ <= last_ && count(first_) == 0)
+  taken_ = candidates_ = 0;
+  for (std::size_t k = 0; k < std::size_t(met_); ++k)
   {
-    ++first_;
-  }
-  while (first_ <= last_ && count(last_) == 0)
-  {
-    --last_;
+    // Written first and counted afterwards: without a branch, which would often be mispredicted.
+    const std::size_t to = std::size_t(taken_);
+    brick_[to] = brick_[k];
+    count_[to] = count_[k];
+    whole_[to] = whole_[k];
+    scale_[to] = scale_[k];
+    faded_[to] = faded_[k];
+    int& most = wanted[brick_[k]];
+    most = std::max(most, int(count_[k]));
+    candidates_ += count_[k];
+    taken_ += count_[k] > 0 ? 1 : 0;
   }
 }
 
-ScattererView NestedShares::hear(const NestedScatterers::Row& row, const Vec3f& axis)
+ScattererView NestedShares::hear(const NestedScatterers::Generated& scatterers, const Vec3f& axis)
 {
-  const int most = row.before[std::size_t(last_) + 1] - row.before[std::size_t(first_)];
   for (std::vector<float>* values : { &x_, &y_, &z_, &amplitude_, &fibreX_, &fibreY_, &fibreZ_ })
   {
-    values->resize(std::max(values->size(), std::size_t(most + vectorWidth)));
+    values->resize(std::max(values->size(), std::size_t(candidates_ + vectorWidth)));
   }
-  const TakenParts parts{ count_.data(), whole_.data(), scale_.data(), faded_.data() };
-  const int heard = takeScatterers(row, first_, last_, parts, { x_.data(), y_.data(), z_.data(), amplitude_.data() });
-  if (row.hasFibres)
+  const TakenParts parts{ brick_.data(), count_.data(), whole_.data(), scale_.data(), faded_.data() };
+  float* const to[placeArrays + fibreArrays] = { x_.data(),      y_.data(),      z_.data(),
+                                                 fibreX_.data(), fibreY_.data(), fibreZ_.data() };
+  int heard = 0;
+  if (scatterers.hasFibres)
   {
-    int to = 0;
-    for (int b = first_; b <= last_; ++b)
-    {
-      const int from = row.before[std::size_t(b)];
-      const int taken = row.among(b, count(b));
-      std::copy_n(row.fibreX.data() + from, taken, fibreX_.data() + to);
-      std::copy_n(row.fibreY.data() + from, taken, fibreY_.data() + to);
-      std::copy_n(row.fibreZ.data() + from, taken, fibreZ_.data() + to);
-      to += taken;
-    }
+    heard = takeWithFibres(scatterers, taken_, parts, to, amplitude_.data());
     hearAlong(axis, fibreX_.data(), fibreY_.data(), fibreZ_.data(), inWholeVectors(heard), amplitude_.data());
+  }
+  else
+  {
+    heard = takeScatterers(scatterers, taken_, parts, to, amplitude_.data());
   }
   return { x_.data(), y_.data(), z_.data(), amplitude_.data(), heard, 1.0f, true };
 }

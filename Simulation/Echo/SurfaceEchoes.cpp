@@ -28,6 +28,9 @@ constexpr double widestPerSigma = 0.75;
 constexpr double edgePerBlob = 1.6;
 /// Diffuse echoes need no more points than speckle does.
 constexpr double diffuseStepPerLambda = 1.2;
+/// Faces are heard at least so many at once, of several bricks. Beams that are no Gaussians, which weigh each by
+/// itself, do so brick by brick: one sees few of those that its neighbours see.
+constexpr std::size_t facesTogether = 64;
 
 double blobMm(const EchoSettings& s, const BeamExtent& beam)
 {
@@ -66,21 +69,82 @@ struct SurfaceEchoes::Group
   SurfaceTable table;
 };
 
-/// What is known of a brick.
+/// A brick that lines see, with those of its faces that count.
+struct SurfaceEchoes::MetBrick
+{
+  Vec3i brick;
+  const SurfacePieces::Face* faces;
+  std::size_t count;
+  std::vector<std::size_t> seeing; ///< lines, ascending
+};
+
+/// What is known of some bricks that follow each other: one alone has few faces.
 struct SurfaceEchoes::Room
 {
+  std::vector<MetBrick> bricks; ///< the first `met` of them
+  std::size_t met = 0;
+  std::size_t faceCount = 0;          ///< of these
+  std::vector<std::size_t> listening; ///< lines that see any of them, ascending
   FaceList faces;
   std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
   std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
   PieceList pieces;
   PieceExtents extents;                       ///< of the pieces; not of targets
   std::vector<const SurfacePiece*> pieceOf;   ///< by piece; not of targets
-  std::vector<std::size_t> faceOf;            ///< the same: of the brick's
+  std::vector<int> rowOf;                     ///< the same
   std::vector<HeardList> heard;               ///< by line
   std::vector<float> anyDiffuse, anyCoherent; ///< of the pieces: not 0 where any line hears that echo
   PointList diffuse, coherent;
   std::vector<SurfacePoint> targets;
 
+  void meet(const Vec3i& brick, const SurfacePieces::Face* ofBrick, std::size_t count,
+            const std::vector<std::size_t>& seeing)
+  {
+    bricks.resize(std::max(bricks.size(), met + 1));
+    MetBrick& b = bricks[met++];
+    b.brick = brick;
+    b.faces = ofBrick;
+    b.count = count;
+    b.seeing = seeing;
+    faceCount += count;
+  }
+  void forget() { met = faceCount = 0; }
+  void findListening(std::size_t lines)
+  {
+    std::vector<char> listens(lines, 0);
+    for (std::size_t b = 0; b < met; ++b)
+    {
+      for (const std::size_t i : bricks[b].seeing)
+      {
+        listens[i] = 1;
+      }
+    }
+    listening.clear();
+    for (std::size_t i = 0; i < lines; ++i)
+    {
+      if (listens[i])
+      {
+        listening.push_back(i);
+      }
+    }
+  }
+  /// Lines hear none of the faces of bricks that they do not see.
+  void leaveUnseen()
+  {
+    std::size_t first = 0;
+    for (std::size_t b = 0; b < met; ++b)
+    {
+      const std::vector<std::size_t>& seeing = bricks[b].seeing;
+      for (const std::size_t i : listening)
+      {
+        if (!std::binary_search(seeing.begin(), seeing.end(), i))
+        {
+          std::fill_n(mayHear[i].begin() + std::ptrdiff_t(first), bricks[b].count, 0);
+        }
+      }
+      first += bricks[b].count;
+    }
+  }
   /// Pieces of faces; without `diffuseMost` targets, which have none.
   void hear(const std::vector<std::size_t>& seeing, const Group& group, const float* diffuseMost)
   {
@@ -189,68 +253,90 @@ SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface
   }
 }
 
-void SurfaceEchoes::findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group,
-                               Room& room) const
+void SurfaceEchoes::findPieces(const Group& group, Room& room) const
 {
-  const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
-  const std::size_t count = isCoarse_ ? pieces_.coarseCount(brick) : faces.size();
   const float longestMm = longestStepMm();
   room.faces.clear();
-  for (std::size_t n = 0; n < count; ++n)
+  for (std::size_t b = 0; b < room.met; ++b)
   {
-    const SurfacePieces::Face& face = faces[n];
-    const int row = rows_->row(face.below, face.above);
-    room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
-                    rows_->at(row ^ 1));
+    for (std::size_t n = 0; n < room.bricks[b].count; ++n)
+    {
+      const SurfacePieces::Face& face = room.bricks[b].faces[n];
+      const int row = rows_->row(face.below, face.above);
+      room.faces.push(faceMiddleMm(face.voxel, face.axis, pieces_.spacingMm()), face.roughNormal, rows_->at(row),
+                      rows_->at(row ^ 1));
+    }
   }
+  room.findListening(group.beams.size());
   room.mayHear.resize(group.beams.size());
-  room.anyMayHear.assign(count, 0);
-  for (const std::size_t i : seeing)
+  for (const std::size_t i : room.listening)
   {
-    room.mayHear[i].resize(count);
+    room.mayHear[i].resize(room.faceCount);
     markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayHear[i].data());
+  }
+  room.leaveUnseen();
+  room.anyMayHear.assign(room.faceCount, 0);
+  for (const std::size_t i : room.listening)
+  {
     std::transform(room.anyMayHear.begin(), room.anyMayHear.end(), room.mayHear[i].begin(), room.anyMayHear.begin(),
                    std::bit_or<>());
   }
   room.pieces.clear();
   room.extents.clear();
   room.pieceOf.clear();
-  room.faceOf.clear();
-  for (std::size_t n = 0; n < count; ++n)
+  room.rowOf.clear();
+  std::size_t first = 0;
+  for (std::size_t b = 0; b < room.met; ++b)
   {
-    if (room.anyMayHear[n] == 0)
+    const MetBrick& brick = room.bricks[b];
+    for (std::size_t n = 0; n < brick.count; ++n)
     {
-      continue;
-    }
-    const SurfacePiece* piece =
-      group.table.counts(rows_->row(faces[n].below, faces[n].above)) ? pieces_.piece(brick, n) : nullptr;
-    if (piece)
-    {
-      // Pieces lie all over the memory, and are asked for while the next are looked up.
-      __builtin_prefetch(piece);
-      __builtin_prefetch(reinterpret_cast<const char*>(piece + 1) - 1);
-      for (const std::size_t i : seeing)
+      if (room.anyMayHear[first + n] == 0)
       {
-        room.mayHear[i][room.pieceOf.size()] = room.mayHear[i][n]; // none overtakes its face
+        continue;
       }
-      room.pieceOf.push_back(piece);
-      room.faceOf.push_back(n);
+      const int row = rows_->row(brick.faces[n].below, brick.faces[n].above);
+      const SurfacePiece* piece = group.table.counts(row) ? pieces_.piece(brick.brick, n) : nullptr;
+      if (piece)
+      {
+        // Pieces lie all over the memory, and are asked for while the next are looked up.
+        __builtin_prefetch(piece);
+        __builtin_prefetch(reinterpret_cast<const char*>(piece + 1) - 1);
+        for (const std::size_t i : room.listening)
+        {
+          room.mayHear[i][room.pieceOf.size()] = room.mayHear[i][first + n]; // none overtakes its face
+        }
+        room.pieceOf.push_back(piece);
+        room.rowOf.push_back(row);
+      }
     }
+    first += brick.count;
   }
   for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
   {
     const SurfacePiece& piece = *room.pieceOf[p];
-    const SurfacePieces::Face& face = faces[room.faceOf[p]];
     const PieceBounds bounds = pieceBounds(piece, longestMm);
     room.pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(piece)),
-                     rows_->row(face.below, face.above));
+                     room.rowOf[p]);
     room.extents.push(piece, nets_.diffuseNet(piece), nets_.coherentNet(piece));
   }
 }
 
-void SurfaceEchoes::expand(const std::vector<std::size_t>& seeing, Room& room) const
+void SurfaceEchoes::addMet(Group& group, Room& room) const
 {
-  room.findHeard(seeing);
+  findPieces(group, room);
+  if (room.pieces.count > 0)
+  {
+    room.hear(room.listening, group, rows_->diffuseMost().data());
+    expand(room);
+    room.addTo(room.listening, group);
+  }
+  room.forget();
+}
+
+void SurfaceEchoes::expand(Room& room) const
+{
+  room.findHeard(room.listening);
   room.diffuse.clear();
   room.coherent.clear();
   for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
@@ -360,32 +446,24 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
   }
   beams = seeingPieces(std::move(beams));
   group.table = pieceTable();
-  // A brick lies anywhere in memory: it is asked for while the one before is listened to.
-  Vec3i awaited(0);
-  std::vector<std::size_t> seeingAwaited;
-  const auto addAwaited = [&] {
-    brickDone();
-    findPieces(awaited, seeingAwaited, group, room);
-    if (room.pieces.count > 0)
-    {
-      room.hear(seeingAwaited, group, rows_->diffuseMost().data());
-      expand(seeingAwaited, room);
-      room.addTo(seeingAwaited, group);
-    }
-  };
+  const std::size_t most = isGaussian(exact.front().beam) ? facesTogether : 1;
   forSeenBricks(pieceGrid(), beams, [&](const Vec3i& brick, const std::vector<std::size_t>& seeing) {
-    pieces_.prefetch(brick);
-    if (!seeingAwaited.empty())
+    brickDone();
+    const std::vector<SurfacePieces::Face>& faces = pieces_.faces(brick);
+    const std::size_t count = isCoarse_ ? pieces_.coarseCount(brick) : faces.size();
+    if (count == 0)
     {
-      addAwaited();
+      return;
     }
-    awaited = brick;
-    seeingAwaited = seeing;
+    // A brick lies anywhere in memory: it is asked for while others are met.
+    pieces_.prefetch(brick);
+    room.meet(brick, faces.data(), count, seeing);
+    if (room.faceCount >= most)
+    {
+      addMet(group, room);
+    }
   });
-  if (!seeingAwaited.empty())
-  {
-    addAwaited();
-  }
+  addMet(group, room);
 }
 
 } // namespace sono

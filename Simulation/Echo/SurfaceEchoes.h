@@ -64,14 +64,17 @@ public:
 
 private:
   struct Group;
+  struct MetBrick;
   struct Room;
 
-  /// Faces of a brick that one of the lines may hear become pieces.
-  void findPieces(const Vec3i& brick, const std::vector<std::size_t>& seeing, const Group& group, Room& room) const;
+  /// Faces of the bricks that have been met become pieces where one of the lines may hear them.
+  void findPieces(const Group& group, Room& room) const;
+  /// Adds what these bricks echo.
+  void addMet(Group& group, Room& room) const;
   void addTargets(const TargetGroup& targets, std::vector<BeamReach> beams, const YieldPoint& brickDone, Group& group,
                   Room& room) const;
   /// Pieces that one of the lines hears become points.
-  void expand(const std::vector<std::size_t>& seeing, Room& room) const;
+  void expand(Room& room) const;
 
   const SurfacePieces& pieces_;
   bool isCoarse_;

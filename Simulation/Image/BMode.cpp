@@ -1,5 +1,6 @@
 #include "Image/BMode.h"
 
+#include "Core/LargeMemory.h"
 #include "Core/ParallelFor.h"
 #include "Core/Require.h"
 #include "Core/Simd.h"
@@ -313,7 +314,7 @@ BModeLines makeBMode(const std::vector<float>& echoEnvelope, int lineCount, int 
   std::transform(gainDb.begin(), gainDb.end(), offsetDb.begin(),
                  [&](double decibels) { return static_cast<float>(decibels + constantDb); });
 
-  result.grey.resize(envelope.size());
+  result.grey = largeVector<float>(envelope.size());
   float* grey = result.grey.data();
   const auto rangeDb = static_cast<float>(settings.dynamicRangeDb);
   const auto rejectDb = static_cast<float>(settings.rejectDb);

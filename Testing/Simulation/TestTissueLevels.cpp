@@ -186,11 +186,14 @@ std::vector<Vec3f> candidatesOf(int level, int count, int edgeMm)
   const NestedScatterers nested(*scene, 2.5, 1.0, 5);
   const int bricks = int(double(edgeMm) / double(nested.grid(level).edgeMm));
   const std::vector<int> wanted(std::size_t(bricks), count);
-  NestedScatterers::Row row;
+  NestedScatterers::Generated row;
+  NestedBricks line;
   std::vector<Vec3f> out;
   for (int i = 0; i < bricks * bricks; ++i)
   {
-    nested.generate(level, { { i % bricks, 0, i / bricks }, 1, bricks }, wanted.data(), row);
+    line.clear();
+    line.append({ i % bricks, 0, i / bricks }, 1, bricks);
+    nested.generate(level, line, wanted.data(), row);
     for (std::size_t n = 0; n < std::size_t(row.before.back()); ++n)
     {
       out.push_back({ row.x[n], row.y[n], row.z[n] });
