@@ -7,6 +7,7 @@
 #include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
 #include "Trace/Deposit.h"
+#include "Trace/ReverberationWindows.h"
 #include "Trace/SharedWay.h"
 #include "Trace/TraceSetup.h"
 #include "Trace/TracedBin.h"
@@ -37,22 +38,21 @@ void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std
   }
 }
 
-/// What lines leave of reverberation, lines x TissueBins, until all are traced.
+/// What lines leave of reverberation, by TissueBins, until all are traced.
 struct TracedReverberation
 {
   TissueBins tissueBins;
-  std::vector<float> ownLevel;             ///< ReverberationMeans
-  std::vector<ReverberationAround> along;  ///< over the bins around, of the same line
-  std::vector<ReverberationAround> around; ///< and of the lines around
-  std::vector<char> isHeard;               ///< whether the line has any
+  std::vector<float> ownLevel; ///< ReverberationMeans, lines x bins
+  ReverberationRows along;     ///< over the bins around, of the same line
+  ReverberationRows around;    ///< and of the lines around
+  std::vector<char> isHeard;   ///< whether the line has any
 
   explicit TracedReverberation(const TracedLines& out)
     : tissueBins(out.binCount, float(out.binMm))
   {
-    const std::size_t size = out.reverberation.empty() ? 0 : std::size_t(out.lineCount) * std::size_t(tissueBins.count);
-    ownLevel.resize(size);
-    along.resize(size);
-    around.resize(size);
+    const int lines = out.reverberation.empty() ? 0 : out.lineCount;
+    ownLevel.resize(std::size_t(lines) * std::size_t(tissueBins.count));
+    along = around = ReverberationRows(lines, tissueBins.count);
     isHeard.resize(std::size_t(out.lineCount));
   }
   std::size_t at(int line, int bin) const
@@ -61,22 +61,13 @@ struct TracedReverberation
   }
 };
 
-template<class BinOf>
-void keepAlong(int line, const BinOf& binOf, TracedReverberation& kept)
-{
-  for (int t = 0; t < kept.tissueBins.count; ++t)
-  {
-    kept.along[kept.at(line, t)] = sumAlongLine(t, kept.tissueBins.count, kept.tissueBins.mm, binOf);
-  }
-}
-
 /// Of the means of a line's batches, and of what the media have taken.
 void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batches, const std::vector<float>& takenNp,
                        double frequencyMHz, int line, TracedReverberation& kept, TracedLines& out)
 {
   const TissueBins& tissueBins = kept.tissueBins;
   kept.isHeard[std::size_t(line)] = 1;
-  std::vector<ReverberationAround> bins(std::size_t(tissueBins.count));
+  ReverberationRows bins(1, tissueBins.count);
   const std::size_t first = std::size_t(line) * std::size_t(out.binCount);
   for (int t = 0; t < tissueBins.count; ++t)
   {
@@ -84,7 +75,7 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
       const std::vector<ReverberationSums>& sums = batches[std::size_t(batch)];
       return sums.empty() ? ReverberationSums() : sums[std::size_t(t)];
     });
-    bins[std::size_t(t)] = aroundOf(means);
+    bins.set(0, t, aroundOf(means));
     kept.ownLevel[kept.at(line, t)] = means.ownLevel;
     for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
     {
@@ -92,8 +83,18 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
       out.reverberationNpPerMHz[first + std::size_t(b)] = float(double(takenNp[std::size_t(b)]) / frequencyMHz);
     }
   }
-  keepAlong(
-    line, [&](int bin) { return bins[std::size_t(bin)]; }, kept);
+  sumAlongLine(bins, 0, tissueBins.mm, kept.along, line);
+}
+
+/// Of a line without any, which counts in the means around it.
+void keepSilence(int line, TracedReverberation& kept)
+{
+  ReverberationRows bins(1, kept.tissueBins.count);
+  for (int t = 0; t < kept.tissueBins.count; ++t)
+  {
+    bins.set(0, t, aroundOf(ReverberationMeans{}));
+  }
+  sumAlongLine(bins, 0, kept.tissueBins.mm, kept.along, line);
 }
 
 /// Whether a line or one around it has any.
@@ -105,27 +106,18 @@ bool isHeardAround(const TracedReverberation& kept, int line)
                      [](char is) { return is != 0; });
 }
 
-void sumLinesAround(int line, TracedReverberation& kept)
-{
-  for (int t = 0; t < kept.tissueBins.count; ++t)
-  {
-    kept.around[kept.at(line, t)] =
-      sumOverLines(line, 0, int(kept.isHeard.size()), [&](int near) { return kept.along[kept.at(near, t)]; });
-  }
-}
-
 /// The levels of a line's reverberation, of what it and the lines beside it have left.
 void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept, int line, TracedLines& out)
 {
   const TissueBins& tissueBins = kept.tissueBins;
+  ReverberationRows further(1, tissueBins.count);
+  sumFurther(kept.around, line, tissueBins.mm, further);
   for (int t = 0; t < tissueBins.count; ++t)
   {
-    const ReverberationAround further = sumFurther(line, 0, out.lineCount, t, tissueBins.count, tissueBins.mm,
-                                                   [&](int l, int b) { return kept.around[kept.at(l, b)]; });
     const float rangeMm = (float(t) + 0.5f) * tissueBins.mm;
     const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
     const float level =
-      reverberationLevel(kept.around[kept.at(line, t)], further, unspread, kept.ownLevel[kept.at(line, t)]);
+      reverberationLevel(kept.around.at(line, t), further.at(0, t), unspread, kept.ownLevel[kept.at(line, t)]);
     for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
     {
       out.reverberation[std::size_t(line) * std::size_t(out.binCount) + std::size_t(b)] = level;
@@ -435,11 +427,10 @@ void TraceRounds::traceTo(int paths, bool more, const Progress& progress)
     forHeard([&](int i) {
       if (!kept.isHeard[std::size_t(i)])
       {
-        keepAlong(
-          i, [](int) { return aroundOf(ReverberationMeans{}); }, kept); // silence counts in the means around it
+        keepSilence(i, kept);
       }
     });
-    forHeard([&](int i) { sumLinesAround(i, kept); });
+    forHeard([&](int i) { sumOverLines(kept.along, i, kept.around); });
     forHeard([&](int i) { writeReverberation(*setup_, kept, i, out_); });
   }
   for (const LineTally& tally : tallies)

@@ -99,16 +99,29 @@ SONO_HD inline ReverberationAround aroundOf(const ReverberationMeans& means)
   return { means.cellPower, means.ownLevel * means.ownLevel, 2.0f * variance * variance, means.straightPower, 1.0f };
 }
 
+/// How far the windows around a bin reach along its line, in bins.
+struct WindowAlong
+{
+  int reach;
+  int straightReach; ///< of what comes straight back
+
+  SONO_HD explicit WindowAlong(float tissueBinMm)
+    : reach(int(spreadAroundMm / tissueBinMm + 0.5f))
+    , straightReach(int(straightAroundMm / tissueBinMm + 0.5f))
+  {
+  }
+};
+
 /// Over the line's bins around one of `count`; `binOf` gives that of each.
 template<class BinOf>
 SONO_HD inline ReverberationAround sumAlongLine(int bin, int count, float tissueBinMm, const BinOf& binOf)
 {
-  const int reach = int(spreadAroundMm / tissueBinMm + 0.5f);
-  const int straightReach = int(straightAroundMm / tissueBinMm + 0.5f);
+  const WindowAlong window(tissueBinMm);
+  const int reach = window.reach;
   ReverberationAround sum;
   for (int b = bin > reach ? bin - reach : 0; b < count && b <= bin + reach; ++b)
   {
-    sum.add(binOf(b), weightAround(b - bin, reach), weightAround(b - bin, straightReach));
+    sum.add(binOf(b), weightAround(b - bin, reach), weightAround(b - bin, window.straightReach));
   }
   return sum;
 }
@@ -126,19 +139,32 @@ SONO_HD inline ReverberationAround sumOverLines(int line, int first, int end, co
   return sum;
 }
 
-/// Of windows like the one around a bin of a line, side by side: three times as far each way and more. `aroundOf` gives
+/// Windows like the one around a bin of a line, side by side: where they lie, to either side.
+struct WindowsFurther
+{
+  int lines = 2 * linesAround;
+  int bins;
+  int step; ///< of bins, from one to the next
+
+  SONO_HD explicit WindowsFurther(float tissueBinMm)
+  {
+    const int inWindow = WindowAlong(tissueBinMm).reach;
+    step = inWindow > 0 ? inWindow : 1; // bins wider than windows
+    bins = 2 * step;
+  }
+};
+
+/// Over these windows: three times as far each way and more. `aroundOf` gives
 /// that of a line, from `first` up to before `end`, and a bin, of `count`.
 template<class AroundOf>
 SONO_HD inline ReverberationAround sumFurther(int line, int first, int end, int bin, int count, float tissueBinMm,
                                               const AroundOf& aroundOf)
 {
-  constexpr int windows = 2;
-  const int inWindow = int(spreadAroundMm / tissueBinMm + 0.5f);
-  const int step = inWindow > 0 ? inWindow : 1; // bins wider than windows
+  const WindowsFurther windows(tissueBinMm);
   ReverberationAround sum;
-  for (int l = line - windows * linesAround; l <= line + windows * linesAround; l += linesAround)
+  for (int l = line - windows.lines; l <= line + windows.lines; l += linesAround)
   {
-    for (int b = bin - windows * step; b <= bin + windows * step; b += step)
+    for (int b = bin - windows.bins; b <= bin + windows.bins; b += windows.step)
     {
       if (l >= first && l < end && b >= 0 && b < count)
       {
