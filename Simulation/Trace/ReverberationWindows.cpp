@@ -12,12 +12,12 @@ namespace {
 SONO_SIMD_CLONES void addAhead(const float* values, int count, int ahead, float by, float* sums)
 {
   const int last = std::min(count, count - ahead);
-  const float* from = values + ahead;
+  const float* from = values;
   float* to = sums;
 #pragma GCC ivdep
   for (int b = std::max(0, -ahead); b < last; ++b)
   {
-    to[b] += by * from[b];
+    to[b] += by * from[b + ahead];
   }
 }
 
