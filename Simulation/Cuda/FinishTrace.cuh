@@ -181,7 +181,7 @@ __global__ void __launch_bounds__(flightThreads) timeLines(TraceLaunch<Targets> 
   int medium = mediumOnAxis(launch.view, launch.space, line, spans, float(first) * launch.flightMm);
   for (int s = first; s < last; ++s)
   {
-    const FlightStep step = flightStep(launch.view, launch.space, line, spans, launch.flightMm, s, medium);
+    const FlightStep step = flightStepOn(launch.view, launch.space, line, spans, launch.flightMm, s, medium);
     own[0] += double(step.rangeMm);
     own[1] += double(step.lostNp);
     own[2] += double(step.absorbedNp);

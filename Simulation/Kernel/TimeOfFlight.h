@@ -170,16 +170,22 @@ SONO_HD inline AxisMedium mediumThere(const TraceView& view, const Space& space,
   return { mediumAt(view, space, line.origin + line.axis * depthMm), false };
 }
 
-/// The medium that counts there.
+/// The medium that counts there, of the one that is there.
 template<class Space>
 SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const TraceLine& line,
-                                const TargetSpans& spans, float depthMm)
+                                const AxisMedium& there, float depthMm)
 {
-  const AxisMedium there = mediumThere(view, space, line, spans, depthMm);
   // Without an aperture there is no beam that is wider than the axis.
   const bool mayBeStrand = view.startsApart && !there.ofTarget && there.medium >= 0 &&
                            fabsf(view.media[there.medium].rangePerMm - 1.0f) > strandRangePerMm;
   return mayBeStrand ? mediumAround(view, space, line, line.origin + line.axis * depthMm, there.medium) : there.medium;
+}
+
+template<class Space>
+SONO_HD inline int mediumOnAxis(const TraceView& view, const Space& space, const TraceLine& line,
+                                const TargetSpans& spans, float depthMm)
+{
+  return mediumOnAxis(view, space, line, mediumThere(view, space, line, spans, depthMm), depthMm);
 }
 
 /// What a piece of the way along the axis adds to it: its range, and the exponent of the intensity that is left of what
@@ -199,13 +205,11 @@ SONO_HD inline void addMedium(const TraceView& view, int medium, float mm, Fligh
   sum.absorbedNp += taken;
 }
 
-/// `medium` is that at the step's start, and becomes that at its end.
+/// Between two media that count, at the step's start and at its end.
 template<class Space>
 SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, const TraceLine& line,
-                                     const TargetSpans& spans, float stepMm, int step, int& medium)
+                                     const TargetSpans& spans, float stepMm, int step, int before, int medium)
 {
-  const int before = medium;
-  medium = mediumOnAxis(view, space, line, spans, float(step + 1) * stepMm);
   FlightStep sum{ 0.0f, 0.0f, 0.0f };
   if (medium == before)
   {
@@ -232,6 +236,16 @@ SONO_HD inline FlightStep flightStep(const TraceView& view, const Space& space, 
     sum.lostNp -= logf(larger(1.0f - r * r, 1e-12f));
   }
   return sum;
+}
+
+/// `medium` is that at the step's start, and becomes that at its end.
+template<class Space>
+SONO_HD inline FlightStep flightStepOn(const TraceView& view, const Space& space, const TraceLine& line,
+                                       const TargetSpans& spans, float stepMm, int step, int& medium)
+{
+  const int before = medium;
+  medium = mediumOnAxis(view, space, line, spans, float(step + 1) * stepMm);
+  return flightStep(view, space, line, spans, stepMm, step, before, medium);
 }
 
 /// Depth at a range, by the ranges at multiples of a step of depth, [0, steps], which rise; the range lies between

@@ -6,6 +6,7 @@
 #include "Kernel/NanoSpace.h"
 #include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
+#include "Trace/AxisMedia.h"
 #include "Trace/Deposit.h"
 #include "Trace/ReverberationWindows.h"
 #include "Trace/SharedWay.h"
@@ -139,6 +140,34 @@ struct AxisWay
   }
 };
 
+/// The media that count at multiples of a step along the axis.
+template<class Targets, class Cells>
+std::vector<int> followMedia(const CellSpace<Targets, Cells>& space, const TraceView& view, const TraceLine& axis,
+                             const TargetSpans& spans, float stepMm, int count)
+{
+  std::vector<int> media = mediaOnAxis(view, space.cells, axis, stepMm, count);
+  for (int s = 0; s < count; ++s)
+  {
+    int& medium = media[std::size_t(s)];
+    const float depthMm = float(s) * stepMm;
+    medium = spans.count == 0 ? mediumOnAxis(view, space, axis, AxisMedium{ medium, false }, depthMm)
+                              : mediumOnAxis(view, space, axis, spans, depthMm);
+  }
+  return media;
+}
+
+template<class Space>
+std::vector<int> followMedia(const Space& space, const TraceView& view, const TraceLine& axis, const TargetSpans& spans,
+                             float stepMm, int count)
+{
+  std::vector<int> media;
+  for (int s = 0; s < count; ++s)
+  {
+    media.push_back(mediumOnAxis(view, space, axis, spans, float(s) * stepMm));
+  }
+  return media;
+}
+
 /// Follows the line's axis by time, and writes where ranges lie on it.
 template<class Space>
 AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, TracedLines& out)
@@ -153,7 +182,7 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   const int steps = out.binCount * flightSteps(float(out.binMm));
   way.stepMm = float(out.binMm) / float(flightSteps(float(out.binMm)));
   const TargetSpans spans = targetSpans(view, space, axis);
-  int medium = mediumOnAxis(view, space, axis, spans, 0.0f);
+  const std::vector<int> media = followMedia(space, view, axis, spans, way.stepMm, steps + 2);
   double range = 0.0;
   double amplitude = 1.0;
   double absorbed = 0.0;
@@ -161,14 +190,15 @@ AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, Traced
   double lastFactor = 1.0; // within a medium each step takes the same
   for (std::vector<float>* values : { &way.rangeMm, &way.amplitude, &way.absorbedNp })
   {
-    values->reserve(std::size_t(steps) + 1);
+    values->resize(std::size_t(steps) + 1);
   }
   for (int s = 0; s <= steps; ++s)
   {
-    way.rangeMm.push_back(float(range));
-    way.amplitude.push_back(float(amplitude));
-    way.absorbedNp.push_back(float(absorbed));
-    const FlightStep step = flightStep(view, space, axis, spans, way.stepMm, s, medium);
+    way.rangeMm[std::size_t(s)] = float(range);
+    way.amplitude[std::size_t(s)] = float(amplitude);
+    way.absorbedNp[std::size_t(s)] = float(absorbed);
+    const FlightStep step =
+      flightStep(view, space, axis, spans, way.stepMm, s, media[std::size_t(s)], media[std::size_t(s) + 1]);
     range += double(step.rangeMm);
     if (step.lostNp != lastNp)
     {
@@ -377,7 +407,7 @@ TraceRounds::TraceRounds(const Scene& scene, const std::vector<ScanLine>& lines,
 {
   out_.paths = 0;
   TracedLines::visitArrays(out_, [this](auto& values, const char*, TracedAxis axis) {
-    values.assign(std::size_t(out_.lineCount) * (axis == TracedAxis::EchoSamples ? out_.echoCount : out_.binCount), {});
+    values.resize(std::size_t(out_.lineCount) * (axis == TracedAxis::EchoSamples ? out_.echoCount : out_.binCount));
   });
   if (!settings.rangeIsTime() || settings.intensityAlone)
   {

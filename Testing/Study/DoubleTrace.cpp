@@ -72,7 +72,7 @@ void findDepthOffsets(const DoubleInput& input, const kernel::TraceView& view, c
   std::vector<double> rangeMm{ 0.0 };
   for (int s = 0; s < input.binCount * each; ++s)
   {
-    rangeMm.push_back(rangeMm.back() + kernel::flightStep(view, space, line, spans, stepMm, s, medium).rangeMm);
+    rangeMm.push_back(rangeMm.back() + kernel::flightStepOn(view, space, line, spans, stepMm, s, medium).rangeMm);
   }
   for (int b = 0; b < input.binCount; ++b)
   {
