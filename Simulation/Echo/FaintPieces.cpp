@@ -1,6 +1,7 @@
 #include "Echo/FaintPieces.h"
 
 #include "Core/Simd.h"
+#include "Echo/ResizeAll.h"
 #include "Echo/WithProfile.h"
 
 #include <algorithm>

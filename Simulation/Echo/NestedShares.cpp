@@ -1,6 +1,7 @@
 #include "Echo/NestedShares.h"
 
 #include "Core/Simd.h"
+#include "Echo/ResizeAll.h"
 #include "Echo/WithProfile.h"
 #include "Kernel/FastMath.h"
 
@@ -215,14 +216,8 @@ void NestedShares::meet(const Beam& beam, std::size_t index, const BrickRow& row
     return;
   }
   const std::size_t room = std::size_t(met_ + count + vectorWidth);
-  for (std::vector<std::int32_t>* values : { &brick_, &at_, &parentAt_ })
-  {
-    values->resize(std::max(values->size(), room));
-  }
-  for (std::vector<float>* values : { &depthMm_, &lateralMm_, &elevationalMm_, &perMm3_ })
-  {
-    values->resize(std::max(values->size(), room));
-  }
+  resizeAll({ &brick_, &at_, &parentAt_ }, room);
+  resizeAll({ &depthMm_, &lateralMm_, &elevationalMm_, &perMm3_ }, room);
   const std::size_t from = std::size_t(met_);
   const Vec3i first = row.brick(span.first);
   meetBricks(beam, first, row.brick(span.first + 1) - first, density, level, inWholeVectors(count),
@@ -252,14 +247,8 @@ void NestedShares::meet(const Beam& beam, std::size_t index, const BrickRow& row
 void NestedShares::share(const Beam& beam, int level, int* wanted)
 {
   const int count = inWholeVectors(met_);
-  for (std::vector<std::int32_t>* values : { &count_, &whole_ })
-  {
-    values->resize(std::max(values->size(), std::size_t(count)));
-  }
-  for (std::vector<float>* values : { &scale_, &faded_, &perMm3_ })
-  {
-    values->resize(std::max(values->size(), std::size_t(count)));
-  }
+  resizeAll({ &count_, &whole_ }, std::size_t(count));
+  resizeAll({ &scale_, &faded_ }, std::size_t(count));
   std::fill(perMm3_.begin() + met_, perMm3_.begin() + count, 0.0f);
   const MetBricks met{ depthMm_.data(), lateralMm_.data(), elevationalMm_.data(), at_.data(), parentAt_.data() };
   if (isGaussian(beam))
@@ -287,10 +276,7 @@ void NestedShares::share(const Beam& beam, int level, int* wanted)
 
 ScattererView NestedShares::hear(const NestedScatterers::Generated& scatterers, const Vec3f& axis)
 {
-  for (std::vector<float>* values : { &x_, &y_, &z_, &amplitude_, &fibreX_, &fibreY_, &fibreZ_ })
-  {
-    values->resize(std::max(values->size(), std::size_t(candidates_ + vectorWidth)));
-  }
+  resizeAll({ &x_, &y_, &z_, &amplitude_, &fibreX_, &fibreY_, &fibreZ_ }, std::size_t(candidates_ + vectorWidth));
   const TakenParts parts{ brick_.data(), count_.data(), whole_.data(), scale_.data(), faded_.data() };
   float* const to[placeArrays + fibreArrays] = { x_.data(),      y_.data(),      z_.data(),
                                                  fibreX_.data(), fibreY_.data(), fibreZ_.data() };

@@ -1,6 +1,9 @@
 #include "Echo/SurfaceLists.h"
 
 #include "Core/Simd.h"
+#include "Echo/ResizeAll.h"
+
+#include <cstddef>
 
 namespace sono {
 

@@ -2,26 +2,13 @@
 
 #include "Kernel/SurfacePiece.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <vector>
 
 // A brick's faces, pieces and points, as HeardSurfaces.h and SurfaceLoops.h take them: arrays by number, with room up
 // to whole vectors.
 
 namespace sono {
-
-/// At least so long all.
-template<class List>
-void resizeAll(std::initializer_list<List*> lists, std::size_t count)
-{
-  for (List* values : lists)
-  {
-    values->resize(std::max(values->size(), count));
-  }
-}
 
 /// Faces, of which only a rough normal is known.
 struct FaceList

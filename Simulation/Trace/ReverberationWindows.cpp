@@ -21,28 +21,16 @@ SONO_SIMD_CLONES void addAhead(const float* values, int count, int ahead, float 
   }
 }
 
-/// How a sum's values are weighted where ReverberationAround::add() is given these.
-float weightOf(int sum, float by, float byStraight)
-{
-  switch (sum)
-  {
-    case 2:
-      return by * by;
-    case 3:
-    case 4:
-      return byStraight;
-    default:
-      return by;
-  }
-}
-
 /// Adds a line's bins so far ahead to those of another.
 void addLine(const ReverberationRows& from, int line, int ahead, float by, float byStraight, ReverberationRows& to,
              int toLine)
 {
+  ReverberationAround ofOnes;
+  ofOnes.add({ 1.0f, 1.0f, 1.0f, 1.0f, 1.0f }, by, byStraight);
+  const auto weights = ReverberationRows::sumsOf(ofOnes);
   for (int sum = 0; sum < ReverberationRows::sums; ++sum)
   {
-    const float weight = weightOf(sum, by, byStraight);
+    const float weight = weights[std::size_t(sum)];
     if (weight > 0.0f)
     {
       addAhead(from.row(line, sum), from.bins(), ahead, weight, to.row(toLine, sum));

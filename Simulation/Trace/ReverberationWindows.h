@@ -2,6 +2,7 @@
 
 #include "Trace/TracedReverberation.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -32,12 +33,15 @@ public:
   void set(int line, int bin, const ReverberationAround& around)
   {
     float* of = row(line, 0) + bin;
-    for (const float value :
-         { around.cellPower, around.power, around.chance, around.straightPower, around.straightWeight })
+    for (const float value : sumsOf(around))
     {
       *of = value;
       of += bins_;
     }
+  }
+  static std::array<float, sums> sumsOf(const ReverberationAround& around)
+  {
+    return { around.cellPower, around.power, around.chance, around.straightPower, around.straightWeight };
   }
 
 private:

@@ -140,30 +140,34 @@ struct AxisWay
   }
 };
 
-/// The media that count at multiples of a step along the axis.
+/// mediaOnAxis of a space of cells; of any other nothing, which is asked place by place.
 template<class Targets, class Cells>
-std::vector<int> followMedia(const CellSpace<Targets, Cells>& space, const TraceView& view, const TraceLine& axis,
-                             const TargetSpans& spans, float stepMm, int count)
+std::vector<int> mediaAtOnce(const CellSpace<Targets, Cells>& space, const TraceView& view, const TraceLine& axis,
+                             float stepMm, int count)
 {
-  std::vector<int> media = mediaOnAxis(view, space.cells, axis, stepMm, count);
-  for (int s = 0; s < count; ++s)
-  {
-    int& medium = media[std::size_t(s)];
-    const float depthMm = float(s) * stepMm;
-    medium = spans.count == 0 ? mediumOnAxis(view, space, axis, AxisMedium{ medium, false }, depthMm)
-                              : mediumOnAxis(view, space, axis, spans, depthMm);
-  }
-  return media;
+  return mediaOnAxis(view, space.cells, axis, stepMm, count);
 }
 
+template<class Space>
+std::vector<int> mediaAtOnce(const Space&, const TraceView&, const TraceLine&, float, int)
+{
+  return {};
+}
+
+/// The media that count at multiples of a step along the axis.
 template<class Space>
 std::vector<int> followMedia(const Space& space, const TraceView& view, const TraceLine& axis, const TargetSpans& spans,
                              float stepMm, int count)
 {
-  std::vector<int> media;
+  std::vector<int> media = spans.count == 0 ? mediaAtOnce(space, view, axis, stepMm, count) : std::vector<int>();
+  const bool isKnown = !media.empty();
+  media.resize(std::size_t(count));
   for (int s = 0; s < count; ++s)
   {
-    media.push_back(mediumOnAxis(view, space, axis, spans, float(s) * stepMm));
+    int& medium = media[std::size_t(s)];
+    const float depthMm = float(s) * stepMm;
+    const AxisMedium there = isKnown ? AxisMedium{ medium, false } : mediumThere(view, space, axis, spans, depthMm);
+    medium = mediumOnAxis(view, space, axis, there, depthMm);
   }
   return media;
 }

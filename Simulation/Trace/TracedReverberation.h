@@ -154,8 +154,8 @@ struct WindowsFurther
   }
 };
 
-/// Over these windows: three times as far each way and more. `aroundOf` gives
-/// that of a line, from `first` up to before `end`, and a bin, of `count`.
+/// Over these windows: three times as far each way and more. `aroundOf` gives that of a line, from `first` up to before
+/// `end`, and a bin, of `count`.
 template<class AroundOf>
 SONO_HD inline ReverberationAround sumFurther(int line, int first, int end, int bin, int count, float tissueBinMm,
                                               const AroundOf& aroundOf)

@@ -4,6 +4,7 @@
 
 #include <random>
 #include <string>
+#include <tuple>
 
 // All bins of a line at once against one after the other, as the GPU has them.
 
