@@ -48,7 +48,7 @@ inline const std::map<std::string, SliderRange>& sliderRanges()
     { "RadiusMm", { 5, 100 } },
     { "RejectDb", { 0, 60 } },
     { "RouletteDb", { -200, 0 } },
-    { "SamplingMHz", { 10, 200 } },
+    { "SamplingMHz", { 0, 200 } },
     { "ScattererCellMm", { 0.05, 2 } },
     { "ScattererLevelDb", { -40, 40 } },
     { "SectorDeg", { 10, 120 } },

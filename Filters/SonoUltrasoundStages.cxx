@@ -157,7 +157,7 @@ void UltrasoundStages::announce(vtkInformationVector** input, vtkInformationVect
   const vtkSmartPointer<vtkFieldData> before = acquisition_;
   acquisition_ = vtkSmartPointer<vtkFieldData>::New();
   writeProbe(field_, acquisition_, before);
-  writeNumber("SamplingMHz", settings_.echo.samplingMHz, acquisition_, before);
+  writeNumber("SamplingMHz", settings_.echo.samplingInMHz(), acquisition_, before);
 
   const ImagePlacement placement = placementOf(field_, settings_.pixelMm);
   placement.announce(VTK_UNSIGNED_CHAR, on(Filter::IMAGE));
@@ -402,7 +402,7 @@ void UltrasoundStages::make(int port, vtkInformationVector** input, vtkInformati
   if (port == Filter::TRACED_LINES)
   {
     return makeLines(
-      traced, tracedHandleOf, [&] { fillTraced(traced, field_, settings_.echo.samplingMHz, lines); }, tracedLines_,
+      traced, tracedHandleOf, [&] { fillTraced(traced, field_, settings_.echo.samplingInMHz(), lines); }, tracedLines_,
       lines);
   }
   if (owner_->GetErrorMap())

@@ -75,7 +75,8 @@ int vtkSonoRayTracer::FillOutputPortInformation(int port, vtkInformation* info)
 
 double vtkSonoRayTracer::RfSamplingMHz(const sono::ProbeField& probe) const
 {
-  return probe.coarse ? sono::interactiveSamplingMHz(this->SamplingMHz, probe.receivedMHz()) : this->SamplingMHz;
+  const double samplingMHz = sono::rfSamplingMHz(this->SamplingMHz, probe.receivedMHz());
+  return probe.coarse ? sono::interactiveSamplingMHz(samplingMHz, probe.receivedMHz()) : samplingMHz;
 }
 
 sono::TraceSettings vtkSonoRayTracer::Settings(const sono::ProbeField& probe) const

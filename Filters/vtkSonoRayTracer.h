@@ -88,7 +88,7 @@ public:
   ///@{
   /**
    * Sampling frequency of the RF lines in MHz, more than twice the centre frequency; also that of the boundary
-   * echoes. Default 50.
+   * echoes; 0 (the default): eight times the centre frequency.
    */
   vtkSetMacro(SamplingMHz, double);
   vtkGetMacro(SamplingMHz, double);
@@ -136,7 +136,7 @@ private:
 
   std::unique_ptr<sono::ParameterSet> Parameters;
   std::unique_ptr<sono::Simulator> Simulator;
-  double SamplingMHz = 50.0;
+  double SamplingMHz = 0.0;
   std::string TargetTissue = "cortical_bone";
   int NumberOfShownPaths = 0;
 };

@@ -36,7 +36,7 @@ struct ChannelSettings
   Baffle baffle = Baffle::Soft;
   bool flat = false;
   double attenuationDbPerCmMHz = 0.0; ///< of scatterers without anatomy
-  int scatterersPerCell = 15;
+  int scatterersPerCell = 6;
   std::uint64_t seed = 1; ///< of the tissues' scatterers, as EchoSettings has it
   Device device = Device::Auto;
 
@@ -93,8 +93,8 @@ struct ChannelSettings
                        "body has that of its tissues." });
     visitor(self.scatterersPerCell,
             Parameter{ "scatterersPerCell", "Scatterers per Cell", between(1, 15),
-                       "Candidates for scatterers in a resolution cell of the probe's beam, 1 to 15, no unit. 15: "
-                       "those of the picture; fewer take as much less time, each stronger." });
+                       "Candidates for scatterers in a resolution cell of the probe's beam, 1 to 15, no unit. 6: as "
+                       "many as the picture has; fewer take as much less time, each stronger." });
     visitor(self.seed,
             Parameter{ "scattererSeed", "Scatterer Seed", atLeast(0),
                        "Seed of the scatterers, at least 0, no unit: with that of the picture they are the same." });

@@ -44,11 +44,14 @@ inline double interactiveCellMm(double cellMm)
   return std::min(2.0 * cellMm, std::max(cellMm, 10.0));
 }
 
-/// Candidates in a resolution cell: two scatterers in soft tissue are enough for speckle that will be gone in a moment.
+/// Candidates in a resolution cell: one and a half are enough for speckle that will be gone in a moment.
 inline double interactiveCandidates(double candidatesPerCell)
 {
-  return 0.2 * candidatesPerCell;
+  return 0.25 * candidatesPerCell;
 }
+
+/// Of the scatterers of moving tissue, which do not follow the resolution cell.
+constexpr double interactiveMovingShare = 0.2;
 
 /// Surfaces are cut into pieces of this edge, as they are anyway where voxels are as large: a piece costs the same.
 constexpr double interactivePieceMm = 2.0;

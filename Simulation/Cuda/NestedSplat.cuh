@@ -124,7 +124,7 @@ __global__ void __launch_bounds__(blockThreads, 8) splatNestedCells(NestedLaunch
       return none;
     }
     return relativeWeight(beam, q, depthMm, halfMm) >= nestedLeastWeight
-             ? launch.density.share(own.level, depthMm, relativeWeight(beam, q, depthMm))
+             ? launch.density.share(own.level, depthMm, relativeWeight(beam, q, depthMm, nestedInward * halfMm))
              : none;
   };
   const auto splatCandidate = [&](const NestedCell& brick, float scale, int number) {

@@ -41,7 +41,7 @@ void EchoSettings::validate() const
                  centreFrequencyMHz, "more than 0");
   requireInRange(fractionalBandwidth > 0.0 && fractionalBandwidth < 2.0, "fractional bandwidth", fractionalBandwidth,
                  "more than 0 and below 2");
-  if (!(samplingMHz > 2.0 * centreFrequencyMHz))
+  if (!(samplingInMHz() > 2.0 * centreFrequencyMHz))
   {
     const bool isHarmonic = imagingMode == ImagingMode::Harmonic;
     std::ostringstream sentence;

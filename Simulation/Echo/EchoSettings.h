@@ -20,6 +20,13 @@ enum class BeamForm
   Computed  ///< the complex beam of its elements
 };
 
+/// The sampling frequency of RF lines that is asked for, or for 0 eight samples a period: against finer ones an
+/// envelope of the usual bandwidths is then off by 0.2 dB (Data/docs/physics.md 4.2).
+inline double rfSamplingMHz(double wantedMHz, double centreFrequencyMHz)
+{
+  return wantedMHz == 0.0 ? 8.0 * centreFrequencyMHz : wantedMHz;
+}
+
 struct EchoSettings
 {
   Device device = Device::Auto;
@@ -28,8 +35,8 @@ struct EchoSettings
   /// Harmonic: half that frequency is sent, and the beam is made by the square of what is. A field and a pulse that are
   /// given count as they are.
   ImagingMode imagingMode = ImagingMode::Fundamental;
-  double samplingMHz = 50.0; ///< RF sampling frequency, at most 1000
-  double depthMm = 160.0;    ///< > 0
+  double samplingMHz = 0.0; ///< RF sampling frequency, at most 1000; 0: that of rfSamplingMHz
+  double depthMm = 160.0;   ///< > 0
   /// Of the probe: where it is named, the beam is that of its Gaussians, which widen in depth and are weaker to the
   /// side. Amadou2024's lines are not.
   BeamAperture aperture;
@@ -94,16 +101,17 @@ struct EchoSettings
   {
     visitor(
       self.samplingMHz,
-      Parameter{ "samplingMHz", "Sampling (MHz)", aboveUpTo(0, 1000),
+      Parameter{ "samplingMHz", "Sampling (MHz)", between(0, 1000),
                  "Sampling frequency of the RF lines in MHz, up to 1000 and more than twice the centre frequency; "
-                 "also that of the boundary echoes." });
+                 "also that of the boundary echoes. 0: eight times the centre frequency, which pictures need." });
   }
 
   /// Throws Error naming the parameter and its range.
   void validate() const;
   double sentFrequencyMHz() const { return sentMHz(imagingMode, centreFrequencyMHz); }
+  double samplingInMHz() const { return rfSamplingMHz(samplingMHz, centreFrequencyMHz); }
   /// Radial distance of two RF samples, mm.
-  double sampleMm() const { return assumedSoundSpeedMmPerUs / (2.0 * samplingMHz); }
+  double sampleMm() const { return assumedSoundSpeedMmPerUs / (2.0 * samplingInMHz()); }
   int sampleCount() const;
 };
 

@@ -153,7 +153,7 @@ RfLines rfLayout(int lineCount, const EchoSettings& settings)
   out.sampleCount = settings.sampleCount();
   out.sampleMm = settings.sampleMm();
   out.centreFrequencyMHz = settings.centreFrequencyMHz;
-  out.samplingMHz = settings.samplingMHz;
+  out.samplingMHz = settings.samplingInMHz();
   return out;
 }
 

@@ -255,10 +255,10 @@ MovingStatistics movingStatistics(const Scene& scene, const EchoSettings& settin
   }
   const double wavelengthMm = assumedSoundSpeedMmPerUs / settings.centreFrequencyMHz;
   const NestedScatterers still(scene, settings.centreFrequencyMHz, wavelengthMm / beams.focusAreaMm2(), settings.seed);
-  statistics.cellMm = std::clamp(0.65 * wavelengthMm, 0.15, 0.5);
-  if (settings.interactive) // as many fewer as of standing tissue; each is stronger
+  statistics.cellMm = std::clamp(0.72 * wavelengthMm, 0.15, 0.5);
+  if (settings.interactive) // fewer, each of which is stronger
   {
-    statistics.cellMm *= std::cbrt(1.0 / interactiveCandidates(1.0));
+    statistics.cellMm *= std::cbrt(1.0 / interactiveMovingShare);
   }
   statistics.signs = true;
   const double perCell = std::sqrt(statistics.cellMm * statistics.cellMm * statistics.cellMm);

@@ -32,7 +32,7 @@ struct MovingStatistics
   }
 };
 
-/// Acoustic: all of a tissue are of one strength, of its backscatter coefficient; cells of 0.65 wavelengths, at least
+/// Acoustic: all of a tissue are of one strength, of its backscatter coefficient; cells of 0.72 wavelengths, at least
 /// 0.15 and at most 0.5 mm, which is 10 and more in a cardiac probe's resolution cell from 40 mm on. A tissue with
 /// fibres has the mean of its power over all directions, for a scatterer alone has none. Amadou2024: as tissues that
 /// stand still. Throws Error for settings out of range.

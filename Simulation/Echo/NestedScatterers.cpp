@@ -1,6 +1,7 @@
 #include "Echo/NestedScatterers.h"
 
 #include "Core/Simd.h"
+#include "Echo/ScattererDensity.h"
 #include "Kernel/FastMath.h"
 
 #include <algorithm>
@@ -172,8 +173,9 @@ NestedMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitud
   {
     return {};
   }
-  return { float(amplitudePerRoot * std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / tissue.scattererProbability)),
-           float(tissue.scattererProbability) };
+  const double probability = candidateProbability(tissue.scattererProbability);
+  return { float(amplitudePerRoot * std::sqrt(backscatterPerMmSr(tissue, frequencyMHz) / probability)),
+           float(probability) };
 }
 
 } // namespace

@@ -65,8 +65,8 @@ struct TakenBricks
   float* faded;
 };
 
-/// relativeWeight of a Gaussian for each brick, in place of its lateral place, and at the nearest place, in place of
-/// the elevational one.
+/// relativeWeight of a Gaussian for the share of each brick, in place of its lateral place, and at the nearest place,
+/// in place of the elevational one.
 template<class ProfileOf>
 inline void weighBricks(const ProfileOf& profileOf, const MetBricks& met, const Vec2f& halfMm, int count)
 {
@@ -81,7 +81,9 @@ inline void weighBricks(const ProfileOf& profileOf, const MetBricks& met, const 
     const float e = std::fabs(elevationalMm[n]);
     const float nearL = larger(0.0f, l - halfMm.x);
     const float nearE = larger(0.0f, e - halfMm.y);
-    lateralMm[n] = expNegative(-0.5f * (l * l * at.perLateral2 + e * e * at.perElevational2));
+    const float inL = larger(0.0f, l - nestedInward * halfMm.x);
+    const float inE = larger(0.0f, e - nestedInward * halfMm.y);
+    lateralMm[n] = expNegative(-0.5f * (inL * inL * at.perLateral2 + inE * inE * at.perElevational2));
     elevationalMm[n] = expNegative(-0.5f * (nearL * nearL * at.perLateral2 + nearE * nearE * at.perElevational2));
   }
 }
@@ -238,7 +240,7 @@ void NestedShares::meet(const Beam& beam, std::size_t index, const BrickRow& row
     const std::size_t k = from + std::size_t(n);
     const Vec3f q = nestedBrickCentre(row.brick(span.first + n), level) - beam.origin;
     const float most = perMm3_[k] > 0.0f ? relativeWeight(beam, q, depthMm_[k], halfMm) : 0.0f;
-    lateralMm_[k] = most >= nestedLeastWeight ? relativeWeight(beam, q, depthMm_[k]) : 0.0f;
+    lateralMm_[k] = most >= nestedLeastWeight ? relativeWeight(beam, q, depthMm_[k], nestedInward * halfMm) : 0.0f;
     elevationalMm_[k] = most;
   }
   met_ += count;

@@ -2,16 +2,26 @@
 
 #include "Kernel/NestedCells.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace sono {
 
-/// Candidates in a resolution cell: ten scatterers in soft tissue, whose candidates are there with probability 7/10.
-/// Since all are of one strength, that keeps the envelope's SNR within 0.02 of Rayleigh's (Data/docs/physics.md eq.
-/// 11.3).
-constexpr double candidatesPerCell = 15.0;
+/// Candidates in the cell A_2 E_r (Data/docs/physics.md eq. 4.7): 14 in the box of the beam's and the pulse's widths at
+/// half their height, 2.3548^3 s_L s_E s_r. Since all are of one strength, and one lies in each cell of space, that
+/// keeps the envelope's SNR within 0.02 of Rayleigh's (eq. 11.3).
+constexpr double candidatesPerCell = 6.0;
+
+/// Scatterers in it of a tissue with mu1 = 1, where there are as many candidates.
+constexpr double scatterersAtFullMu1 = 15.0;
+
+/// With which probability a candidate is there: where mu1 asks for more scatterers than candidates, all are.
+inline double candidateProbability(double mu1)
+{
+  return std::min(1.0, mu1 * (scatterersAtFullMu1 / candidatesPerCell));
+}
 
 /// How many candidates a line needs at each depth, and which bricks give them. What a line costs then does not depend
 /// on beam, pulse or frequency: it is proportional to the number of resolution cells along it.

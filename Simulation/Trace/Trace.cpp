@@ -7,6 +7,7 @@
 #include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
 #include "Trace/AxisMedia.h"
+#include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
 #include "Trace/ReverberationWindows.h"
 #include "Trace/SharedWay.h"
@@ -28,15 +29,10 @@ namespace {
 void writeBins(const std::vector<BinSums<double>>& shared, const std::vector<std::vector<BinSums<double>>>& batches,
                double frequencyMHz, int line, TracedLines& out)
 {
-  for (std::size_t b = 0; b < shared.size(); ++b)
-  {
-    const auto meanOf = [&](int batch) { return batches[std::size_t(batch)][b]; };
-    const BinArrays bin = finishBin(shared[b], int(batches.size()), meanOf, binSumsOf(out.model), frequencyMHz);
-    const std::size_t at = std::size_t(line) * std::size_t(out.binCount) + b;
-    out.intensity[at] = bin.of[intensityArray];
-    out.standardError[at] = bin.of[standardErrorArray];
-    out.attenuationNpPerMHz[at] = bin.of[attenuationArray];
-  }
+  const std::size_t first = std::size_t(line) * std::size_t(out.binCount);
+  finishBins(
+    shared, batches, binSumsOf(out.model), frequencyMHz,
+    { out.intensity.data() + first, out.standardError.data() + first, out.attenuationNpPerMHz.data() + first });
 }
 
 /// What lines leave of reverberation, by TissueBins, until all are traced.
@@ -68,23 +64,15 @@ void keepReverberation(const std::vector<std::vector<ReverberationSums>>& batche
 {
   const TissueBins& tissueBins = kept.tissueBins;
   kept.isHeard[std::size_t(line)] = 1;
-  ReverberationRows bins(1, tissueBins.count);
+  const ReverberationLine means = reverberationOf(batches, tissueBins.count);
+  std::copy(means.ownLevel.begin(), means.ownLevel.end(), kept.ownLevel.begin() + std::ptrdiff_t(kept.at(line, 0)));
   const std::size_t first = std::size_t(line) * std::size_t(out.binCount);
-  for (int t = 0; t < tissueBins.count; ++t)
+  for (int b = 0; b < out.binCount; ++b)
   {
-    const ReverberationMeans means = reverberationMeans(int(batches.size()), [&](int batch) {
-      const std::vector<ReverberationSums>& sums = batches[std::size_t(batch)];
-      return sums.empty() ? ReverberationSums() : sums[std::size_t(t)];
-    });
-    bins.set(0, t, aroundOf(means));
-    kept.ownLevel[kept.at(line, t)] = means.ownLevel;
-    for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
-    {
-      out.reverberationError[first + std::size_t(b)] = means.error;
-      out.reverberationNpPerMHz[first + std::size_t(b)] = float(double(takenNp[std::size_t(b)]) / frequencyMHz);
-    }
+    out.reverberationError[first + std::size_t(b)] = means.error[std::size_t(b / tissueBins.each)];
+    out.reverberationNpPerMHz[first + std::size_t(b)] = float(double(takenNp[std::size_t(b)]) / frequencyMHz);
   }
-  sumAlongLine(bins, 0, tissueBins.mm, kept.along, line);
+  sumAlongLine(means.around, 0, tissueBins.mm, kept.along, line);
 }
 
 /// Of a line without any, which counts in the means around it.

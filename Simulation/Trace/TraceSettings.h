@@ -52,7 +52,7 @@ struct TraceSettings
   double depthMm = 160.0;          ///< > 0
   BeamAperture aperture;           ///< of the probe: where it is named, paths start over it (see startApart)
   double radialBinMm = 0.25;
-  double echoSampleMm = 0.0154; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
+  double echoSampleMm = 0.0385; ///< radial sample of the boundary echoes, > 0: c0 / (2 fs) of the RF
   bool reverberation = true;    ///< of Acoustic: whether paths that have been reflected are heard
   bool intensityAlone = false;  ///< of Acoustic: paths end where they are reflected, though as many are as reverberate
                                 ///< elsewhere, so that the intensity is the same to the bit

@@ -71,6 +71,14 @@ struct MeanAndError
   float error;
 };
 
+/// The same of their sum and that of their squares.
+SONO_HD inline MeanAndError meanAndErrorOf(int batches, double sum, double squares)
+{
+  const double mean = batches > 0 ? sum / batches : 0.0;
+  const double spread = squares - batches * mean * mean;
+  return { float(mean), batches > 1 && spread > 0.0 ? float(sqrt(spread / (double(batches) * (batches - 1)))) : 0.0f };
+}
+
 template<class MeanOf>
 SONO_HD inline MeanAndError meanAndError(int batches, const MeanOf& meanOf)
 {
@@ -82,9 +90,7 @@ SONO_HD inline MeanAndError meanAndError(int batches, const MeanOf& meanOf)
     sum += mean;
     squares += mean * mean;
   }
-  const double mean = batches > 0 ? sum / batches : 0.0;
-  const double spread = squares - batches * mean * mean;
-  return { float(mean), batches > 1 && spread > 0.0 ? float(sqrt(spread / (double(batches) * (batches - 1)))) : 0.0f };
+  return meanAndErrorOf(batches, sum, squares);
 }
 
 /// Of the first `sums` sums (binSumsOf): of what all paths of a line leave and, for each of the batches, the mean of

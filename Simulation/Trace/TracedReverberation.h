@@ -47,6 +47,14 @@ struct ReverberationMeans
   float error;         ///< standard error of both levels
 };
 
+SONO_HD inline ReverberationMeans reverberationMeansOf(float ownLevel, const MeanAndError& cells,
+                                                       const MeanAndError& straight)
+{
+  const float straightError = straight.mean > 0.0f ? 0.5f * straight.error / sqrtf(straight.mean) : 0.0f;
+  return { ownLevel, cells.mean * cells.mean - cells.error * cells.error, cells.error, straight.mean,
+           sqrtf(cells.error * cells.error + straightError * straightError) };
+}
+
 template<class MeanOf>
 SONO_HD inline ReverberationMeans reverberationMeans(int batches, const MeanOf& meanOf)
 {
@@ -57,9 +65,7 @@ SONO_HD inline ReverberationMeans reverberationMeans(int batches, const MeanOf& 
     return sums.of[plusSum] - sums.of[minusSum];
   });
   const MeanAndError straight = meanAndError(batches, [&](int batch) { return meanOf(batch).of[straightPowerSum]; });
-  const float straightError = straight.mean > 0.0f ? 0.5f * straight.error / sqrtf(straight.mean) : 0.0f;
-  return { float(own), cells.mean * cells.mean - cells.error * cells.error, cells.error, straight.mean,
-           sqrtf(cells.error * cells.error + straightError * straightError) };
+  return reverberationMeansOf(float(own), cells, straight);
 }
 
 /// Few paths tell how far sound has spread and what comes straight back; both change slowly, so that a bin takes them

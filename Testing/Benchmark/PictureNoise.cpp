@@ -2,8 +2,6 @@
 
 #include "ApicalImage.h"
 
-#include "Trace/Trace.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -22,6 +20,31 @@ std::vector<float> decibelsOf(const std::vector<float>& envelope, double zeroDb)
   return db;
 }
 
+/// What one of 200 samples exceeds.
+double zeroOf(std::vector<float> envelope)
+{
+  const auto bright = envelope.begin() + std::ptrdiff_t(envelope.size() - envelope.size() / 200);
+  std::nth_element(envelope.begin(), bright, envelope.end());
+  return double(*bright);
+}
+
+/// Sums of squared differences.
+struct Differences
+{
+  double squares = 0.0;
+  long count = 0;
+
+  void add(float db, float reference)
+  {
+    if (std::max(db, reference) > float(floorDb))
+    {
+      squares += std::pow(double(db) - double(reference), 2);
+      ++count;
+    }
+  }
+  double rms() const { return std::sqrt(squares / double(std::max(1l, count))); }
+};
+
 } // namespace
 
 PictureNoise::PictureNoise(const Scene& scene, const ImageSettings& settings)
@@ -29,39 +52,41 @@ PictureNoise::PictureNoise(const Scene& scene, const ImageSettings& settings)
   , settings_(settings)
   , lines_(a4cLines(settings))
 {
-  const std::vector<float> envelope = image(40000, 77).envelope();
-  std::vector<float> sorted = envelope;
-  const auto bright = sorted.begin() + std::ptrdiff_t(sorted.size() - sorted.size() / 200);
-  std::nth_element(sorted.begin(), bright, sorted.end());
-  zeroDb_ = double(*bright);
-  reference_ = decibelsOf(envelope, zeroDb_);
+  TraceSettings tracing = settings.tracing;
+  tracing.pathsPerLine = 40000;
+  tracing.seed = 77;
+  const TracedLines traced = trace(scene, lines_, tracing);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+  {
+    const std::vector<float> reference = envelope(traced, seed);
+    zeroDb_.push_back(zeroOf(reference));
+    reference_.push_back(decibelsOf(reference, zeroDb_.back()));
+  }
 }
 
-RfLines PictureNoise::image(int paths, std::uint64_t seed) const
+std::vector<float> PictureNoise::envelope(const TracedLines& traced, std::uint64_t seed) const
 {
-  TraceSettings tracing = settings_.tracing;
-  tracing.pathsPerLine = paths;
-  tracing.seed = seed;
-  return formRf(scene_, lines_, trace(scene_, lines_, tracing), settings_.echo);
+  EchoSettings echo = settings_.echo;
+  echo.seed = seed;
+  return formRf(scene_, lines_, traced, echo).envelope();
 }
 
 double PictureNoise::decibels(int paths) const
 {
-  double squares = 0.0;
-  long count = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+  Differences all;
+  TraceSettings tracing = settings_.tracing;
+  tracing.pathsPerLine = paths;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed)
   {
-    const std::vector<float> db = decibelsOf(image(paths, seed).envelope(), zeroDb_);
+    tracing.seed = seed;
+    const std::size_t n = std::size_t(seed - 1);
+    const std::vector<float> db = decibelsOf(envelope(trace(scene_, lines_, tracing), seed), zeroDb_[n]);
     for (std::size_t i = 0; i < db.size(); ++i)
     {
-      if (std::max(db[i], reference_[i]) > float(floorDb))
-      {
-        squares += std::pow(double(db[i]) - double(reference_[i]), 2);
-        ++count;
-      }
+      all.add(db[i], reference_[n][i]);
     }
   }
-  return std::sqrt(squares / double(std::max(1l, count)));
+  return all.rms();
 }
 
 int PictureNoise::pathsWithin(double db) const
@@ -79,6 +104,36 @@ int PictureNoise::pathsWithin(double db) const
     before = paths;
     beforeDb = here;
   }
+}
+
+double PictureNoise::samplingDb(const Scene& scene, const ImageSettings& settings)
+{
+  constexpr int finer = 10;
+  const std::vector<ScanLine> lines = a4cLines(settings);
+  const auto imageOf = [&](double samplingMHz) {
+    ImageSettings one = settings;
+    one.tracing.reverberation = false;
+    one.echo.samplingMHz = samplingMHz;
+    one.matchStages();
+    return formRf(scene, lines, trace(scene, lines, one.tracing), one.echo);
+  };
+  const double samplingMHz = settings.echo.samplingInMHz();
+  const RfLines fine = imageOf(finer * samplingMHz);
+  const RfLines usual = imageOf(samplingMHz);
+  const std::vector<float> envelope = fine.envelope();
+  const double zeroDb = zeroOf(envelope);
+  const std::vector<float> reference = decibelsOf(envelope, zeroDb);
+  const std::vector<float> db = decibelsOf(usual.envelope(), zeroDb);
+  Differences all;
+  for (int line = 0; line < usual.lineCount; ++line)
+  {
+    for (int s = 0; s < usual.sampleCount && finer * s < fine.sampleCount; ++s)
+    {
+      all.add(db[std::size_t(line) * std::size_t(usual.sampleCount) + std::size_t(s)],
+              reference[std::size_t(line) * std::size_t(fine.sampleCount) + std::size_t(finer * s)]);
+    }
+  }
+  return all.rms();
 }
 
 } // namespace sono

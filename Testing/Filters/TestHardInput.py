@@ -116,7 +116,7 @@ class TestHardInput(unittest.TestCase):
     def test_a_harmonic_above_half_the_sampling(self):
         for mode, frequency, words in ((HARMONIC, 13.0, ("second harmonic lies at 26 MHz", "above 52", "Fundamental")),
                                        (0, 26.0, ("sampling frequency of 50 MHz is not above twice the centre frequency of 26 MHz", "above 52"))):
-            filter_, errors, _ = self.simulated(30, ImagingMode=mode, CentreFrequencyMHz=frequency)
+            filter_, errors, _ = self.simulated(30, ImagingMode=mode, CentreFrequencyMHz=frequency, SamplingMHz=50.0)
             filter_.Update()
             self.assertEqual(len(errors), 1)
             for part in (*words, "Sampling (MHz)", "Centre Frequency"):

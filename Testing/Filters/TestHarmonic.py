@@ -50,6 +50,7 @@ class TestHarmonic(unittest.TestCase):
             """Of speckle's level along the lines, where there is some."""
             level = np.log(envelope[:, 300:2000].astype(float) + 1e-30)
             return np.median(np.abs(np.diff(level, axis=1))[level[:, 1:] > -30.0])
+        self.chain.tracer.SetSamplingMHz(50.0)
         fundamental = steepness(lines_of(self.chain.formation, "Envelope"))
         self.chain.probe.SetImagingMode(HARMONIC)
         # The band is the root of 2 as wide.

@@ -51,7 +51,7 @@ class TestStages(unittest.TestCase):
 
     def test_envelope_is_the_modulus_of_iq_and_bounds_rf(self):
         lines = self.chain.formation.GetOutput()
-        self.assertAlmostEqual(lines.GetSpacing()[0], 1.54 / 100)  # c0 / (2 fs) at 50 MHz
+        self.assertAlmostEqual(lines.GetSpacing()[0], 1.54 / 40)  # c0 / (2 fs), eight samples a period
         envelope = values(lines, "Envelope")
         iq = values(lines, "IQ")
         np.testing.assert_allclose(envelope, np.hypot(iq[:, 0], iq[:, 1]), rtol=1e-5, atol=1e-12)

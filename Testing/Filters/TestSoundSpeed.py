@@ -108,7 +108,7 @@ class TestSoundSpeed(unittest.TestCase):
             for name in ("BMode", "Labels", "Mask"):
                 np.testing.assert_array_equal(floats(chain.converter.GetOutput(), name), floats(picture, name))
             for lines in (chain.formation.GetOutput(), chain.bmode.GetOutput(), chain.tracer.GetOutputDataObject(1)):
-                self.assertAlmostEqual(lines.GetSpacing()[0], 1.45 / 100.0, places=12)
+                self.assertAlmostEqual(lines.GetSpacing()[0], 1.45 / 80.0, places=12)
 
     def test_the_same_samples_to_another_scale(self):
         """28 mm at 1400 m/s take as long as 30.8 at 1540: nothing is traced again, but all is shown elsewhere."""

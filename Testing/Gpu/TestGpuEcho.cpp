@@ -64,7 +64,7 @@ TEST(GpuEcho, AttenuationLowersTheFrequency)
       turned += std::complex<double>(iq[s + 1]) * std::conj(std::complex<double>(iq[s]));
     }
   }
-  const double shiftMHz = std::arg(turned) / (2.0 * M_PI) * echo.samplingMHz;
+  const double shiftMHz = std::arg(turned) / (2.0 * M_PI) * gpu.rf.samplingMHz;
   const double spectrumMHz = 0.74 * 3.6 / (2.0 * std::sqrt(2.0 * 0.3 * std::log(10.0)));
   const double exponent = 2.0 * 0.5 * depthMm / 10.0 / (20.0 / std::log(10.0));
   EXPECT_NEAR(shiftMHz, -exponent * spectrumMHz * spectrumMHz, 0.05);

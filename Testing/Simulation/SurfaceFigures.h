@@ -29,6 +29,7 @@ inline Tissue surfaceTissue(const std::string& name, double impedance, double ro
 inline EchoSettings surfaceSettings()
 {
   EchoSettings s;
+  s.samplingMHz = 50.0; // what is asked is how surfaces are summed
   s.depthMm = 36.0;
   return s;
 }

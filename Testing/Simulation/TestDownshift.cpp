@@ -15,6 +15,7 @@ EchoSettings p42Pulse(double depthMm)
   EchoSettings s;
   s.centreFrequencyMHz = 3.6;
   s.fractionalBandwidth = 0.74;
+  s.samplingMHz = 50.0; // frequencies are told by neighbouring samples
   s.depthMm = depthMm;
   return s;
 }

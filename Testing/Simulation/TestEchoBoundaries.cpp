@@ -71,6 +71,7 @@ TEST(EchoBoundary, KeepsAmplitudeAndPhaseOnAnySamplingGrid)
 TEST(EchoBoundary, OnTheSameGridIsNotSplitAgain)
 {
   EchoSettings s;
+  s.samplingMHz = 50.0;
   s.depthMm = 100.0;
   TracedLines traced = tracedEchoes({}, s, s.sampleMm());
   const std::size_t at = 6011;

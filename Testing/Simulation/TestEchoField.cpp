@@ -229,6 +229,7 @@ TEST(EchoField, WeighsBoundariesByItsIntegralAcrossTheirDepth)
 TEST(EchoField, InFrontOfItsFirstDepthNothingEchoes)
 {
   EchoSettings s;
+  s.samplingMHz = 50.0;
   s.depthMm = 40.0;
   FieldGrid grid = halfGrid(0.5, 9, 0.5, 9, 5.0, 7);
   grid.depth.minMm = 10.0;

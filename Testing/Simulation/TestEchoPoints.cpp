@@ -17,6 +17,7 @@ EchoSettings calibrationSettings()
   EchoSettings s;
   s.centreFrequencyMHz = 3.6;
   s.fractionalBandwidth = 0.6;
+  s.samplingMHz = 50.0;
   s.depthMm = 80.0;
   return s;
 }

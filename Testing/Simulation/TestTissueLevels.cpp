@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace {
 
@@ -138,29 +139,38 @@ TEST(TissueLevels, AreThoseOfTheClosedForm)
 
 TEST(TissueLevels, SpeckleIsFullyDevelopedAtEveryDepth)
 {
-  const auto scene = uniformBox({ 150, 66, 100 }, backscattering("liver", 1e-4, 1.4, 0.19, 0.24, 0.7));
   EchoSettings s;
   s.centreFrequencyMHz = 5.0;
   s.depthMm = 90.0;
-  s.lateralSigmaMm = 0.7;
-  s.elevationalSigmaMm = 0.9;
   std::vector<ScanLine> lines;
   for (int i = 0; i < 1000; ++i)
   {
     lines.push_back(makeLine({ 5.0 + 2.4 * (i % 58), 5.0 + 3.2 * (i / 58), 2.0 }, { 0, 0, 1 }));
   }
-  const RfLines rf = formTissue(*scene, lines, s);
-  for (double from = 2.0; from < 85.0; from += 29.0)
+  // Beams of several widths take the candidates of one level by different shares.
+  for (const double width : { 0.8, 0.9, 1.0, 1.1 })
   {
-    EXPECT_NEAR(momentsOf(rf, from, from + 29.0).snr(), 1.9131, 0.02) << "from " << from;
+    s.lateralSigmaMm = 0.7 * width;
+    s.elevationalSigmaMm = 0.9 * width;
+    for (const double mu1 : { 0.7, 1.0 })
+    {
+      const auto scene = uniformBox({ 150, 66, 100 }, backscattering("liver", 1e-4, 1.4, 0.19, 0.24, mu1));
+      const RfLines rf = formTissue(*scene, lines, s);
+      for (double from = 2.0; from < 85.0; from += 29.0)
+      {
+        EXPECT_NEAR(momentsOf(rf, from, from + 29.0).snr(), 1.9131, 0.02)
+          << "from " << from << ", " << width << " as wide, mu1 " << mu1;
+      }
+    }
   }
 }
 
 TEST(TissueLevels, FewScatterersExceedRayleighAsExpected)
 {
-  // (11.3) for sparse scatterers: with one candidate in a hundred there, places are as good as independent.
-  const double probability = 0.01;
-  const auto scene = uniformBox({ 70, 70, 70 }, backscattering("sparse", 1e-4, 1.4, 0.0, 1.0, probability));
+  // (11.3) for sparse scatterers: with one candidate in fifty there, places are as good as independent.
+  const double mu1 = 0.01;
+  const double probability = mu1 * 15.0 / candidatesPerCell;
+  const auto scene = uniformBox({ 70, 70, 70 }, backscattering("sparse", 1e-4, 1.4, 0.0, 1.0, mu1));
   EchoSettings s;
   s.depthMm = 60.0;
   s.lateralSigmaMm = 0.8;
@@ -320,10 +330,13 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
   // One level alone, since the density is the same everywhere: the scatterers by looking into every cell.
   const auto scene =
     makeScene({ 30, 20, 60 }, { 1.0, 1.5, 0.5 },
-              { backscattering("upper", 1e-4, 1.4, 0.3, 0.2, 0.7), backscattering("lower", 2e-3, 0.0, 0.0, 0.4, 0.5) },
+              { backscattering("upper", 1e-4, 1.4, 0.3, 0.2, 0.7), backscattering("lower", 2e-3, 0.0, 0.0, 0.4, 0.2) },
               [](const Vec3d& p) { return p.z < 15.0 ? 0 : 1; });
+  const double upperThere = 1.0; // 15 * 0.7 scatterers are more than the candidates
+  const double lowerThere = 15.0 * 0.2 / candidatesPerCell;
   EchoSettings s;
   s.centreFrequencyMHz = 3.6;
+  s.samplingMHz = 50.0;
   s.depthMm = 28.0;
   s.seed = 77;
   const double cellMm3 = M_PI * std::sqrt(M_PI) * pulseSigmaMm(3.6, 0.6);
@@ -341,8 +354,12 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
     {
       const Vec3i brick(n % side, (n / side) % side, n / (side * side));
       const Vec3d off = (Vec3d(brick) + 0.5) * (4.0 * h) - lines[line].originMm;
-      const double squared =
-        std::pow(glm::dot(off, lines[line].lateral), 2) + std::pow(glm::dot(off, lines[line].elevation), 2);
+      // Halfway from the centre to what is nearest to the axis.
+      const auto halfway = [&](const Vec3d& d) {
+        const double extent = 2.0 * h * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+        return std::max(0.0, std::abs(glm::dot(off, d)) - 0.5 * extent);
+      };
+      const double squared = std::pow(halfway(lines[line].lateral), 2) + std::pow(halfway(lines[line].elevation), 2);
       const double share = std::min(1.0, double(nestedFullWeight) * std::exp(-0.5 * squared));
       const double eighths = std::clamp(8.0 * needed * share * h * h * h, 0.125, 8.0);
       const double perMm3 = eighths / 8.0 / (h * h * h);
@@ -357,12 +374,13 @@ TEST(TissueLevels, AgreeWithTheDirectSum)
         const NestedCandidate c =
           nestedCandidate(nestedFinestCell({ brick, nestedBrickHash(s.seed, brick, level) }, level, number));
         const bool upper = c.positionMm.z < 15.0f;
-        if (glm::any(glm::greaterThanEqual(c.positionMm, Vec3f(30.0f))) || c.presence >= (upper ? 0.7f : 0.5f))
+        const double probability = upper ? upperThere : lowerThere;
+        if (glm::any(glm::greaterThanEqual(c.positionMm, Vec3f(30.0f))) || c.presence >= float(probability))
         {
           continue;
         }
         const double backscatter = 0.1 * (upper ? 1e-4 * std::pow(3.6, 1.4) : 2e-3);
-        const double amplitude = std::sqrt(backscatter / (perMm3 * (upper ? 0.7 : 0.5))) * (1.54 / 3.6) / (2.0 * M_PI);
+        const double amplitude = std::sqrt(backscatter / (perMm3 * probability)) * (1.54 / 3.6) / (2.0 * M_PI);
         const double last = std::sqrt(std::min(1.0, there));
         points.push_back({ Vec3d(c.positionMm), float(double(c.sign) * amplitude * last) });
       }
@@ -378,14 +396,17 @@ TEST(TissueLevels, NeighbouringLinesAreAlikeAsTheirBeamsAre)
   const auto scene = uniformBox({ 130, 60, 60 }, backscattering("tissue", 1e-4, 1.4, 0.3, 0.15, 0.7));
   EchoSettings s;
   s.depthMm = 50.0;
-  for (const double apart : { 0.5, 1.0, 1.67, 2.5 })
+  for (const auto& [apart, width] :
+       { std::pair(0.5, 1.0), std::pair(1.0, 1.0), std::pair(1.67, 1.0), std::pair(2.5, 1.0), std::pair(1.67, 0.8),
+         std::pair(1.67, 0.9), std::pair(1.67, 1.25), std::pair(2.5, 0.9) }) // bricks of several parts of the beam
   {
+    s.lateralSigmaMm = s.elevationalSigmaMm = width;
     std::vector<ScanLine> lines;
     for (int i = 0; i < 300; ++i)
     {
       const Vec3d from(6.0 + 4.0 * (i % 29), 6.0 + 4.5 * (i / 29), 2.0);
       lines.push_back(makeLine(from, { 0, 0, 1 }));
-      lines.push_back(makeLine(from + apart * lines.back().lateral, { 0, 0, 1 }));
+      lines.push_back(makeLine(from + apart * width * lines.back().lateral, { 0, 0, 1 }));
     }
     std::complex<double> product = 0.0;
     double power = 0.0;

@@ -233,14 +233,17 @@ void printErrorCurve(const Scene& scene, const std::vector<ScanLine>& lines, Tra
   }
 }
 
-/// The time of a whole image of so many paths that its noise is 1 or 0.5 dB; figures end with the probe's name.
+/// The time of a whole image of so many paths that their noise and what its sampling is off are 1 or 0.5 dB together;
+/// figures end with the probe's name.
 void printTimeToNoise(const Scene& scene, ImageSettings settings, const std::string& probe)
 {
+  const double samplingDb = PictureNoise::samplingDb(scene, settings);
+  printFigure("sampling_error_db" + probe, samplingDb, "dB");
   const PictureNoise noise(scene, settings);
   printFigure("noise_of_256_paths_db" + probe, noise.decibels(256), "dB");
   for (const auto& [db, name] : { std::pair{ 1.0, "1db" }, std::pair{ 0.5, "05db" } })
   {
-    settings.tracing.pathsPerLine = noise.pathsWithin(db);
+    settings.tracing.pathsPerLine = noise.pathsWithin(std::sqrt(db * db - samplingDb * samplingDb));
     std::vector<double> seconds;
     for (int i = 0; i < 9; ++i)
     {
