@@ -11,7 +11,7 @@
 
 namespace sono {
 
-constexpr int chunkSamples = 1024;
+constexpr int chunkSamples = 512;
 constexpr float halfDiagonal = 0.8660254f; // of a cube of edge 1: from its centre to its corners
 
 /// Sums of a chunk in shared memory as integers: for amplitudes of which it is known how many come together.

@@ -85,7 +85,7 @@ void requireBand(const std::vector<Tone>& tones, double stepUs)
     message
       << "the sampled pulse reaches beyond " << 0.5 / stepUs
       << " MHz from the centre frequency, which is all that the samples carry; correct the centre frequency or the "
-         "pulse's times (microseconds), or raise the sampling frequency.";
+         "pulse's times (microseconds), or raise Sampling (MHz).";
     throw Error(message.str());
   }
 }

@@ -44,6 +44,7 @@ TEST(GpuEcho, AttenuationLowersTheFrequency)
   tracing.depthMm = echo.depthMm = 105.0;
   tracing.frequencyMHz = echo.centreFrequencyMHz = 3.6;
   echo.fractionalBandwidth = 0.74;
+  echo.samplingMHz = 50.0; // the frequency is told by neighbouring samples
   tracing.pathsPerLine = 16;
   std::vector<ScanLine> lines;
   for (int l = 0; l < 64; ++l)
@@ -111,6 +112,8 @@ TEST(GpuEcho, AFieldAndASampledPulse)
   SONO_GPU_OR_SKIP();
   ImageSettings s = thoraxSettings();
   s.geometry.lineCount = 16;
+  s.echo.samplingMHz = 50.0; // what that pulse begins with
+  s.matchStages();
   FieldGrid grid;
   grid.lateral = { 0.0, 0.25, 24 };
   grid.elevational = { 0.0, 0.5, 10 };
