@@ -77,7 +77,8 @@ private:
 
   void makeSettings()
   {
-    // Scene 66, where much is attenuated, is 0.9e-3 apart at 50 MHz and 1.2e-3 at 20 to 30; by seeds of paths up to 1.6e-3.
+    // Scene 66, where much is attenuated, is 0.9e-3 apart at 50 MHz and 1.2e-3 at 20 to 30; by seeds of paths up
+    // to 1.6e-3.
     echo.samplingMHz = 50.0;
     echo.depthMm = tracing.depthMm = between(0.5, 1.2) * extent_.z;
     tracing.echoSampleMm = random_() % 2 ? echo.sampleMm() : 0.01;

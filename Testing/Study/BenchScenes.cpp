@@ -161,7 +161,7 @@ BenchScene makeBenchScene(const std::string& name, double spacingMm, int lineCou
     throw Error("there is no bench scene '" + name + "': take stack, cyst, rib, a4c or phantom");
   }
   bench.tracing.reverberation = false; // the twin in double precision knows the direct sound alone
-  bench.echo.samplingMHz = 50.0; // the seed's
+  bench.echo.samplingMHz = 50.0;       // the seed's
   bench.echo.depthMm = bench.tracing.depthMm;
   bench.tracing.frequencyMHz = bench.echo.centreFrequencyMHz;
   bench.tracing.echoSampleMm = bench.echo.sampleMm();
