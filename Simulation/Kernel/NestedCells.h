@@ -21,11 +21,10 @@ namespace sono {
 constexpr float nestedFinestMm = 1.0f / 32.0f; ///< edge of a cell of level 0
 constexpr int nestedLevels = 8;                ///< up to cells of 4 mm
 constexpr float nestedFullWeight = 12.0f;      ///< 1 / the weight from which on all candidates count (2.2 sigma)
-constexpr float nestedInward =
-  0.5f; ///< that weight is taken so far from a brick's centre to what is nearest to the axis
-constexpr float nestedLeastWeight = 0.003f; ///< bricks of less are left out: 3.4 sigma, 1e-5 of the power
-constexpr float nestedReach = 0.87f;        ///< a little more, as a share of a Gaussian beam's reach, beamCutSigma
-constexpr int nestedBrickCells = 4;         ///< cells along an edge of a brick, on every level
+constexpr float nestedInward = 0.5f;           ///< taken halfway from a brick's centre to its place nearest to the axis
+constexpr float nestedLeastWeight = 0.003f;    ///< bricks of less are left out: 3.4 sigma, 1e-5 of the power
+constexpr float nestedReach = 0.87f;           ///< a little more, as a share of a Gaussian beam's reach, beamCutSigma
+constexpr int nestedBrickCells = 4;            ///< cells along an edge of a brick, on every level
 
 SONO_HD inline float nestedCellMm(int level)
 {

@@ -167,7 +167,7 @@ TEST(EchoPulse, ThatMakesNoSenseIsRefused)
   // Nanoseconds instead of microseconds: far outside of what the samples carry.
   SampledPulse slow = *ChirpedPulse{}.sampled(1.0);
   slow.stepUs *= 1e-3;
-  expectContains(refusal(slow), "sampling frequency");
+  expectContains(refusal(slow), "raise Sampling (MHz)");
 }
 
 } // namespace
