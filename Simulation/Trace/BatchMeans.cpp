@@ -46,8 +46,7 @@ SONO_SIMD_CLONES void writeArrays(const BinSums<double>* shared, const double* m
 #pragma GCC ivdep
   for (std::size_t b = 0; b < count; ++b)
   {
-    const double heard = double(intensity[b]);
-    attenuation[b] = heard > 0.0 ? float(absorbs * absorbed[b] / (heard > 0.0 ? heard : 1.0)) : 0.0f;
+    attenuation[b] = intensity[b] > 0.0f ? float(absorbs * absorbed[b] / double(intensity[b])) : 0.0f;
   }
 }
 
@@ -107,9 +106,9 @@ void finishBins(const std::vector<BinSums<double>>& shared, const std::vector<st
   {
     addMeans(batch.data(), number, count, mean.data(), absorbed.data());
   }
-  for (double& of : mean)
+  for (std::size_t b = 0; b < count && !batches.empty(); ++b)
   {
-    of /= batches.empty() ? 1.0 : number;
+    mean[b] /= number;
   }
   for (const auto& batch : batches)
   {

@@ -23,12 +23,14 @@ struct BinRows
 void finishBins(const std::vector<BinSums<double>>& shared, const std::vector<std::vector<BinSums<double>>>& batches,
                 int sums, double frequencyMHz, const BinRows& out);
 
-/// reverberationMeans of each of `count` bins. A batch without any is empty.
+/// What is kept of a line's ReverberationMeans, by bin.
 struct ReverberationLine
 {
   ReverberationRows around; ///< aroundOf, of one line
   std::vector<float> ownLevel, error;
 };
+
+/// reverberationMeans of each of `count` bins. A batch without any is empty.
 ReverberationLine reverberationOf(const std::vector<std::vector<ReverberationSums>>& batches, int count);
 
 } // namespace sono
