@@ -5,6 +5,7 @@
 #include "Core/SoundSpeed.h"
 #include "Echo/EchoSetup.h"
 #include "Echo/NestedLines.h"
+#include "Echo/RoomPool.h"
 
 #include <algorithm>
 #include <atomic>
@@ -163,6 +164,10 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     group.tasksLeft = tasksOfGroup;
   }
   SumPool pool(setup.finisher);
+  RoomPool<NestedRoom> nestedRooms([] { return std::make_shared<NestedRoom>(); });
+  RoomPool<SurfaceEchoes::Room> surfaceRooms(SurfaceEchoes::makeRoom);
+  RoomPool<LineFinisher::Room> finishingRooms(
+    [&] { return std::make_shared<LineFinisher::Room>(setup.finisher.room()); });
   std::atomic<int> begun{ 0 };
   const auto runTask = [&](int, const YieldPoint& yieldPoint) {
     const GroupTask task = taskAt(begun++, groupCount, tasksOfGroup);
@@ -193,7 +198,9 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       {
         intensities.push_back(setup.finisher.intensity(l));
       }
-      setup.surfaces->add(beams(sceneBeam, std::nullopt), intensities, brickDone, sums);
+      const auto room = surfaceRooms.take();
+      setup.surfaces->add(beams(sceneBeam, std::nullopt), intensities, brickDone, *room, sums);
+      surfaceRooms.give(room);
       group.surfaces = std::move(sums);
     }
     else
@@ -204,7 +211,9 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       }
       if (setup.nested)
       {
-        addNested(setup, beams(sceneBeam, std::nullopt), brickDone, sums);
+        const auto room = nestedRooms.take();
+        addNested(setup, beams(sceneBeam, std::nullopt), brickDone, *room, sums);
+        nestedRooms.give(room);
       }
       if (sources.points)
       {
@@ -216,13 +225,14 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     {
       return;
     }
-    LineFinisher::Room room = setup.finisher.room();
+    const auto room = finishingRooms.take();
     for (int l = first; l < last; ++l)
     {
       const std::size_t at = std::size_t(l - first);
-      setup.finisher.finish(l, group.scatterers[at], setup.surfaces ? &group.surfaces[at] : nullptr, nodes, room,
+      setup.finisher.finish(l, group.scatterers[at], setup.surfaces ? &group.surfaces[at] : nullptr, nodes, *room,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
+    finishingRooms.give(room);
     pool.give(std::move(group.scatterers));
     pool.give(std::move(group.surfaces));
   };

@@ -13,13 +13,12 @@ namespace {
 constexpr int chunk = vectorWidth;
 
 /// By how they face the beam, and whether they lie on the line.
-SONO_SIMD_CLONES __attribute__((flatten)) void markFacing(FaceList& faces, float radiusMm, const Beam b,
-                                                          const LineGrid g)
+SONO_SIMD_CLONES __attribute__((flatten)) void markFacing(const FaceList& faces, float radiusMm, const Beam b,
+                                                          const LineGrid g, std::int32_t* heard)
 {
   const float *x = faces.x.data(), *y = faces.y.data(), *z = faces.z.data();
   const float *nx = faces.normalX.data(), *ny = faces.normalY.data(), *nz = faces.normalZ.data();
   const float *below = faces.cosineBelow.data(), *above = faces.cosineAbove.data();
-  float* seen = faces.seen.data();
   const int count = inWholeVectors(faces.count);
   const auto mark = [&](const auto& sees) {
 #pragma GCC ivdep
@@ -33,7 +32,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) void markFacing(FaceList& faces, float
       const bool isOnLine = (depthMm + radiusMm >= 0.0f) & (place.position - radiusMm * g.samplesPerMm <= g.lastSample);
       const float l = larger(0.0f, std::fabs(place.lateral) - radiusMm);
       const float e = larger(0.0f, std::fabs(place.elevational) - radiusMm);
-      seen[n] = (faced | unknown) & isOnLine & sees(larger(depthMm, 0.0f), l, e) ? 1.0f : 0.0f;
+      heard[n] = (faced | unknown) & isOnLine & sees(larger(depthMm, 0.0f), l, e) ? 1 : 0;
     }
   };
   if (!isGaussian(b))
@@ -78,12 +77,16 @@ inline void meetPieces(const PieceList& pieces, int from, const Beam& b, const L
     m.fromMm[i] =
       litFromMm(place, depthMm, across(nx, ny, nz, i, b.lateral), across(nx, ny, nz, i, b.elevation), faced, t);
   }
+  const float *reachA = pieces.reachA.data() + from, *reachB = pieces.reachB.data() + from;
+  const float *coherentA = pieces.coherentReachA.data() + from, *coherentB = pieces.coherentReachB.data() + from;
+  const float *decayA = pieces.decayPerMmA.data() + from, *decayB = pieces.decayPerMmB.data() + from;
+#pragma GCC ivdep
   for (int i = 0; i < chunk; ++i)
   {
-    const SurfaceRow& row = t.rows[pieces.row[std::size_t(from + i)] ^ (m.along[i] < 0.0f ? 1 : 0)];
-    m.reach[i] = row.reach;
-    m.coherentReach[i] = pieces.isCoarse[std::size_t(from + i)] != 0.0f ? row.coherentReach : row.finestReach;
-    m.decayPerMm[i] = row.decayPerMm;
+    const bool fromB = m.along[i] < 0.0f;
+    m.reach[i] = fromB ? reachB[i] : reachA[i];
+    m.coherentReach[i] = fromB ? coherentB[i] : coherentA[i];
+    m.decayPerMm[i] = fromB ? decayB[i] : decayA[i];
   }
 }
 
@@ -142,16 +145,54 @@ SONO_SIMD_CLONES __attribute__((flatten)) void hearFacing(const PieceList& piece
   });
 }
 
+/// What arrives at the pieces from the tissue in front, shaped by that behind.
+void shape(const PieceList& pieces, const Beam& beam, const SurfaceTable& table, HeardList& heard)
+{
+  for (std::size_t n = 0; n < std::size_t(pieces.count); ++n)
+  {
+    const float along = across(pieces.normalX.data(), pieces.normalY.data(), pieces.normalZ.data(), int(n), beam.axis);
+    const SurfaceRow& row = table.rows[along < 0.0f ? pieces.row[n] ^ 1 : pieces.row[n]];
+    for (float* lit : { &heard.diffuse[n], &heard.coherent[n] })
+    {
+      *lit = *lit > 0.0f ? shapedLit(*lit, along, row) : 0.0f;
+    }
+  }
+}
+
+/// Leaves what is loud enough, of pieces that the line may hear; null: of all.
+SONO_SIMD_CLONES void leaveLoud(const std::int32_t* mayHear, int count, HeardList& heard)
+{
+  float* const diffuse = heard.diffuse.data();
+  float* const coherent = heard.coherent.data();
+  const float* const most = heard.most.data();
+  const std::int32_t* const may = mayHear;
+  const bool mayAll = !mayHear;
+  const int whole = inWholeVectors(count);
+  std::int32_t anyDiffuse = 0;
+  std::int32_t anyCoherent = 0;
+#pragma GCC ivdep
+  for (int n = 0; n < whole; ++n)
+  {
+    const bool isLoud = (larger(diffuse[n], coherent[n]) > surfaceFaintestLit) & (most[n] > 0.0f) & (n < count);
+    const bool isHeard = isLoud && (mayAll || may[n] != 0);
+    diffuse[n] = isHeard ? diffuse[n] : 0.0f;
+    coherent[n] = isHeard ? coherent[n] : 0.0f;
+    anyDiffuse |= diffuse[n] > 0.0f ? 1 : 0;
+    anyCoherent |= coherent[n] > 0.0f ? 1 : 0;
+  }
+  heard.anyDiffuse = anyDiffuse != 0;
+  heard.anyCoherent = anyCoherent != 0;
+}
+
 } // namespace
 
-void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard)
+void markHeard(const FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard)
 {
-  markFacing(faces, radiusMm, beam, grid);
-  for (std::size_t n = 0; n < std::size_t(faces.count); ++n)
+  markFacing(faces, radiusMm, beam, grid, heard);
+  for (std::size_t n = 0; n < std::size_t(faces.count) && !isGaussian(beam); ++n)
   {
-    const bool sees = faces.seen[n] != 0.0f && (isGaussian(beam) || mostWeight({ faces.x[n], faces.y[n], faces.z[n] },
-                                                                               radiusMm, beam, grid) > 0.0f);
-    heard[n] = sees ? 1 : 0;
+    const Vec3f middle(faces.x[n], faces.y[n], faces.z[n]);
+    heard[n] = heard[n] != 0 && mostWeight(middle, radiusMm, beam, grid) > 0.0f ? 1 : 0;
   }
 }
 
@@ -163,30 +204,19 @@ void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam
   const std::size_t room = std::size_t(inWholeVectors(pieces.count));
   heard.diffuse.resize(std::max(heard.diffuse.size(), room));
   heard.coherent.resize(std::max(heard.coherent.size(), room));
-  heard.most.assign(std::size_t(pieces.count), 1.0f);
+  heard.most.assign(room, 1.0f);
   hearFacing(pieces, beam, grid, table, known, heard);
-  heard.anyDiffuse = heard.anyCoherent = false;
-  for (int n = 0; n < pieces.count; ++n)
+  if (table.isShaped)
   {
-    const std::size_t at = std::size_t(n);
-    const float lit = std::max(heard.diffuse[at], heard.coherent[at]);
-    if (!(lit > 0.0f))
-    {
-      continue;
-    }
-    const float along = glm::dot(Vec3f(pieces.normalX[at], pieces.normalY[at], pieces.normalZ[at]), beam.axis);
-    const float shaped = shapedLit(lit, along, table.rows[along < 0.0f ? pieces.row[at] ^ 1 : pieces.row[at]]);
-    if (!isGaussian(beam))
-    {
-      heard.most[at] = mostWeight({ pieces.x[at], pieces.y[at], pieces.z[at] }, pieces.radiusMm[at], beam, grid);
-    }
-    const bool isHeard = shaped > surfaceFaintestLit && heard.most[at] > 0.0f && (!mayHear || mayHear[n]);
-    const float arrives = isHeard ? shaped : 0.0f;
-    heard.diffuse[at] = heard.diffuse[at] > 0.0f ? arrives : 0.0f;
-    heard.coherent[at] = heard.coherent[at] > 0.0f ? arrives : 0.0f;
-    heard.anyDiffuse |= heard.diffuse[at] > 0.0f;
-    heard.anyCoherent |= heard.coherent[at] > 0.0f;
+    shape(pieces, beam, table, heard);
   }
+  for (std::size_t n = 0; n < std::size_t(pieces.count) && !isGaussian(beam); ++n)
+  {
+    heard.most[n] = larger(heard.diffuse[n], heard.coherent[n]) > 0.0f
+                      ? mostWeight({ pieces.x[n], pieces.y[n], pieces.z[n] }, pieces.radiusMm[n], beam, grid)
+                      : 0.0f;
+  }
+  leaveLoud(mayHear, pieces.count, heard);
 }
 
 } // namespace sono

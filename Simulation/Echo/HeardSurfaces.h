@@ -18,10 +18,10 @@ struct HeardList
   bool anyCoherent = false;
 };
 
-/// mayHearSurface of each face: `heard`, as long as the list, is 1 where it is so, otherwise 0.
-void markHeard(FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard);
+/// mayHearSurface of each face: `heard`, with room for whole vectors, is 1 where it is so, otherwise 0.
+void markHeard(const FaceList& faces, float radiusMm, const Beam& beam, const LineGrid& grid, std::int32_t* heard);
 
-/// hearSurface of each piece whose face the beam may hear; null: of all.
+/// hearSurface of each piece whose face the beam may hear, with room for whole vectors; null: of all.
 void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam& beam, const LineGrid& grid,
                 const SurfaceTable& table, const SurfaceIntensity& intensity, HeardList& heard);
 

@@ -1,7 +1,5 @@
 #include "Echo/NestedLines.h"
 
-#include "Echo/NestedShares.h"
-
 #include <algorithm>
 
 namespace sono {
@@ -14,24 +12,26 @@ constexpr int bricksTogether = 256; // whose scatterers are made and heard at on
 class LinesOfBricks
 {
 public:
-  LinesOfBricks(const EchoSetup& setup, const std::vector<BeamReach>& beams, std::vector<LineSum>& sums)
+  LinesOfBricks(const EchoSetup& setup, const std::vector<BeamReach>& beams, NestedRoom& room,
+                std::vector<LineSum>& sums)
     : nested_(*setup.nested)
     , density_(setup.density->view())
     , grid_(lineGrid(sums.front()))
     , beams_(beams)
     , sums_(sums)
-    , shares_(beams.size())
+    , room_(room)
   {
+    room_.shares.resize(std::max(room_.shares.size(), beams.size()));
   }
 
   void add(int level, const BrickRow& row)
   {
     for (std::size_t i = 0; i < beams_.size(); ++i)
     {
-      shares_[i].meet(beams_[i].beam, i, row, bricks_.count(), density_, level);
+      room_.shares[i].meet(beams_[i].beam, i, row, room_.bricks.count(), density_, level);
     }
-    bricks_.append(row.brick(0), row.axis(), row.count());
-    if (bricks_.count() >= bricksTogether)
+    room_.bricks.append(row.brick(0), row.axis(), row.count());
+    if (room_.bricks.count() >= bricksTogether)
     {
       finish(level);
     }
@@ -39,25 +39,25 @@ public:
   /// Adds what the rows of the level so far echo.
   void finish(int level)
   {
-    if (bricks_.count() == 0)
+    if (room_.bricks.count() == 0)
     {
       return;
     }
-    wanted_.assign(std::size_t(bricks_.count()), 0);
+    room_.wanted.assign(std::size_t(room_.bricks.count()), 0);
     for (std::size_t i = 0; i < beams_.size(); ++i)
     {
-      shares_[i].share(beams_[i].beam, level, wanted_.data());
+      room_.shares[i].share(beams_[i].beam, level, room_.wanted.data());
     }
-    nested_.generate(level, bricks_, wanted_.data(), scatterers_);
+    nested_.generate(level, room_.bricks, room_.wanted.data(), room_.scatterers);
     for (std::size_t i = 0; i < beams_.size(); ++i)
     {
-      if (shares_[i].takesAny())
+      if (room_.shares[i].takesAny())
       {
-        splat(shares_[i].hear(scatterers_, beams_[i].beam.axis), beams_[i].beam, grid_, sums_[i]);
+        splat(room_.shares[i].hear(room_.scatterers, beams_[i].beam.axis), beams_[i].beam, grid_, sums_[i]);
       }
-      shares_[i].clear();
+      room_.shares[i].clear();
     }
-    bricks_.clear();
+    room_.bricks.clear();
   }
 
 private:
@@ -66,19 +66,16 @@ private:
   LineGrid grid_;
   const std::vector<BeamReach>& beams_;
   std::vector<LineSum>& sums_;
-  NestedBricks bricks_;
-  std::vector<NestedShares> shares_; // of each beam
-  std::vector<int> wanted_;
-  NestedScatterers::Generated scatterers_;
+  NestedRoom& room_;
 };
 
 } // namespace
 
 void addNested(const EchoSetup& setup, const std::vector<BeamReach>& beams, const YieldPoint& yieldPoint,
-               std::vector<LineSum>& sums)
+               NestedRoom& room, std::vector<LineSum>& sums)
 {
   const DensityView density = setup.density->view();
-  LinesOfBricks lines(setup, beams, sums);
+  LinesOfBricks lines(setup, beams, room, sums);
   for (int level = density.finest; level <= density.coarsest; ++level)
   {
     const ScattererDensity::Range range = setup.density->range(level);

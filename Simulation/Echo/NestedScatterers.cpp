@@ -1,6 +1,7 @@
 #include "Echo/NestedScatterers.h"
 
 #include "Core/Simd.h"
+#include "Echo/ResizeAll.h"
 #include "Echo/ScattererDensity.h"
 #include "Kernel/FastMath.h"
 
@@ -139,18 +140,12 @@ int layOut(int brickCount, const int* wanted, Generated& out)
   {
     count += std::size_t(wanted[b]);
   }
-  for (std::vector<float>* values : { &out.x, &out.y, &out.z, &out.amplitude, &out.presence, &out.factor })
-  {
-    values->resize(count + vectorWidth);
-  }
-  for (std::vector<std::int32_t>* values : { &out.i, &out.j, &out.k, &out.brick, &out.number, &out.kept })
-  {
-    values->resize(count + vectorWidth);
-  }
-  out.hash.resize(count + vectorWidth);
+  resizeAll({ &out.x, &out.y, &out.z, &out.amplitude, &out.presence, &out.factor }, count + vectorWidth);
+  resizeAll({ &out.i, &out.j, &out.k, &out.brick, &out.number, &out.kept }, count + vectorWidth);
+  resizeAll({ &out.hash }, count + vectorWidth);
   out.brickHash.resize(std::size_t(inWholeVectors(brickCount)));
   out.firstCandidate.resize(std::size_t(brickCount));
-  out.reached.resize(count + 1);
+  resizeAll({ &out.reached }, count + 1);
   std::size_t n = 0;
   for (int b = 0; b < brickCount; ++b)
   {
@@ -254,10 +249,7 @@ void NestedScatterers::generate(int level, const NestedBricks& bricks, const int
   out.hasFibres = anyAligned;
   if (anyAligned)
   {
-    for (std::vector<float>* values : { &out.fibreX, &out.fibreY, &out.fibreZ })
-    {
-      values->resize(std::size_t(to) + vectorWidth);
-    }
+    resizeAll({ &out.fibreX, &out.fibreY, &out.fibreZ }, std::size_t(to) + vectorWidth);
   }
   for (int a = 0; anyAligned && a < to; ++a)
   {

@@ -120,13 +120,15 @@ SONO_SIMD_CLONES __attribute__((flatten)) void takeShares(const float* weight, c
 
 /// B(t) = B_par + anisotropy sin^2 t (Data/docs/physics.md eq. 11.4); the amplitudes are those across the fibres.
 SONO_SIMD_CLONES __attribute__((flatten)) void hearAlong(const Vec3f& axis, const float* fx, const float* fy,
-                                                         const float* fz, int count, float* amplitude)
+                                                         const float* fz, const float* across, int count,
+                                                         float* amplitude)
 {
   const Vec3f a = axis;
+#pragma GCC ivdep
   for (int n = 0; n < count; ++n)
   {
     const float cosine = fx[n] * a.x + fy[n] * a.y + fz[n] * a.z; // times the root of the anisotropy
-    amplitude[n] *= expNegative(-cosine * cosine);
+    amplitude[n] = across[n] * expNegative(-cosine * cosine);
   }
 }
 
@@ -140,10 +142,6 @@ struct TakenParts
   const float* faded;
 };
 
-/// Arrays of what scatterers are, a value of each.
-constexpr int placeArrays = 3; // x, y, z
-constexpr int fibreArrays = 3; // the same of fibres, behind the places
-
 /// A beam takes four of a brick on average: wider vectors would write mostly what is written over.
 constexpr int fewScatterers = vectorWidth / 2;
 
@@ -152,16 +150,16 @@ __attribute__((always_inline)) inline void copyFew(const float* from, float* to)
   std::memcpy(to, from, fewScatterers * sizeof(float));
 }
 
-/// Of each of `arrays` and the amplitudes, brick by brick, written in whole vectors, each over the rest of the one
-/// before; how many there are.
-template<int Arrays>
-__attribute__((always_inline)) inline int takeArrays(const NestedScatterers::Generated& from, int bricks,
-                                                     const TakenParts& parts, float* const* to, float* toAmplitude)
+/// Places and amplitudes, brick by brick, written in whole vectors, each over the rest of the one before; how many
+/// there are. `amplitudes` are those that the beam hears.
+SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatterers::Generated& from,
+                                                             const float* amplitudes, int bricks,
+                                                             const TakenParts& parts, float* toX, float* toY,
+                                                             float* toZ, float* toAmplitude)
 {
   const TakenParts part = parts;
-  const float* const source[placeArrays + fibreArrays] = { from.x.data(),      from.y.data(),      from.z.data(),
-                                                           from.fibreX.data(), from.fibreY.data(), from.fibreZ.data() };
-  const float* const amplitudes = from.amplitude.data();
+  const float *x = from.x.data(), *y = from.y.data(), *z = from.z.data();
+  const float* const heardAmplitudes = amplitudes;
   const int* before = from.before.data();
   const int* firstCandidate = from.firstCandidate.data();
   const int* reached = from.reached.data();
@@ -177,33 +175,17 @@ __attribute__((always_inline)) inline int takeArrays(const NestedScatterers::Gen
     const float faded = part.faded[k];
     for (int n = 0; n < taken; n += fewScatterers)
     {
-      for (int a = 0; a < Arrays; ++a)
-      {
-        copyFew(source[a] + first + n, to[a] + heard + n);
-      }
+      copyFew(x + first + n, toX + heard + n);
+      copyFew(y + first + n, toY + heard + n);
+      copyFew(z + first + n, toZ + heard + n);
       for (int m = 0; m < fewScatterers; ++m)
       {
-        toAmplitude[heard + n + m] = amplitudes[first + n + m] * (n + m < whole ? scale : faded);
+        toAmplitude[heard + n + m] = heardAmplitudes[first + n + m] * (n + m < whole ? scale : faded);
       }
     }
     heard += taken;
   }
   return heard;
-}
-
-SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatterers::Generated& from, int bricks,
-                                                             const TakenParts& parts, float* const* to,
-                                                             float* toAmplitude)
-{
-  return takeArrays<placeArrays>(from, bricks, parts, to, toAmplitude);
-}
-
-/// The same with their fibres.
-SONO_SIMD_CLONES __attribute__((flatten)) int takeWithFibres(const NestedScatterers::Generated& from, int bricks,
-                                                             const TakenParts& parts, float* const* to,
-                                                             float* toAmplitude)
-{
-  return takeArrays<placeArrays + fibreArrays>(from, bricks, parts, to, toAmplitude);
 }
 
 } // namespace
@@ -278,20 +260,19 @@ void NestedShares::share(const Beam& beam, int level, int* wanted)
 
 ScattererView NestedShares::hear(const NestedScatterers::Generated& scatterers, const Vec3f& axis)
 {
-  resizeAll({ &x_, &y_, &z_, &amplitude_, &fibreX_, &fibreY_, &fibreZ_ }, std::size_t(candidates_ + vectorWidth));
+  resizeAll({ &x_, &y_, &z_, &amplitude_ }, std::size_t(candidates_ + vectorWidth));
   const TakenParts parts{ brick_.data(), count_.data(), whole_.data(), scale_.data(), faded_.data() };
-  float* const to[placeArrays + fibreArrays] = { x_.data(),      y_.data(),      z_.data(),
-                                                 fibreX_.data(), fibreY_.data(), fibreZ_.data() };
-  int heard = 0;
+  const float* amplitudes = scatterers.amplitude.data();
   if (scatterers.hasFibres)
   {
-    heard = takeWithFibres(scatterers, taken_, parts, to, amplitude_.data());
-    hearAlong(axis, fibreX_.data(), fibreY_.data(), fibreZ_.data(), inWholeVectors(heard), amplitude_.data());
+    const int count = inWholeVectors(scatterers.before.back());
+    resizeAll({ &alongAxis_ }, std::size_t(count + vectorWidth));
+    hearAlong(axis, scatterers.fibreX.data(), scatterers.fibreY.data(), scatterers.fibreZ.data(), amplitudes, count,
+              alongAxis_.data());
+    amplitudes = alongAxis_.data();
   }
-  else
-  {
-    heard = takeScatterers(scatterers, taken_, parts, to, amplitude_.data());
-  }
+  const int heard =
+    takeScatterers(scatterers, amplitudes, taken_, parts, x_.data(), y_.data(), z_.data(), amplitude_.data());
   return { x_.data(), y_.data(), z_.data(), amplitude_.data(), heard, 1.0f, true };
 }
 

@@ -38,7 +38,8 @@ private:
   std::vector<float> depthMm_, lateralMm_, elevationalMm_, perMm3_;
   std::vector<std::int32_t> at_, parentAt_;
   // What is heard, with room up to whole vectors.
-  std::vector<float> x_, y_, z_, amplitude_, fibreX_, fibreY_, fibreZ_;
+  std::vector<float> x_, y_, z_, amplitude_;
+  std::vector<float> alongAxis_; // amplitudes of all scatterers as they are heard along the beam's axis
 };
 
 } // namespace sono

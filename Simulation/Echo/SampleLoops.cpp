@@ -12,9 +12,10 @@ namespace sono {
 namespace {
 
 constexpr int block = samplePadding;
+constexpr int shortBlock = block / 2; // eight samples a period are six or seven a bin
 
-/// The first sample at or behind a place.
-int sampleAt(double place, int count)
+/// The first sample at or behind a place. Within the loops, so that it is compiled for their instruction sets.
+__attribute__((always_inline)) inline int sampleAt(double place, int count)
 {
   return int(std::clamp(std::ceil(place), 0.0, double(count)));
 }
@@ -24,16 +25,17 @@ int sampleAt(double place, int count)
 SONO_SIMD_CLONES void linearAtSamples(const float* bins, int binCount, double binsPerSample, int count, float* out)
 {
   const float rise = float(binsPerSample);
+  const double samplesPerBin = 1.0 / binsPerSample;
   int from = 0;
   for (int k = -1; k < binCount && from < count; ++k)
   {
-    const int to = k + 1 < binCount ? sampleAt((k + 1.5) / binsPerSample, count) : count;
+    const int to = k + 1 < binCount ? sampleAt((k + 1.5) * samplesPerBin, count) : count;
     const float a = bins[std::max(k, 0)];
     const float difference = bins[std::min(k + 1, binCount - 1)] - a;
     const float share = float(from * binsPerSample - 0.5 - k);
-    for (int s = from; s < to; s += block)
+    for (int s = from; s < to; s += shortBlock)
     {
-      for (int i = 0; i < block; ++i)
+      for (int i = 0; i < shortBlock; ++i)
       {
         out[s + i] = a + difference * (share + float(s - from + i) * rise);
       }
@@ -44,10 +46,11 @@ SONO_SIMD_CLONES void linearAtSamples(const float* bins, int binCount, double bi
 
 SONO_SIMD_CLONES void binAtSamples(const float* bins, int binCount, double binsPerSample, int count, float* out)
 {
+  const double samplesPerBin = 1.0 / binsPerSample;
   int from = 0;
   for (int k = 0; k < binCount && from < count; ++k)
   {
-    const int to = k + 1 < binCount ? sampleAt((k + 1) / binsPerSample, count) : count;
+    const int to = k + 1 < binCount ? sampleAt((k + 1) * samplesPerBin, count) : count;
     for (int s = from; s < to; s += block)
     {
       std::fill_n(out + s, block, bins[k]);
@@ -61,11 +64,12 @@ SONO_SIMD_CLONES void offsetsAtSamples(const RangeMap& map, float sampleMm, int 
   const double binsPerSample = double(map.perBinMm) * double(sampleMm);
   const float perSampleMm = 1.0f / sampleMm;
   const float rise = float(binsPerSample);
+  const double samplesPerBin = 1.0 / binsPerSample;
   int from = 0;
   for (int k = 0; k < map.bins && from < count; ++k)
   {
     const bool isLast = k + 1 == map.bins;
-    const int to = isLast ? count : sampleAt((k + 1) / binsPerSample, count);
+    const int to = isLast ? count : sampleAt((k + 1) * samplesPerBin, count);
     const float* at = map.offsetMm + k;
     // As bentAt.
     const float a = at[0] * perSampleMm;

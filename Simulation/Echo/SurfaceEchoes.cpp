@@ -1,6 +1,7 @@
 #include "Echo/SurfaceEchoes.h"
 
 #include "Core/Policy.h"
+#include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Echo/FaintPieces.h"
 #include "Echo/HeardSurfaces.h"
@@ -52,6 +53,17 @@ SurfaceMedia mediaOf(const Scene& scene, const std::vector<TargetSurface>* targe
   return media;
 }
 
+/// values[n] = values[from[n]], of numbers that rise.
+void takeEach(const std::vector<std::int32_t>& from, std::vector<std::int32_t>& values)
+{
+  const std::int32_t* const at = from.data();
+  std::int32_t* const of = values.data();
+  for (std::size_t n = 0; n < from.size(); ++n)
+  {
+    of[n] = of[at[n]]; // none overtakes another
+  }
+}
+
 PieceCuts cutsFor(const Vec3f& spacingMm, double stepMm)
 {
   return { glm::max(Vec3i(glm::ceil(spacingMm / float(stepMm))), Vec3i(1)) };
@@ -88,6 +100,7 @@ struct SurfaceEchoes::Room
   FaceList faces;
   std::vector<std::vector<std::int32_t>> mayHear; ///< by line; of the list's faces, then of the pieces
   std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
+  std::vector<std::int32_t> faceOf;               ///< by piece: which of them; not of targets
   PieceList pieces;
   PieceExtents extents;                       ///< of the pieces; not of targets
   std::vector<const SurfacePiece*> pieceOf;   ///< by piece; not of targets
@@ -201,6 +214,11 @@ struct SurfaceEchoes::Room
   }
 };
 
+std::shared_ptr<SurfaceEchoes::Room> SurfaceEchoes::makeRoom()
+{
+  return std::make_shared<Room>();
+}
+
 SurfaceEchoes::SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets,
                              const EchoSettings& settings, const BeamModel& beams, SurfaceDetail detail)
   : pieces_(scene.surfacePieces())
@@ -271,7 +289,7 @@ void SurfaceEchoes::findPieces(const Group& group, Room& room) const
   room.mayHear.resize(group.beams.size());
   for (const std::size_t i : room.listening)
   {
-    room.mayHear[i].resize(room.faceCount);
+    room.mayHear[i].resize(std::size_t(inWholeVectors(int(room.faceCount))));
     markHeard(room.faces, 2.0f * longestMm, group.beams[i].beam, group.grids[i], room.mayHear[i].data());
   }
   room.leaveUnseen();
@@ -285,6 +303,7 @@ void SurfaceEchoes::findPieces(const Group& group, Room& room) const
   room.extents.clear();
   room.pieceOf.clear();
   room.rowOf.clear();
+  room.faceOf.clear();
   std::size_t first = 0;
   for (std::size_t b = 0; b < room.met; ++b)
   {
@@ -302,22 +321,23 @@ void SurfaceEchoes::findPieces(const Group& group, Room& room) const
         // Pieces lie all over the memory, and are asked for while the next are looked up.
         __builtin_prefetch(piece);
         __builtin_prefetch(reinterpret_cast<const char*>(piece + 1) - 1);
-        for (const std::size_t i : room.listening)
-        {
-          room.mayHear[i][room.pieceOf.size()] = room.mayHear[i][first + n]; // none overtakes its face
-        }
+        room.faceOf.push_back(std::int32_t(first + n));
         room.pieceOf.push_back(piece);
         room.rowOf.push_back(row);
       }
     }
     first += brick.count;
   }
+  for (const std::size_t i : room.listening)
+  {
+    takeEach(room.faceOf, room.mayHear[i]);
+  }
   for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
   {
     const SurfacePiece& piece = *room.pieceOf[p];
     const PieceBounds bounds = pieceBounds(piece, longestMm);
     room.pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(piece)),
-                     room.rowOf[p]);
+                     room.rowOf[p], group.table);
     room.extents.push(piece, nets_.diffuseNet(piece), nets_.coherentNet(piece));
   }
 }
@@ -408,7 +428,7 @@ void SurfaceEchoes::addTargets(const TargetGroup& targets, std::vector<BeamReach
     {
       room.diffuse.push(point, room.pieces.count);
       room.coherent.push(point, room.pieces.count);
-      room.pieces.push(point.position, point.normal, 0.0f, false, point.row);
+      room.pieces.push(point.position, point.normal, 0.0f, false, point.row, group.table);
     }
     room.hear(seeing, group, nullptr);
     room.addTo(seeing, group);
@@ -416,7 +436,7 @@ void SurfaceEchoes::addTargets(const TargetGroup& targets, std::vector<BeamReach
 }
 
 void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities,
-                        const YieldPoint& brickDone, std::vector<LineSum>& sums) const
+                        const YieldPoint& brickDone, Room& room, std::vector<LineSum>& sums) const
 {
   const std::vector<BeamReach> exact = beams;
   Group group{ exact, intensities, sums, {}, targetTable() };
@@ -424,7 +444,6 @@ void SurfaceEchoes::add(std::vector<BeamReach> beams, const std::vector<SurfaceI
   {
     group.grids.push_back(lineGrid(sum));
   }
-  Room room;
   for (const TargetGroup& targets : targets_)
   {
     if (targets.ring.taps.empty())

@@ -42,10 +42,14 @@ public:
   SurfaceEchoes(const Scene& scene, const std::vector<TargetSurface>* targets, const EchoSettings& settings,
                 const BeamModel& beams, SurfaceDetail detail = SurfaceDetail::Full);
 
+  /// What a group of lines is added in; nothing is left in it.
+  struct Room;
+  static std::shared_ptr<Room> makeRoom();
+
   /// Adds to the sums of a group of lines, intensity included. `beams` are those of the scene, `intensities` and `sums`
   /// parallel to them. `brickDone` is called in each brick, and may throw Aborted.
   void add(std::vector<BeamReach> beams, const std::vector<SurfaceIntensity>& intensities, const YieldPoint& brickDone,
-           std::vector<LineSum>& sums) const;
+           Room& room, std::vector<LineSum>& sums) const;
 
   // What a device needs to do the same.
   const SurfacePieces& pieces() const { return pieces_; }
@@ -65,7 +69,6 @@ public:
 private:
   struct Group;
   struct MetBrick;
-  struct Room;
 
   /// Faces of the bricks that have been met become pieces where one of the lines may hear them.
   void findPieces(const Group& group, Room& room) const;

@@ -66,7 +66,7 @@ void FaceList::push(const Vec3f& middle, const Vec3f& roughNormal, const Surface
   const std::size_t n = std::size_t(count++);
   if (x.size() < n + vectorWidth)
   {
-    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &cosineBelow, &cosineAbove, &seen }, 2 * (n + vectorWidth));
+    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &cosineBelow, &cosineAbove }, 2 * (n + vectorWidth));
   }
   x[n] = middle.x;
   y[n] = middle.y;
@@ -78,12 +78,15 @@ void FaceList::push(const Vec3f& middle, const Vec3f& roughNormal, const Surface
   cosineAbove[n] = above.roughCosine;
 }
 
-void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA)
+void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA,
+                     const SurfaceTable& table)
 {
   const std::size_t n = std::size_t(count++);
   if (x.size() < n + vectorWidth)
   {
-    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &radiusMm, &isCoarse }, 2 * (n + vectorWidth));
+    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &radiusMm, &reachA, &reachB, &coherentReachA, &coherentReachB,
+                &decayPerMmA, &decayPerMmB },
+              2 * (n + vectorWidth));
     resizeAll({ &row }, 2 * (n + vectorWidth));
   }
   x[n] = position.x;
@@ -93,8 +96,15 @@ void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, b
   normalY[n] = normal.y;
   normalZ[n] = normal.z;
   radiusMm[n] = radius;
-  isCoarse[n] = coarse ? 1.0f : 0.0f;
   row[n] = rowFromA;
+  const SurfaceRow& fromA = table.rows[rowFromA];
+  const SurfaceRow& fromB = table.rows[rowFromA ^ 1];
+  reachA[n] = fromA.reach;
+  reachB[n] = fromB.reach;
+  coherentReachA[n] = coarse ? fromA.coherentReach : fromA.finestReach;
+  coherentReachB[n] = coarse ? fromB.coherentReach : fromB.finestReach;
+  decayPerMmA[n] = fromA.decayPerMm;
+  decayPerMmB[n] = fromB.decayPerMm;
 }
 
 void PointList::reserve(int more)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/SurfaceEcho.h"
 #include "Kernel/SurfacePiece.h"
 
 #include <cstdint>
@@ -16,7 +17,6 @@ struct FaceList
   std::vector<float> x, y, z; ///< their middles, mm
   std::vector<float> normalX, normalY, normalZ;
   std::vector<float> cosineBelow, cosineAbove; ///< below it nothing counts, as met along the normal and against it
-  std::vector<float> seen;                     ///< room
   int count = 0;
 
   void clear() { count = 0; }
@@ -30,12 +30,15 @@ struct PieceList
   std::vector<float> x, y, z; ///< mm
   std::vector<float> normalX, normalY, normalZ;
   std::vector<float> radiusMm; ///< points lie no further away
-  std::vector<float> isCoarse; ///< 1 or 0
   std::vector<std::int32_t> row;
+  /// Of SurfaceRow, as met from a and from b; the coherent reach is that of the blobs the piece has.
+  std::vector<float> reachA, reachB, coherentReachA, coherentReachB, decayPerMmA, decayPerMmB;
   int count = 0;
 
   void clear() { count = 0; }
-  void push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA);
+  /// `coarse`: its blobs are the coarsest.
+  void push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA,
+            const SurfaceTable& table);
 };
 
 /// Points of pieces, ascending by piece.

@@ -135,6 +135,8 @@ SurfaceRows::SurfaceRows(const SurfaceMedia& surfaceMedia, const EchoSettings& s
   : count_(int(surfaceMedia.all.size()))
   , perBeamArea_(1.0 / beam.areaMm2)
   , pulseSigmaMm_(pulseSigmaMm(settings.centreFrequencyMHz, settings.fractionalBandwidth))
+  , isShaped_(std::any_of(surfaceMedia.all.begin(), surfaceMedia.all.end(),
+                          [](const Tissue& tissue) { return tissue.tau != 1.0 || tissue.gamma != 0.0; }))
   , rows_(2 * surfaceMedia.all.size() * surfaceMedia.all.size())
 {
   const std::vector<Tissue>& media = surfaceMedia.all;
@@ -252,6 +254,7 @@ SurfaceTable SurfaceRows::view(double slackMm) const
   table.perBeamArea = float(perBeamArea_);
   table.slackMm = float(slackMm);
   table.pulseSigmaMm = float(pulseSigmaMm_);
+  table.isShaped = isShaped_;
   return table;
 }
 

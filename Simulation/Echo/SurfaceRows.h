@@ -55,6 +55,7 @@ private:
   int count_;
   double perBeamArea_;
   double pulseSigmaMm_;
+  bool isShaped_;
   std::vector<SurfaceRow> rows_;
   std::vector<float> diffuseL_;
   std::vector<float> diffuseE_;

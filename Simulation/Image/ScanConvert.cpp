@@ -28,13 +28,30 @@ SONO_SIMD_CLONES __attribute__((flatten)) void convertRow(const PlaneScan& of, c
   beamsOfRow(beams, lateralMm, x, count, line, depthMm);
   for (int i = 0; i < count; ++i)
   {
+    mask[i] = area.contains(line[i], depthMm[i]) ? 1 : 0;
+  }
+  // Nothing is looked up beside what is scanned: four tenths of a sector's rectangle.
+  int first = 0;
+  while (first < count && mask[first] == 0)
+  {
+    ++first;
+  }
+  int end = count;
+  while (end > first && mask[end - 1] == 0)
+  {
+    --end;
+  }
+  first = first / vectorWidth * vectorWidth;
+  end = std::min(count, inWholeVectors(end));
+  std::fill(level, level + first, 0.0f);
+  std::fill(level + end, level + count, 0.0f);
+  for (int i = first; i < end; ++i)
+  {
     level[i] = samples.at(line[i], depthMm[i] * samplesPerMm);
   }
-  for (int i = 0; i < count; ++i)
+  for (int i = first; i < end; ++i)
   {
-    const bool isScanned = area.contains(line[i], depthMm[i]);
-    level[i] = isScanned ? level[i] : 0.0f;
-    mask[i] = isScanned ? 1 : 0;
+    level[i] = mask[i] != 0 ? level[i] : 0.0f;
   }
 }
 

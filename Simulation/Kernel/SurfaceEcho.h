@@ -73,6 +73,7 @@ struct SurfaceTable
   float perBeamArea = 1.0f;  ///< 1 / A_b, 1/mm^2
   float slackMm = 0.0f;      ///< how far in front of a surface the tracer may have met it
   float pulseSigmaMm = 0.0f; ///< of a Gaussian pulse of the same bandwidth
+  bool isShaped = true;      ///< whether any boundary has a tau but 1 or a gamma but 0
 
   /// Whether a boundary echoes to either side.
   SONO_HD bool counts(int row) const { return echoes(rows[row]) || echoes(rows[row ^ 1]); }

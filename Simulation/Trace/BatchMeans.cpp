@@ -13,10 +13,11 @@ namespace {
 SONO_SIMD_CLONES void addMeans(const BinSums<double>* batch, double batches, std::size_t count,
                                double* __restrict intensity, double* __restrict absorbed)
 {
+  const double share = 1.0 / batches;
   for (std::size_t b = 0; b < count; ++b)
   {
     intensity[b] += double(float(batch[b].of[intensitySum]));
-    absorbed[b] += batch[b].of[absorbedSum] / batches;
+    absorbed[b] += batch[b].of[absorbedSum] * share;
   }
 }
 
@@ -68,6 +69,7 @@ struct Accumulated
 SONO_SIMD_CLONES void addReverberation(const ReverberationSums* batch, double batches, std::size_t count,
                                        Accumulated& sums)
 {
+  const double share = 1.0 / batches;
   double* const own = sums.own.data();
   double* const cell = sums.cell.data();
   double* const cellSquares = sums.cellSquares.data();
@@ -80,7 +82,7 @@ SONO_SIMD_CLONES void addReverberation(const ReverberationSums* batch, double ba
     const double minus = batch[b].of[minusSum];
     const double power = batch[b].of[straightPowerSum];
     const double signedMean = plus - minus;
-    own[b] += (plus + minus) / batches;
+    own[b] += (plus + minus) * share;
     cell[b] += signedMean;
     cellSquares[b] += signedMean * signedMean;
     straight[b] += power;

@@ -47,6 +47,7 @@ SONO_SIMD_CLONES void takeMeans(std::array<std::vector<float>, binSumCount>& bin
                                 std::vector<BinSums<double>>& means)
 {
   static_assert(binSumCount == 2);
+  const double share = 1.0 / paths;
   float *ofIntensity = bins[intensitySum].data(), *ofAbsorbed = bins[absorbedSum].data();
   double *intensity = earlier[intensitySum].data(), *absorbed = earlier[absorbedSum].data();
   BinSums<double>* mean = means.data();
@@ -54,8 +55,8 @@ SONO_SIMD_CLONES void takeMeans(std::array<std::vector<float>, binSumCount>& bin
 #pragma GCC ivdep
   for (std::size_t b = 0; b < count; ++b)
   {
-    mean[b].of[intensitySum] = (intensity[b] + double(ofIntensity[b])) / paths;
-    mean[b].of[absorbedSum] = (absorbed[b] + double(ofAbsorbed[b])) / paths;
+    mean[b].of[intensitySum] = (intensity[b] + double(ofIntensity[b])) * share;
+    mean[b].of[absorbedSum] = (absorbed[b] + double(ofAbsorbed[b])) * share;
   }
 }
 
@@ -141,11 +142,12 @@ std::vector<ReverberationSums> LineTally::takeReverberation(int paths)
   }
   std::vector<ReverberationSums> means(reverberation_.size());
   means.swap(reverberation_);
+  const double share = 1.0 / double(paths);
   for (ReverberationSums& mean : means)
   {
     for (double& sum : mean.of)
     {
-      sum /= paths;
+      sum *= share;
     }
   }
   return means;

@@ -4,9 +4,8 @@
 #include "Core/Simd.h"
 #include "Core/SoundSpeed.h"
 #include "Kernel/NanoSpace.h"
-#include "Kernel/TimeOfFlight.h"
 #include "Kernel/TracePath.h"
-#include "Trace/AxisMedia.h"
+#include "Trace/AxisWay.h"
 #include "Trace/BatchMeans.h"
 #include "Trace/Deposit.h"
 #include "Trace/ReverberationWindows.h"
@@ -114,109 +113,6 @@ void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept
   }
 }
 
-/// A line's way along its axis, as StraightWay wants it.
-struct AxisWay
-{
-  std::vector<float> rangeMm;
-  std::vector<float> amplitude;
-  std::vector<float> absorbedNp;
-  float stepMm = 1.0f;
-
-  StraightWay view() const
-  {
-    return { rangeMm.data(), amplitude.data(), absorbedNp.data(), int(rangeMm.size()) - 1, stepMm };
-  }
-};
-
-/// mediaOnAxis of a space of cells; of any other nothing, which is asked place by place.
-template<class Targets, class Cells>
-std::vector<int> mediaAtOnce(const CellSpace<Targets, Cells>& space, const TraceView& view, const TraceLine& axis,
-                             float stepMm, int count)
-{
-  return mediaOnAxis(view, space.cells, axis, stepMm, count);
-}
-
-template<class Space>
-std::vector<int> mediaAtOnce(const Space&, const TraceView&, const TraceLine&, float, int)
-{
-  return {};
-}
-
-/// The media that count at multiples of a step along the axis.
-template<class Space>
-std::vector<int> followMedia(const Space& space, const TraceView& view, const TraceLine& axis, const TargetSpans& spans,
-                             float stepMm, int count)
-{
-  std::vector<int> media = spans.count == 0 ? mediaAtOnce(space, view, axis, stepMm, count) : std::vector<int>();
-  const bool isKnown = !media.empty();
-  media.resize(std::size_t(count));
-  for (int s = 0; s < count; ++s)
-  {
-    int& medium = media[std::size_t(s)];
-    const float depthMm = float(s) * stepMm;
-    const AxisMedium there = isKnown ? AxisMedium{ medium, false } : mediumThere(view, space, axis, spans, depthMm);
-    medium = mediumOnAxis(view, space, axis, there, depthMm);
-  }
-  return media;
-}
-
-/// Follows the line's axis by time, and writes where ranges lie on it.
-template<class Space>
-AxisWay followAxis(const Space& space, const TraceSetup& setup, int line, TracedLines& out)
-{
-  AxisWay way;
-  if (out.depthOffsetMm.empty())
-  {
-    return way;
-  }
-  const TraceView& view = setup.view;
-  const TraceLine& axis = setup.lines[std::size_t(line)];
-  const int steps = out.binCount * flightSteps(float(out.binMm));
-  way.stepMm = float(out.binMm) / float(flightSteps(float(out.binMm)));
-  const TargetSpans spans = targetSpans(view, space, axis);
-  const std::vector<int> media = followMedia(space, view, axis, spans, way.stepMm, steps + 2);
-  double range = 0.0;
-  double amplitude = 1.0;
-  double absorbed = 0.0;
-  float lastNp = 0.0f;
-  double lastFactor = 1.0; // within a medium each step takes the same
-  for (std::vector<float>* values : { &way.rangeMm, &way.amplitude, &way.absorbedNp })
-  {
-    values->resize(std::size_t(steps) + 1);
-  }
-  for (int s = 0; s <= steps; ++s)
-  {
-    way.rangeMm[std::size_t(s)] = float(range);
-    way.amplitude[std::size_t(s)] = float(amplitude);
-    way.absorbedNp[std::size_t(s)] = float(absorbed);
-    const FlightStep step =
-      flightStep(view, space, axis, spans, way.stepMm, s, media[std::size_t(s)], media[std::size_t(s) + 1]);
-    range += double(step.rangeMm);
-    if (step.lostNp != lastNp)
-    {
-      lastNp = step.lostNp;
-      lastFactor = std::exp(-0.5 * double(lastNp));
-    }
-    amplitude *= lastFactor;
-    absorbed += double(step.absorbedNp);
-  }
-  float* offset = out.depthOffsetMm.data() + std::size_t(line) * std::size_t(out.binCount);
-  const float* ranges = way.rangeMm.data();
-  int before = 0;
-  for (int b = 0; b < out.binCount; ++b)
-  {
-    const float wanted = float(b) * float(out.binMm);
-    while (before + 1 < steps && ranges[before + 1] <= wanted)
-    {
-      ++before; // depthOfRange would look for it anew
-    }
-    offset[b] = (wanted < ranges[steps] ? depthAfterStep(ranges, steps, way.stepMm, before, wanted)
-                                        : depthOfRange(ranges, steps, way.stepMm, wanted)) -
-                wanted;
-  }
-  return way;
-}
-
 } // namespace
 
 /// What the paths of a line have left, while more may follow: means of its batches.
@@ -266,7 +162,13 @@ inline void traceLineIn(const Space& space, const TraceSetup& setup, int index, 
 {
   const TraceView& view = setup.view;
   const TraceLine& line = setup.lines[std::size_t(index)];
-  const AxisWay way = followAxis(space, setup, index, out);
+  AxisWay way;
+  if (!out.depthOffsetMm.empty())
+  {
+    way = followAxis(view, space, line, out.binCount, out.binMm);
+    way.writeOffsets(out.binCount, out.binMm,
+                     out.depthOffsetMm.data() + std::size_t(index) * std::size_t(out.binCount));
+  }
   tally.begin(view, line, std::uint32_t(index), way.view());
   std::complex<float>* echoes = out.boundaryEcho.data() + std::size_t(index) * std::size_t(out.echoCount);
   const float shareBefore = float(round.before) / float(round.paths);

@@ -83,7 +83,7 @@ TEST_P(FaintPieces, AreThoseWithoutAnyPointThatIsHeard)
       coherentNets.push_back({ cuts, cuts, spacing / float(cuts), spacing / float(cuts) });
       const int a = n % 3;
       const PieceBounds bounds = pieceBounds(piece, spacing);
-      pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, cuts == 2, rows.row(a, (a + 1) % 3));
+      pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, cuts == 2, rows.row(a, (a + 1) % 3), table);
       extents.push(piece, diffuse, coherentNets.back());
       all.push_back(piece);
     }

@@ -1,4 +1,5 @@
 #include "BeamScenes.h"
+#include "Core/Simd.h"
 #include "Echo/SurfaceLoops.h"
 #include "Echo/SurfaceRows.h"
 #include "SurfaceFigures.h"
@@ -83,7 +84,7 @@ TEST_P(SurfaceLoops, AreTheSumOfSinglePoints)
     SurfacePoint p = point();
     mayHear.push_back(n % 5 == 0 ? 0 : 1);
     const bool coarse = n % 2 == 0;
-    pieces.push(p.position, p.normal, 0.7f, coarse, p.row);
+    pieces.push(p.position, p.normal, 0.7f, coarse, p.row, table);
     const SurfaceHearing heard = hearSurface(p.position, p.normal, 0.7f, coarse, p.row, beam, grid, table, intensity);
     heardPieces += heard.lit > 0.0f ? 1 : 0;
     for (int i = 0; i < 5; ++i)
@@ -103,6 +104,7 @@ TEST_P(SurfaceLoops, AreTheSumOfSinglePoints)
   list.pad();
   EXPECT_GT(heardPieces, 20);
   HeardList heard;
+  mayHear.resize(std::size_t(inWholeVectors(pieces.count)));
   hearPieces(pieces, mayHear.data(), beam, grid, table, intensity, heard);
   addDiffusePoints(list, heard, beam, grid, table, together.data());
   addCoherentPoints(list, heard, beam, grid, table, together.data());
@@ -131,7 +133,7 @@ TEST_P(SurfaceLoops, MarkTheFacesThatMayBeHeard)
     faces.push(points.back().position, points.back().normal, rows.at(points.back().row),
                rows.at(points.back().row ^ 1));
   }
-  std::vector<std::int32_t> heard(pieceCount, 0);
+  std::vector<std::int32_t> heard(std::size_t(inWholeVectors(pieceCount)), 0);
   markHeard(faces, 1.0f, beam, grid, heard.data());
   int count = 0;
   for (std::size_t n = 0; n < points.size(); ++n)
