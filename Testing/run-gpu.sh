@@ -3,6 +3,7 @@
 #   run-gpu.sh pack [PART] here: builds, and packs programs and libraries (or one of them) into build-gpu
 #   run-gpu.sh test        there: the tests of the GPU against the CPU
 #   run-gpu.sh benchmark   there: prints the stage `gpu` of the figures
+#   run-gpu.sh instructions  there, where ncu is: what an image's kernels issue, and how long that takes at least
 #   run-gpu.sh filters     there: what VTK costs around the simulator; `pack filters` packs it, with VTK's libraries
 #   run-gpu.sh views [FOLDER]  there: a drag drawn in ParaView's views, the last pictures into the folder; `pack views` packs ParaView
 #                          for it, with a display server, for there is none
@@ -187,6 +188,13 @@ case "${1:-}" in
     unpack programs libraries
     with_libraries "$unpacked/programs/GpuBenchmark"
     ;;
+  instructions)
+    unpack programs libraries
+    metrics=smsp__inst_executed.sum,gpu__time_duration.sum
+    metrics+=,device__attribute_multiprocessor_count,device__attribute_clock_rate
+    with_libraries ncu --metrics "$metrics" --kernel-name-base function --csv -c 200 "$unpacked/programs/GpuBenchmark" |
+      python3 "$root/Testing/gpu-instructions.py"
+    ;;
   filters)
     unpack filters
     SONOVDB_DATA_DIR="$unpacked/filters" LD_LIBRARY_PATH="$unpacked/filters/lib" "$unpacked/filters/FilterBenchmark"
@@ -243,7 +251,7 @@ END
     done
     ;;
   *)
-    sed -n '2,15s/^# *//p' "$0" >&2
+    sed -n '2,16s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac
