@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <iterator>
-#include <mutex>
+#include <memory>
+#include <utility>
 
 namespace sono {
 
@@ -51,46 +51,25 @@ void addPoints(const PointScatterers& points, const std::vector<BeamReach>& beam
   });
 }
 
-/// Sums that are done with, for the next lines: memory that is given back comes anew page by page, each with a fault.
-class SumPool
+/// So many, all zeros.
+std::vector<LineSum> takeSums(RoomPool<LineSum>& pool, int count)
 {
-public:
-  explicit SumPool(const LineFinisher& finisher)
-    : finisher_(finisher)
+  std::vector<LineSum> sums;
+  for (int l = 0; l < count; ++l)
   {
+    sums.push_back(pool.take());
+    std::fill(sums.back().iq.begin(), sums.back().iq.end(), 0.0f);
   }
-  /// So many, all zeros.
-  std::vector<LineSum> take(int count)
-  {
-    std::vector<LineSum> sums;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      const std::size_t kept = std::min(std::size_t(count), free_.size());
-      sums.insert(sums.end(), std::make_move_iterator(free_.end() - std::ptrdiff_t(kept)),
-                  std::make_move_iterator(free_.end()));
-      free_.resize(free_.size() - kept);
-    }
-    for (LineSum& sum : sums)
-    {
-      std::fill(sum.iq.begin(), sum.iq.end(), 0.0f);
-    }
-    while (sums.size() < std::size_t(count))
-    {
-      sums.push_back(finisher_.emptySum());
-    }
-    return sums;
-  }
-  void give(std::vector<LineSum> sums)
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    free_.insert(free_.end(), std::make_move_iterator(sums.begin()), std::make_move_iterator(sums.end()));
-  }
+  return sums;
+}
 
-private:
-  const LineFinisher& finisher_;
-  std::mutex mutex_;
-  std::vector<LineSum> free_;
-};
+void giveSums(std::vector<LineSum> sums, RoomPool<LineSum>& pool)
+{
+  for (LineSum& sum : sums)
+  {
+    pool.give(std::move(sum));
+  }
+}
 
 /// Neighbouring lines, and what has been added to each of them.
 struct LineGroup
@@ -163,11 +142,10 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
   {
     group.tasksLeft = tasksOfGroup;
   }
-  SumPool pool(setup.finisher);
-  RoomPool<NestedRoom> nestedRooms([] { return std::make_shared<NestedRoom>(); });
-  RoomPool<SurfaceEchoes::Room> surfaceRooms(SurfaceEchoes::makeRoom);
-  RoomPool<LineFinisher::Room> finishingRooms(
-    [&] { return std::make_shared<LineFinisher::Room>(setup.finisher.room()); });
+  RoomPool<LineSum> lineSums([&] { return setup.finisher.emptySum(); });
+  RoomPool<NestedRoom> nestedRooms([] { return NestedRoom(); });
+  RoomPool<std::shared_ptr<SurfaceEchoes::Room>> surfaceRooms(SurfaceEchoes::makeRoom);
+  RoomPool<LineFinisher::Room> finishingRooms([&] { return setup.finisher.room(); });
   std::atomic<int> begun{ 0 };
   const auto runTask = [&](int, const YieldPoint& yieldPoint) {
     const GroupTask task = taskAt(begun++, groupCount, tasksOfGroup);
@@ -190,7 +168,7 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       return made;
     };
     const auto sceneBeam = [&](int l) { return setup.sceneBeam(l); };
-    std::vector<LineSum> sums = pool.take(last - first);
+    std::vector<LineSum> sums = takeSums(lineSums, last - first);
     if (task.ofSurfaces)
     {
       std::vector<SurfaceIntensity> intensities;
@@ -211,9 +189,9 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
       }
       if (setup.nested)
       {
-        const auto room = nestedRooms.take();
-        addNested(setup, beams(sceneBeam, std::nullopt), brickDone, *room, sums);
-        nestedRooms.give(room);
+        NestedRoom room = nestedRooms.take();
+        addNested(setup, beams(sceneBeam, std::nullopt), brickDone, room, sums);
+        nestedRooms.give(std::move(room));
       }
       if (sources.points)
       {
@@ -225,16 +203,16 @@ RfLines formRf(const EchoSources& sources, const std::vector<ScanLine>& lines, c
     {
       return;
     }
-    const auto room = finishingRooms.take();
+    LineFinisher::Room room = finishingRooms.take();
     for (int l = first; l < last; ++l)
     {
       const std::size_t at = std::size_t(l - first);
-      setup.finisher.finish(l, group.scatterers[at], setup.surfaces ? &group.surfaces[at] : nullptr, nodes, *room,
+      setup.finisher.finish(l, group.scatterers[at], setup.surfaces ? &group.surfaces[at] : nullptr, nodes, room,
                             out.iq.data() + std::size_t(l) * std::size_t(out.sampleCount));
     }
-    finishingRooms.give(room);
-    pool.give(std::move(group.scatterers));
-    pool.give(std::move(group.surfaces));
+    finishingRooms.give(std::move(room));
+    giveSums(std::move(group.scatterers), lineSums);
+    giveSums(std::move(group.surfaces), lineSums);
   };
   parallelFor(tasksOfGroup * groupCount, progress, runTask);
   return out;

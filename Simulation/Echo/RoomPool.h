@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -9,22 +8,23 @@
 namespace sono {
 
 /// What work needs to write in, kept for the next piece of work of the kind: made anew, its arrays would grow from
-/// nothing each time. Not by thread, since a thread may begin another piece while it waits in one.
+/// nothing each time, and memory that is given back comes anew page by page, each with a fault. Not by thread, since a
+/// thread may begin another piece while it waits in one.
 template<class Room>
 class RoomPool
 {
 public:
-  explicit RoomPool(std::function<std::shared_ptr<Room>()> make)
+  explicit RoomPool(std::function<Room()> make)
     : make_(std::move(make))
   {
   }
-  std::shared_ptr<Room> take()
+  Room take()
   {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (!free_.empty())
       {
-        std::shared_ptr<Room> room = std::move(free_.back());
+        Room room = std::move(free_.back());
         free_.pop_back();
         return room;
       }
@@ -32,16 +32,16 @@ public:
     return make_();
   }
   /// Of one that has been left as it has to be found.
-  void give(std::shared_ptr<Room> room)
+  void give(Room room)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     free_.push_back(std::move(room));
   }
 
 private:
-  std::function<std::shared_ptr<Room>()> make_;
+  std::function<Room()> make_;
   std::mutex mutex_;
-  std::vector<std::shared_ptr<Room>> free_;
+  std::vector<Room> free_;
 };
 
 } // namespace sono
