@@ -139,16 +139,17 @@ void addRow(const Walk& walk, const NestedScatterers& nested, const DensityView&
       continue;
     }
     const NestedShare& share = shares[std::size_t(b)];
-    const int first = row.before[std::size_t(b)];
-    const int taken = row.among(b, share.count);
-    const int whole = row.among(b, std::min(share.whole, share.count));
-    for (int n = 0; n < taken; ++n)
+    for (int n = 0; n < share.count; ++n)
     {
-      const std::size_t i = std::size_t(first + n);
-      double amplitude = double(row.amplitude[i] * share.scale * (n < whole ? 1.0f : share.last));
+      const std::size_t i = std::size_t(row.first[std::size_t(b)] + n);
+      if (row.amplitude[i] == 0.0f)
+      {
+        continue;
+      }
+      double amplitude = double(row.amplitude[i] * share.scaleOf(n));
       const Vec3d local(row.x[i], row.y[i], row.z[i]);
       const Vec3d place = walk.placeOf(local);
-      if (row.hasFibres)
+      if (row.hasFibres[std::size_t(b)])
       {
         const Vec3d axis = walk.scene.rotationToLocal() * (walk.frame.axes() * glm::normalize(place));
         const double along = glm::dot(Vec3d(row.fibreX[i], row.fibreY[i], row.fibreZ[i]), axis);

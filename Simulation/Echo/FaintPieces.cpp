@@ -160,38 +160,11 @@ SONO_SIMD_CLONES __attribute__((flatten)) void leaveFaintIn(const PieceList& pie
 
 } // namespace
 
-void PieceExtents::push(const SurfacePiece& piece, const PieceNet& diffuse, const PieceNet& coherent)
+void PieceExtents::reserve(int count)
 {
-  const float u = 0.5f * float(coherent.cutsU) * coherent.stepU;
-  const float v = 0.5f * float(coherent.cutsV) * coherent.stepV;
-  const float turnU = std::fabs(piece.bendUU) * u + std::fabs(piece.bendUV) * v;
-  const float turnV = std::fabs(piece.bendUV) * u + std::fabs(piece.bendVV) * v;
-  const float stretch = std::sqrt(1.0f + piece.slopeU * piece.slopeU + piece.slopeV * piece.slopeV) + turnU + turnV;
-  const Vec3f halfU = fromAlong(piece.axis, piece.slopeU * u, u, 0.0f);
-  const Vec3f halfV = fromAlong(piece.axis, piece.slopeV * v, 0.0f, v);
-  const float blobU = float(blobPerStep) * coherent.stepU;
-  const float blobV = float(blobPerStep) * coherent.stepV;
-  const std::size_t n = std::size_t(count++);
-  if (uX.size() < n + vectorWidth)
-  {
-    resizeAll({ &uX, &uY, &uZ, &vX, &vY, &vZ, &riseMm, &turn, &blobUMm, &blobVMm, &blobUPerHalf, &blobVPerHalf,
-                &diffuseRootMm, &coherentMm2 },
-              2 * (n + vectorWidth));
-  }
-  uX[n] = halfU.x;
-  uY[n] = halfU.y;
-  uZ[n] = halfU.z;
-  vX[n] = halfV.x;
-  vY[n] = halfV.y;
-  vZ[n] = halfV.z;
-  riseMm[n] = 0.5f * (turnU * u + turnV * v);
-  turn[n] = turnU + turnV;
-  blobUMm[n] = blobU;
-  blobVMm[n] = blobV;
-  blobUPerHalf[n] = blobU / u;
-  blobVPerHalf[n] = blobV / v;
-  diffuseRootMm[n] = std::sqrt(piece.share * stretch * diffuse.stepU * diffuse.stepV);
-  coherentMm2[n] = piece.share * stretch * coherent.stepU * coherent.stepV;
+  resizeAll({ &uX, &uY, &uZ, &vX, &vY, &vZ, &riseMm, &turn, &blobUMm, &blobVMm, &blobUPerHalf, &blobVPerHalf,
+              &diffuseRootMm, &coherentMm2 },
+            std::size_t(inWholeVectors(count)));
 }
 
 void leaveFaint(const PieceList& pieces, const PieceExtents& extents, const Beam& beam, const LineGrid& grid,

@@ -20,10 +20,9 @@ struct PieceExtents
   std::vector<float> blobUPerHalf, blobVPerHalf; ///< the same along the tangents, of the way to the rim
   std::vector<float> diffuseRootMm;              ///< root of the largest point's area
   std::vector<float> coherentMm2;                ///< the largest blob's area
-  int count = 0;
 
-  void clear() { count = 0; }
-  void push(const SurfacePiece& piece, const PieceNet& diffuse, const PieceNet& coherent);
+  /// Of so many pieces, up to whole vectors.
+  void reserve(int count);
 };
 
 /// Takes from what a line hears the pieces none of whose points is heard (addDiffuse, addCoherent). A beam that is no

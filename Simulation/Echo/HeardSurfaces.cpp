@@ -90,18 +90,12 @@ inline void meetPieces(const PieceList& pieces, int from, const Beam& b, const L
   }
 }
 
-/// The intensity at the pieces, unshaped, where the beam sees and faces them.
+/// 1 for pieces that the beam sees and faces, otherwise 0; whether there are any.
 template<class Sees>
-inline void hearMet(const PieceMeetings& m, const float* radiusMm, const LineGrid& g, const SurfaceIntensity& intensity,
-                    const Sees& sees, float* diffuse, float* coherent)
+inline bool findFaced(const PieceMeetings& m, const float* radiusMm, const LineGrid& g, const Sees& sees,
+                      float* diffuse, float* coherent)
 {
-  float lit[chunk];
-  const SurfaceIntensity known = intensity;
-#pragma GCC ivdep
-  for (int i = 0; i < chunk; ++i)
-  {
-    lit[i] = intensityOfBins(known, m.fromMm[i], m.depthMm[i], m.decayPerMm[i]);
-  }
+  std::int32_t any = 0;
 #pragma GCC ivdep
   for (int i = 0; i < chunk; ++i)
   {
@@ -117,22 +111,58 @@ inline void hearMet(const PieceMeetings& m, const float* radiusMm, const LineGri
     const float coherentReach = m.coherentReach[i] + surfaceTangentSlack;
     const bool isDiffuse = (m.reach[i] >= 0.0f) & (sinSquared < reach * reach * cosSquared);
     const bool isCoherent = (m.coherentReach[i] >= 0.0f) & (sinSquared < coherentReach * coherentReach * cosSquared);
-    diffuse[i] = isThere & isDiffuse ? lit[i] : 0.0f;
-    coherent[i] = isThere & isCoherent ? lit[i] : 0.0f;
+    diffuse[i] = isThere & isDiffuse ? 1.0f : 0.0f;
+    coherent[i] = isThere & isCoherent ? 1.0f : 0.0f;
+    any |= (isThere & (isDiffuse | isCoherent)) ? 1 : 0;
+  }
+  return any != 0;
+}
+
+/// The intensity at them, unshaped, in place of 1.
+inline void lightFaced(const PieceMeetings& m, const SurfaceIntensity& intensity, float* diffuse, float* coherent)
+{
+  const SurfaceIntensity known = intensity;
+#pragma GCC ivdep
+  for (int i = 0; i < chunk; ++i)
+  {
+    const float lit = intensityOfBins(known, m.fromMm[i], m.depthMm[i], m.decayPerMm[i]);
+    diffuse[i] *= lit;
+    coherent[i] *= lit;
   }
 }
 
-SONO_SIMD_CLONES __attribute__((flatten)) void hearFacing(const PieceList& pieces, const Beam b, const LineGrid g,
-                                                          const SurfaceTable t, const SurfaceIntensity intensity,
-                                                          HeardList& heard)
+/// Whether any of a chunk is not 0.
+inline bool anyOf(const std::int32_t* values)
+{
+  std::int32_t any = 0;
+  for (int i = 0; i < chunk; ++i)
+  {
+    any |= values[i];
+  }
+  return any != 0;
+}
+
+SONO_SIMD_CLONES __attribute__((flatten)) void hearFacing(const PieceList& pieces, const std::int32_t* mayHear,
+                                                          const Beam b, const LineGrid g, const SurfaceTable t,
+                                                          const SurfaceIntensity intensity, HeardList& heard)
 {
   const auto hearAll = [&](const auto& sees) {
     PieceMeetings m;
     for (int from = 0; from < pieces.count; from += chunk)
     {
+      float* const diffuse = heard.diffuse.data() + from;
+      float* const coherent = heard.coherent.data() + from;
+      if (mayHear && !anyOf(mayHear + from))
+      {
+        std::fill_n(diffuse, chunk, 0.0f);
+        std::fill_n(coherent, chunk, 0.0f);
+        continue;
+      }
       meetPieces(pieces, from, b, g, t, m);
-      hearMet(m, pieces.radiusMm.data() + from, g, intensity, sees, heard.diffuse.data() + from,
-              heard.coherent.data() + from);
+      if (findFaced(m, pieces.radiusMm.data() + from, g, sees, diffuse, coherent))
+      {
+        lightFaced(m, intensity, diffuse, coherent);
+      }
     }
   };
   if (!isGaussian(b))
@@ -205,7 +235,7 @@ void hearPieces(const PieceList& pieces, const std::int32_t* mayHear, const Beam
   heard.diffuse.resize(std::max(heard.diffuse.size(), room));
   heard.coherent.resize(std::max(heard.coherent.size(), room));
   heard.most.assign(room, 1.0f);
-  hearFacing(pieces, beam, grid, table, known, heard);
+  hearFacing(pieces, mayHear, beam, grid, table, known, heard);
   if (table.isShaped)
   {
     shape(pieces, beam, table, heard);

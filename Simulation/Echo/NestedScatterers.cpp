@@ -114,51 +114,33 @@ SONO_SIMD_CLONES __attribute__((flatten)) void draw(const NestedBricks& bricks, 
   }
 }
 
-/// Leaves the candidates of these numbers, ascending, with their amplitudes.
-SONO_SIMD_CLONES void keep(const std::int32_t* kept, const float* factor, int count, Generated& out)
-{
-  float* x = out.x.data();
-  float* y = out.y.data();
-  float* z = out.z.data();
-  float* amplitude = out.amplitude.data();
-#pragma GCC ivdep
-  for (int to = 0; to < count; ++to) // none overtakes its candidate
-  {
-    const std::int32_t n = kept[to];
-    x[to] = x[n];
-    y[to] = y[n];
-    z[to] = z[n];
-    amplitude[to] = amplitude[n] * factor[to];
-  }
-}
-
 /// Numbers the candidates, and makes room for them.
-int layOut(int brickCount, const int* wanted, Generated& out)
+void layOut(int brickCount, const int* wanted, Generated& out)
 {
-  std::size_t count = 0;
+  out.first.assign(1, 0);
   for (int b = 0; b < brickCount; ++b)
   {
-    count += std::size_t(wanted[b]);
+    out.first.push_back(out.first.back() + wanted[b]);
   }
-  resizeAll({ &out.x, &out.y, &out.z, &out.amplitude, &out.presence, &out.factor }, count + vectorWidth);
-  resizeAll({ &out.i, &out.j, &out.k, &out.brick, &out.number, &out.kept }, count + vectorWidth);
-  resizeAll({ &out.hash }, count + vectorWidth);
+  const std::size_t room = std::size_t(out.count()) + vectorWidth;
+  resizeAll({ &out.x, &out.y, &out.z, &out.amplitude, &out.presence }, room);
+  resizeAll({ &out.i, &out.j, &out.k, &out.brick, &out.number }, room);
+  resizeAll({ &out.hash }, room);
+  resizeAll({ &out.tissue }, room);
   out.brickHash.resize(std::size_t(inWholeVectors(brickCount)));
-  out.firstCandidate.resize(std::size_t(brickCount));
-  resizeAll({ &out.reached }, count + 1);
+  out.echoes.resize(std::size_t(brickCount));
+  out.hasFibres.resize(std::size_t(brickCount));
   std::size_t n = 0;
   for (int b = 0; b < brickCount; ++b)
   {
-    out.firstCandidate[std::size_t(b)] = int(n);
     for (int number = 0; number < wanted[b]; ++number, ++n)
     {
       out.brick[n] = b;
       out.number[n] = number;
     }
   }
-  std::fill_n(out.brick.begin() + std::ptrdiff_t(count), vectorWidth, 0);
-  std::fill_n(out.number.begin() + std::ptrdiff_t(count), vectorWidth, 0);
-  return int(count);
+  std::fill_n(out.brick.begin() + std::ptrdiff_t(n), vectorWidth, 0);
+  std::fill_n(out.number.begin() + std::ptrdiff_t(n), vectorWidth, 0);
 }
 
 NestedMedium mediumOf(const Tissue& tissue, double frequencyMHz, double amplitudePerRoot)
@@ -205,62 +187,79 @@ BrickGrid NestedScatterers::grid(int level) const
   return grid;
 }
 
-void NestedScatterers::generate(int level, const NestedBricks& bricks, const int* wanted, Generated& out) const
+template<bool hasDetail, bool hasFibres>
+void NestedScatterers::findTissues(Generated& out) const
 {
   const Vec3i size = scene_.placement().size;
-  const std::uint8_t* tissues = scene_.tissueVoxels().data();
-  const int candidates = layOut(bricks.count(), wanted, out);
-  hashBricks(seed_, level, bricks, out.brickHash.data());
-  draw(bricks, level, inWholeVectors(candidates), 1.0f / Vec3f(scene_.placement().spacingMm), size, out,
-       out.amplitude.data());
-  out.before.assign(std::size_t(bricks.count()) + 1, 0);
+  const std::uint8_t* const tissues = scene_.tissueVoxels().data();
   // Pointers of their own let the compiler see that none changes.
-  std::int32_t* const kept = out.kept.data();
-  int* const reached = out.reached.data();
-  float* const factor = out.factor.data();
+  const float* const amplitudes = amplitudes_.data();
+  const float* const probabilities = probabilities_.data();
+  const float* const fibreScale = fibreScale_.data();
   const float* const presence = out.presence.data();
-  const std::int32_t* const i = out.i.data();
-  const std::int32_t* const j = out.j.data();
-  const std::int32_t* const k = out.k.data();
-  const auto voxelOf = [&](int n) {
-    return std::size_t(i[n]) + std::size_t(size.x) * (std::size_t(j[n]) + std::size_t(size.y) * std::size_t(k[n]));
-  };
-  bool anyAligned = false;
-  int n = 0;
-  int to = 0;
-  for (int b = 0; b < bricks.count(); ++b)
+  const std::int32_t *const i = out.i.data(), *const j = out.j.data(), *const k = out.k.data();
+  float* const amplitude = out.amplitude.data();
+  std::uint8_t* const ofCandidate = out.tissue.data();
+  for (std::size_t b = 0; b < out.echoes.size(); ++b)
   {
-    for (const int end = n + wanted[b]; n < end; ++n)
+    bool echoes = false;
+    bool isAligned = false;
+    for (int n = out.first[b]; n < out.first[b + 1]; ++n)
     {
-      // Written first and counted afterwards: without a branch, which would often be mispredicted.
-      const std::size_t voxel = voxelOf(n);
+      const std::size_t voxel =
+        std::size_t(i[n]) + std::size_t(size.x) * (std::size_t(j[n]) + std::size_t(size.y) * std::size_t(k[n]));
       const std::uint8_t tissue = tissues[voxel];
-      kept[to] = n;
-      reached[n] = to;
-      factor[to] = scene_.detailAt(voxel) * amplitudes_[tissue];
-      const bool isThere = presence[n] < probabilities_[tissue];
-      anyAligned |= isThere & (fibreScale_[tissue] > 0.0f);
-      to += isThere;
+      const bool isThere = presence[n] < probabilities[tissue];
+      amplitude[n] *= isThere ? amplitudes[tissue] : 0.0f;
+      echoes |= isThere;
+      if constexpr (hasDetail)
+      {
+        amplitude[n] *= scene_.detailAt(voxel);
+      }
+      if constexpr (hasFibres)
+      {
+        ofCandidate[n] = tissue;
+        isAligned |= fibreScale[tissue] > 0.0f;
+      }
     }
-    out.before[std::size_t(b) + 1] = to;
+    out.echoes[b] = char(echoes);
+    out.hasFibres[b] = char(isAligned);
   }
-  anyAligned &= fibres_ != nullptr;
-  reached[n] = to;
-  out.hasFibres = anyAligned;
-  if (anyAligned)
+}
+
+void NestedScatterers::findFibres(Generated& out) const
+{
+  resizeAll({ &out.fibreX, &out.fibreY, &out.fibreZ }, out.x.size());
+  for (std::size_t b = 0; b < out.hasFibres.size(); ++b)
   {
-    resizeAll({ &out.fibreX, &out.fibreY, &out.fibreZ }, std::size_t(to) + vectorWidth);
+    const std::size_t end = std::size_t(out.hasFibres[b] ? out.first[b + 1] : 0);
+    for (std::size_t n = std::size_t(out.first[b]); n < end; ++n)
+    {
+      const float scale = fibreScale_[out.tissue[n]];
+      const Vec3f fibre = scale > 0.0f ? fibres_->at({ out.i[n], out.j[n], out.k[n] }) * scale : Vec3f(0.0f);
+      out.fibreX[n] = fibre.x;
+      out.fibreY[n] = fibre.y;
+      out.fibreZ[n] = fibre.z;
+    }
   }
-  for (int a = 0; anyAligned && a < to; ++a)
+}
+
+void NestedScatterers::generate(int level, const NestedBricks& bricks, const int* wanted, Generated& out) const
+{
+  layOut(bricks.count(), wanted, out);
+  hashBricks(seed_, level, bricks, out.brickHash.data());
+  draw(bricks, level, inWholeVectors(out.count()), 1.0f / Vec3f(scene_.placement().spacingMm), scene_.placement().size,
+       out, out.amplitude.data());
+  const bool hasDetail = !scene_.stillDetail().empty();
+  if (fibres_)
   {
-    const int from = kept[a];
-    const float scale = fibreScale_[tissues[voxelOf(from)]];
-    const Vec3f fibre = scale > 0.0f ? fibres_->at({ i[from], j[from], k[from] }) * scale : Vec3f(0.0f);
-    out.fibreX[std::size_t(a)] = fibre.x;
-    out.fibreY[std::size_t(a)] = fibre.y;
-    out.fibreZ[std::size_t(a)] = fibre.z;
+    hasDetail ? findTissues<true, true>(out) : findTissues<false, true>(out);
+    findFibres(out);
   }
-  keep(kept, factor, to, out);
+  else
+  {
+    hasDetail ? findTissues<true, false>(out) : findTissues<false, false>(out);
+  }
 }
 
 } // namespace sono

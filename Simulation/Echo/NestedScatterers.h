@@ -23,30 +23,25 @@ class NestedScatterers
 public:
   static constexpr int cellCount = nestedBrickCells * nestedBrickCells * nestedBrickCells;
 
-  /// The scatterers of bricks, brick by brick, ascending by the number of their candidates. The arrays hold a vector
-  /// more, of anything.
+  /// The candidates of bricks, brick by brick, ascending by their number, which are scatterers where their amplitude is
+  /// not 0: of most tissues each one is, so that sorting the others out would take longer than adding nothing. The
+  /// arrays hold a vector more, of anything.
   struct Generated
   {
     std::vector<float> x, y, z, amplitude;
-    std::vector<float> fibreX, fibreY, fibreZ; ///< times the root of the anisotropy; only where `hasFibres`
-    std::vector<int> before;                   ///< scatterers before each brick, and all
-    bool hasFibres = false;
+    std::vector<float> fibreX, fibreY, fibreZ; ///< times the root of the anisotropy; only of bricks with fibres
+    std::vector<int> first;                    ///< candidate of each brick, and how many there are
+    std::vector<char> echoes;                  ///< whether any of a brick is a scatterer
+    std::vector<char> hasFibres;               ///< whether any of a brick echoes by its angle
 
-    /// Scatterers of a brick among its first candidates, as many as were wanted at most.
-    int among(int brick, int count) const
-    {
-      const std::size_t first = std::size_t(firstCandidate[std::size_t(brick)]);
-      return reached[first + std::size_t(count)] - before[std::size_t(brick)];
-    }
+    int count() const { return first.back(); }
 
-    // The candidates, on the way there.
+    // On the way there.
     std::vector<std::int32_t> brick, number; ///< among the bricks, in the brick
-    std::vector<int> firstCandidate;         ///< of each brick
-    std::vector<int> reached;                ///< scatterers before each candidate, and all
     std::vector<std::int32_t> i, j, k;       ///< cell, then voxel
     std::vector<std::uint32_t> hash, brickHash;
-    std::vector<float> presence, factor;
-    std::vector<std::int32_t> kept;
+    std::vector<float> presence;
+    std::vector<std::uint8_t> tissue;
   };
 
   /// A cross-section dq, mm^2/sr, echoes `amplitudePerRoot` sqrt(dq): lambda / A_b. The scene must outlive this. Its
@@ -61,11 +56,14 @@ public:
   const std::array<float, 256>& fibreScale() const { return fibreScale_; }
   /// Null where no tissue has any.
   const FibreField* fibres() const { return fibres_; }
-  /// The scatterers among the first candidates of each brick, as many as `wanted` says of it; amplitudes for one
-  /// candidate a mm^3.
+  /// The first candidates of each brick, as many as `wanted` says of it; amplitudes for one candidate a mm^3.
   void generate(int level, const NestedBricks& bricks, const int* wanted, Generated& out) const;
 
 private:
+  template<bool hasDetail, bool hasFibres>
+  void findTissues(Generated& out) const;
+  void findFibres(Generated& out) const;
+
   const Scene& scene_;
   std::uint64_t seed_;
   bool any_ = false;

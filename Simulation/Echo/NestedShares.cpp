@@ -151,26 +151,25 @@ __attribute__((always_inline)) inline void copyFew(const float* from, float* to)
 }
 
 /// Places and amplitudes, brick by brick, written in whole vectors, each over the rest of the one before; how many
-/// there are. `amplitudes` are those that the beam hears.
+/// there are. `alongAxis` are the amplitudes of bricks with fibres as the beam hears them.
 SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatterers::Generated& from,
-                                                             const float* amplitudes, int bricks,
+                                                             const float* alongAxis, int bricks,
                                                              const TakenParts& parts, float* toX, float* toY,
                                                              float* toZ, float* toAmplitude)
 {
   const TakenParts part = parts;
   const float *x = from.x.data(), *y = from.y.data(), *z = from.z.data();
-  const float* const heardAmplitudes = amplitudes;
-  const int* before = from.before.data();
-  const int* firstCandidate = from.firstCandidate.data();
-  const int* reached = from.reached.data();
+  const float* const amplitudes = from.amplitude.data();
+  const int* firstOf = from.first.data();
+  const char *echoes = from.echoes.data(), *hasFibres = from.hasFibres.data();
   int heard = 0;
   for (int k = 0; k < bricks; ++k)
   {
     const int b = part.brick[k];
-    const int* ofBrick = reached + firstCandidate[b];
-    const int first = before[b];
-    const int taken = ofBrick[part.count[k]] - first;
-    const int whole = ofBrick[std::min(part.whole[k], part.count[k])] - first;
+    const int first = firstOf[b];
+    const int taken = echoes[b] ? part.count[k] : 0;
+    const int whole = part.whole[k];
+    const float* const amplitude = hasFibres[b] ? alongAxis : amplitudes;
     const float scale = part.scale[k];
     const float faded = part.faded[k];
     for (int n = 0; n < taken; n += fewScatterers)
@@ -180,7 +179,7 @@ SONO_SIMD_CLONES __attribute__((flatten)) int takeScatterers(const NestedScatter
       copyFew(z + first + n, toZ + heard + n);
       for (int m = 0; m < fewScatterers; ++m)
       {
-        toAmplitude[heard + n + m] = heardAmplitudes[first + n + m] * (n + m < whole ? scale : faded);
+        toAmplitude[heard + n + m] = amplitude[first + n + m] * (n + m < whole ? scale : faded);
       }
     }
     heard += taken;
@@ -262,17 +261,20 @@ ScattererView NestedShares::hear(const NestedScatterers::Generated& scatterers, 
 {
   resizeAll({ &x_, &y_, &z_, &amplitude_ }, std::size_t(candidates_ + vectorWidth));
   const TakenParts parts{ brick_.data(), count_.data(), whole_.data(), scale_.data(), faded_.data() };
-  const float* amplitudes = scatterers.amplitude.data();
-  if (scatterers.hasFibres)
+  resizeAll({ &alongAxis_ }, scatterers.x.size());
+  for (int k = 0; k < taken_; ++k)
   {
-    const int count = inWholeVectors(scatterers.before.back());
-    resizeAll({ &alongAxis_ }, std::size_t(count + vectorWidth));
-    hearAlong(axis, scatterers.fibreX.data(), scatterers.fibreY.data(), scatterers.fibreZ.data(), amplitudes, count,
-              alongAxis_.data());
-    amplitudes = alongAxis_.data();
+    const std::size_t brick = std::size_t(brick_[std::size_t(k)]);
+    if (scatterers.hasFibres[brick])
+    {
+      const std::ptrdiff_t first = scatterers.first[brick];
+      hearAlong(axis, scatterers.fibreX.data() + first, scatterers.fibreY.data() + first,
+                scatterers.fibreZ.data() + first, scatterers.amplitude.data() + first,
+                inWholeVectors(count_[std::size_t(k)]), alongAxis_.data() + first);
+    }
   }
   const int heard =
-    takeScatterers(scatterers, amplitudes, taken_, parts, x_.data(), y_.data(), z_.data(), amplitude_.data());
+    takeScatterers(scatterers, alongAxis_.data(), taken_, parts, x_.data(), y_.data(), z_.data(), amplitude_.data());
   return { x_.data(), y_.data(), z_.data(), amplitude_.data(), heard, 1.0f, true };
 }
 

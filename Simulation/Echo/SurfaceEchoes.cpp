@@ -5,6 +5,7 @@
 #include "Core/SoundSpeed.h"
 #include "Echo/FaintPieces.h"
 #include "Echo/HeardSurfaces.h"
+#include "Echo/LayOutPieces.h"
 #include "Echo/SurfaceLoops.h"
 #include "Echo/SurfacePhase.h"
 
@@ -102,7 +103,8 @@ struct SurfaceEchoes::Room
   std::vector<std::int32_t> anyMayHear;           ///< of the list's faces
   std::vector<std::int32_t> faceOf;               ///< by piece: which of them; not of targets
   PieceList pieces;
-  PieceExtents extents;                       ///< of the pieces; not of targets
+  PieceShapes shapes;                         ///< of the pieces; not of targets
+  PieceExtents extents;                       ///< the same
   std::vector<const SurfacePiece*> pieceOf;   ///< by piece; not of targets
   std::vector<int> rowOf;                     ///< the same
   std::vector<HeardList> heard;               ///< by line
@@ -275,6 +277,7 @@ void SurfaceEchoes::findPieces(const Group& group, Room& room) const
 {
   const float longestMm = longestStepMm();
   room.faces.clear();
+  room.faces.reserve(int(room.faceCount));
   for (std::size_t b = 0; b < room.met; ++b)
   {
     for (std::size_t n = 0; n < room.bricks[b].count; ++n)
@@ -300,7 +303,7 @@ void SurfaceEchoes::findPieces(const Group& group, Room& room) const
                    std::bit_or<>());
   }
   room.pieces.clear();
-  room.extents.clear();
+  room.shapes.clear();
   room.pieceOf.clear();
   room.rowOf.clear();
   room.faceOf.clear();
@@ -334,12 +337,10 @@ void SurfaceEchoes::findPieces(const Group& group, Room& room) const
   }
   for (std::size_t p = 0; p < room.pieceOf.size(); ++p)
   {
-    const SurfacePiece& piece = *room.pieceOf[p];
-    const PieceBounds bounds = pieceBounds(piece, longestMm);
-    room.pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, nets_.isCoarsest(nets_.coherentCuts(piece)),
-                     room.rowOf[p], group.table);
-    room.extents.push(piece, nets_.diffuseNet(piece), nets_.coherentNet(piece));
+    room.pieces.place(room.pieceOf[p]->positionMm, room.rowOf[p]);
+    room.shapes.push(*room.pieceOf[p]);
   }
+  layOutPieces(room.shapes, nets_, longestMm, group.table, room.pieces, room.extents);
 }
 
 void SurfaceEchoes::addMet(Group& group, Room& room) const

@@ -61,25 +61,13 @@ SONO_SIMD_CLONES __attribute__((flatten)) void layOutNet(const SurfacePiece& pie
 
 } // namespace
 
-void FaceList::push(const Vec3f& middle, const Vec3f& roughNormal, const SurfaceRow& below, const SurfaceRow& above)
+void FaceList::reserve(int more)
 {
-  const std::size_t n = std::size_t(count++);
-  if (x.size() < n + vectorWidth)
-  {
-    resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &cosineBelow, &cosineAbove }, 2 * (n + vectorWidth));
-  }
-  x[n] = middle.x;
-  y[n] = middle.y;
-  z[n] = middle.z;
-  normalX[n] = roughNormal.x;
-  normalY[n] = roughNormal.y;
-  normalZ[n] = roughNormal.z;
-  cosineBelow[n] = below.roughCosine;
-  cosineAbove[n] = above.roughCosine;
+  resizeAll({ &x, &y, &z, &normalX, &normalY, &normalZ, &cosineBelow, &cosineAbove },
+            std::size_t(inWholeVectors(count + more)));
 }
 
-void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA,
-                     const SurfaceTable& table)
+void PieceList::place(const Vec3f& position, int rowFromA)
 {
   const std::size_t n = std::size_t(count++);
   if (x.size() < n + vectorWidth)
@@ -92,19 +80,32 @@ void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, b
   x[n] = position.x;
   y[n] = position.y;
   z[n] = position.z;
-  normalX[n] = normal.x;
-  normalY[n] = normal.y;
-  normalZ[n] = normal.z;
-  radiusMm[n] = radius;
   row[n] = rowFromA;
-  const SurfaceRow& fromA = table.rows[rowFromA];
-  const SurfaceRow& fromB = table.rows[rowFromA ^ 1];
+}
+
+void PieceList::setReach(int piece, bool coarse, const SurfaceTable& table)
+{
+  const std::size_t n = std::size_t(piece);
+  const SurfaceRow& fromA = table.rows[row[n]];
+  const SurfaceRow& fromB = table.rows[row[n] ^ 1];
   reachA[n] = fromA.reach;
   reachB[n] = fromB.reach;
   coherentReachA[n] = coarse ? fromA.coherentReach : fromA.finestReach;
   coherentReachB[n] = coarse ? fromB.coherentReach : fromB.finestReach;
   decayPerMmA[n] = fromA.decayPerMm;
   decayPerMmB[n] = fromB.decayPerMm;
+}
+
+void PieceList::push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA,
+                     const SurfaceTable& table)
+{
+  const std::size_t n = std::size_t(count);
+  place(position, rowFromA);
+  normalX[n] = normal.x;
+  normalY[n] = normal.y;
+  normalZ[n] = normal.z;
+  radiusMm[n] = radius;
+  setReach(int(n), coarse, table);
 }
 
 void PointList::reserve(int more)

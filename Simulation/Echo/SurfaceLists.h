@@ -3,6 +3,7 @@
 #include "Kernel/SurfaceEcho.h"
 #include "Kernel/SurfacePiece.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,8 +21,21 @@ struct FaceList
   int count = 0;
 
   void clear() { count = 0; }
-  /// Of a boundary met from either side.
-  void push(const Vec3f& middle, const Vec3f& roughNormal, const SurfaceRow& below, const SurfaceRow& above);
+  /// Room for so many more.
+  void reserve(int more);
+  /// Of a boundary met from either side; there must be room for it. Inline: each brick that a line passes has some.
+  void push(const Vec3f& middle, const Vec3f& roughNormal, const SurfaceRow& below, const SurfaceRow& above)
+  {
+    const std::size_t n = std::size_t(count++);
+    x[n] = middle.x;
+    y[n] = middle.y;
+    z[n] = middle.z;
+    normalX[n] = roughNormal.x;
+    normalY[n] = roughNormal.y;
+    normalZ[n] = roughNormal.z;
+    cosineBelow[n] = below.roughCosine;
+    cosineAbove[n] = above.roughCosine;
+  }
 };
 
 /// Pieces, or points of targets as such.
@@ -36,7 +50,10 @@ struct PieceList
   int count = 0;
 
   void clear() { count = 0; }
-  /// `coarse`: its blobs are the coarsest.
+  /// One of which no more is known yet.
+  void place(const Vec3f& position, int rowFromA);
+  /// What one counts of its row. `coarse`: its blobs are the coarsest.
+  void setReach(int piece, bool coarse, const SurfaceTable& table);
   void push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA,
             const SurfaceTable& table);
 };

@@ -82,7 +82,8 @@ SONO_HD inline void leaveBoundary(const TraceView& view, const PathBoundary& bou
   {
     const RoughBoundary rough =
       roughBoundary(view, view.media[boundary.before.medium], view.media[boundary.after.medium]);
-    const float chance = reflectionChance(boundary.reflection, view.favoursReflections, path.reflections > 0);
+    const bool betweenMirrors = path.reflections > 0 && path.amplitude != 0.0f;
+    const float chance = reflectionChance(boundary.reflection, view.favoursReflections, betweenMirrors);
     out = scatterRough(rough, d, n, boundary.cosine, boundary.reflection, chance, u);
   }
   else

@@ -50,36 +50,46 @@ SONO_HD inline float smithLambda(float alpha, const Vec3f& direction)
     return 0.0f;
   }
   const float a = larger(cosine / (alpha * sine), 1e-4f);
-  return larger(0.0f, 0.5f * (0.564189584f * expf(-a * a) / a - erfcf(a)));
+  return larger(0.0f, 0.5f * (0.564189584f * expNegative(-a * a) / a - erfcf(a)));
 }
 
 /// A slope along the incident direction, in widths, as it is seen from there: density (a - s) exp(-s^2), s < a, with a
-/// the cotangent of the incidence on the surface stretched to unit width (Heitz and d'Eon 2014). Newton's method on
-/// the distribution function, kept within a bracket.
+/// the cotangent of the incidence on the surface stretched to unit width (Heitz and d'Eon 2014). Halley's method on
+/// the distribution function, kept within a bracket; most take an erfc or two.
 SONO_HD inline float visibleSlope(float a, float u)
 {
-  float s = smaller(-0.707106781f * normalFromUpperTail(u), a);
+  constexpr float perRootPi = 0.564189584f;
+  const float unseen = -0.707106781f * normalFromUpperTail(u); // of this slope, seen or not, a share u lies below
+  float s = smaller(unseen, a);
   if (a > 1e3f)
   {
     return s; // seen from straight above: all of them
   }
-  const auto mass = [a](float x) { return 0.5f * a * erfcf(-x) + 0.282094792f * expf(-x * x); };
-  const float target = u * mass(a);
-  const float close = 1e-6f * mass(a);
+  const float most = 0.5f * a * (a > 4.0f ? 2.0f : erfcf(-a)) + 0.5f * perRootPi * expNegative(-a * a);
+  const float target = u * most;
+  const float close = 1e-6f * most;
   float low = -6.0f;
   float high = larger(a, low);
   s = larger(s, low);
   for (int i = 0; i < 20; ++i)
   {
-    const float excess = mass(s) - target;
+    const float density = perRootPi * expNegative(-s * s);
+    const float below = s == unseen ? u : 0.5f * erfcf(-s);
+    const float excess = a * below + 0.5f * density - target;
     if (fabsf(excess) < close)
     {
       break;
     }
     (excess > 0.0f ? high : low) = s;
-    const float slope = 0.564189584f * (a - s) * expf(-s * s);
-    const float next = s - excess / larger(slope, 1e-30f);
-    s = next > low && next < high ? next : 0.5f * (low + high);
+    const float step = excess / larger((a - s) * density, 1e-30f);
+    const float bend = 1.0f + step * (s + 0.5f / larger(a - s, 1e-6f));
+    const float next = s - step / larger(bend, 0.5f);
+    const bool isInside = next > low && next < high;
+    s = isInside ? next : 0.5f * (low + high);
+    if (isInside && fabsf(step) < 3e-3f && bend > 0.9f)
+    {
+      break; // the next step is of its third power
+    }
   }
   return s;
 }
@@ -164,14 +174,15 @@ SONO_HD inline FacetPath walkFacets(float alpha, const Vec3f& incident, float ra
 
 /// The chance with which a path is reflected. Reverberation is heard by its amplitude, so weak boundaries reflect more
 /// paths than their R, each of which counts less: a quarter of |r|, so that what a path stands for is at most four
-/// times what there is; and |r| once a path has been reflected, for then nothing but reverberation is left to it.
-SONO_HD inline float reflectionChance(const Reflection& r, bool favoursReflections, bool wasReflected)
+/// times what there is; and |r| for a path between mirrors, which has been reflected and is still in phase, for the
+/// multiples that only such paths tell.
+SONO_HD inline float reflectionChance(const Reflection& r, bool favoursReflections, bool betweenMirrors)
 {
   if (r.total)
   {
     return 1.0f;
   }
-  return favoursReflections ? larger(r.reflectance, (wasReflected ? 1.0f : 0.25f) * fabsf(r.amplitude)) : 0.0f;
+  return favoursReflections ? larger(r.reflectance, (betweenMirrors ? 1.0f : 0.25f) * fabsf(r.amplitude)) : 0.0f;
 }
 
 /// Where in a share of all numbers one lies, [0, 1] but for rounding.

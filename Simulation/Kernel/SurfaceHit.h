@@ -26,22 +26,19 @@ struct SideWeights
   float after;
 };
 
-/// The normal from tissue `from` to `to` at a point of their boundary, interpolated between the records of the eight
-/// voxels around the point. A voxel's own record holds at its centre; a curved surface turns away from it.
-/// Returns `fallback` where the records disagree.
-template<class Cells>
-SONO_HD inline Vec3f interpolateNormal(const Cells& cells, const Vec3f& point, int from, int to,
-                                       const SideWeights& weights, const Vec3f& fallback)
+/// The records of the eight voxels around a point, each as its tissue is that before a boundary or that behind it.
+struct RecordSum
 {
-  const Vec3f g = point / cells.spacing - Vec3f(0.5f);
-  const Vec3i low(int(floorf(g.x)), int(floorf(g.y)), int(floorf(g.z)));
-  const Vec3f f = g - Vec3f(low);
-  if (glm::any(glm::lessThan(low, Vec3i(-1))) || glm::any(glm::greaterThanEqual(low, cells.size)))
-  {
-    return fallback;
-  }
-  Vec3f sum(0.0f);
-  float total = 0.0f;
+  Vec3f normals; ///< from the tissue before to the one behind, on the octahedron, weighted
+  float weight;  ///< of all
+};
+
+/// Around the point `share` of the way from the voxel `low` to the next along each axis, from centre to centre.
+template<class Cells>
+SONO_HD inline RecordSum sumRecords(const Cells& cells, const Vec3i& low, const Vec3f& share, int from, int to,
+                                    const SideWeights& weights)
+{
+  RecordSum sum{ Vec3f(0.0f), 0.0f };
   for (int corner = 0; corner < 8; ++corner)
   {
     const int ox = corner & 1;
@@ -55,14 +52,31 @@ SONO_HD inline Vec3f interpolateNormal(const Cells& cells, const Vec3f& point, i
       continue;
     }
     const std::uint32_t bits = cells.recordOf(low.x + ox, low.y + oy, low.z + oz, word);
-    const float w =
-      decodeConfidence(bits) * (ox ? f.x : 1.0f - f.x) * (oy ? f.y : 1.0f - f.y) * (oz ? f.z : 1.0f - f.z);
+    const float w = decodeConfidence(bits) * (ox ? share.x : 1.0f - share.x) * (oy ? share.y : 1.0f - share.y) *
+                    (oz ? share.z : 1.0f - share.z);
     // Neighbours point almost the same way, so the octahedron scales them almost alike.
-    sum += decodeOctahedral(bits) * (w * side);
-    total += w * fabsf(side);
+    sum.normals += decodeOctahedral(bits) * (w * side);
+    sum.weight += w * fabsf(side);
   }
-  const float length = glm::length(sum);
-  return length > 0.3f * total ? sum / length : fallback;
+  return sum;
+}
+
+/// The normal from tissue `from` to `to` at a point of their boundary, interpolated between the records of the eight
+/// voxels around the point. A voxel's own record holds at its centre; a curved surface turns away from it.
+/// Returns `fallback` where the records disagree.
+template<class Cells>
+SONO_HD inline Vec3f interpolateNormal(const Cells& cells, const Vec3f& point, int from, int to,
+                                       const SideWeights& weights, const Vec3f& fallback)
+{
+  const Vec3f g = point / cells.spacing - Vec3f(0.5f);
+  const Vec3i low(int(floorf(g.x)), int(floorf(g.y)), int(floorf(g.z)));
+  if (glm::any(glm::lessThan(low, Vec3i(-1))) || glm::any(glm::greaterThanEqual(low, cells.size)))
+  {
+    return fallback;
+  }
+  const RecordSum sum = sumRecords(cells, low, g - Vec3f(low), from, to, weights);
+  const float length = glm::length(sum.normals);
+  return length > 0.3f * sum.weight ? sum.normals / length : fallback;
 }
 
 template<class Cells>

@@ -84,14 +84,13 @@ struct PieceNets
   SONO_HD PieceCuts coherentCuts(const SurfacePiece& piece) const
   {
     const float bend = larger(fabsf(piece.bendUU), fabsf(piece.bendVV)) + fabsf(piece.bendUV);
-    const Vec3f wanted = spacingMm * (cutsPerMm * sqrtf(bend));
-    Vec3i cuts;
-    for (int a = 0; a < 3; ++a)
-    {
-      const int n = wanted[a] < float(most[a]) ? int(ceilf(wanted[a])) : most[a];
-      cuts[a] = n > fewest[a] ? n : fewest[a];
-    }
-    return { cuts };
+    const float perMm = cutsPerMm * sqrtf(bend);
+    const auto cutsOf = [perMm](float mm, int least, int most) {
+      const int wanted = int(ceilf(smaller(mm * perMm, float(most))));
+      return wanted > least ? wanted : least;
+    };
+    return { { cutsOf(spacingMm.x, fewest.x, most.x), cutsOf(spacingMm.y, fewest.y, most.y),
+               cutsOf(spacingMm.z, fewest.z, most.z) } };
   }
   SONO_HD bool isCoarsest(const PieceCuts& net) const { return net.cuts == fewest; }
   SONO_HD PieceNet coherentNet(const SurfacePiece& piece) const

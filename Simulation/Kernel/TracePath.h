@@ -56,11 +56,23 @@
 
 namespace sono {
 
+/// Below this intensity a path plays Russian roulette. What reverberates adds up from paths of one weight best: those
+/// that stand for a tenth of the others, by the boundaries they were drawn at, take as long.
+SONO_HD inline float rouletteIntensity(const TraceView& view, const PathState& path)
+{
+  if (path.reflections == 0 || view.model != InterfaceModel::Acoustic || view.rouletteIntensity == 0.0f)
+  {
+    return view.rouletteIntensity;
+  }
+  return larger(view.rouletteIntensity, reflectedRoulette * expNegative(-view.usualDecayPerMm * path.rangeMm));
+}
+
 /// Russian roulette: a path too faint to be seen lives on with a probability in proportion, at the intensity it then
 /// stands for. The mean is unchanged.
 SONO_HD inline bool survivesRoulette(const TraceView& view, const PathKey& key, PathState& path)
 {
-  if (path.intensity >= view.rouletteIntensity)
+  const float least = rouletteIntensity(view, path);
+  if (path.intensity >= least)
   {
     return true;
   }
@@ -68,14 +80,13 @@ SONO_HD inline bool survivesRoulette(const TraceView& view, const PathKey& key, 
     uniformFrom(philox(key.seed, key.line, key.path, std::uint32_t(path.collisions), key.batch | 0x80000000u).v[0]);
   if (path.reflections == 0 || view.model != InterfaceModel::Acoustic)
   {
-    const bool survives = u * view.rouletteIntensity < path.intensity;
-    path.amplitude *= path.intensity > 0.0f ? view.rouletteIntensity / path.intensity : 0.0f;
-    path.intensity = view.rouletteIntensity;
+    const bool survives = u * least < path.intensity;
+    path.amplitude *= path.intensity > 0.0f ? least / path.intensity : 0.0f;
+    path.intensity = least;
     return survives;
   }
   // What comes straight back is heard by its amplitude.
-  const float heard =
-    larger(path.intensity / view.rouletteIntensity, fabsf(path.amplitude) / sqrtf(view.rouletteIntensity));
+  const float heard = larger(path.intensity / least, fabsf(path.amplitude) / sqrtf(least));
   const float chance = smaller(1.0f, heard);
   path.intensity /= chance;
   path.amplitude /= chance;

@@ -36,13 +36,18 @@ struct TraceLine
   float aheadMm = 0.0f;     ///< of a path's own: how far its place on the aperture sends before the middle, to focus
 };
 
+/// Of the face's intensity, before the usual decay: below this a path that has been reflected plays roulette. Chosen:
+/// with more the A4C's noise rises as fast as its time falls.
+constexpr float reflectedRoulette = 0.16f;
+
 /// Everything a path needs beside the space it runs through, trivially copyable.
 struct TraceView
 {
   const TraceMedium* media = nullptr; ///< by tissue index, then one for each target
   int firstTargetMedium = 0;
   int outsideTissue = -1;
-  float rouletteIntensity = 1e-5f; ///< fainter paths survive with probability intensity / this
+  float rouletteIntensity = 1e-5f; ///< fainter paths survive with probability intensity / this; 0: none plays
+  float usualDecayPerMm = 0.0f;    ///< of the intensity of paths that have been reflected: less is faint for them
   InterfaceModel model = InterfaceModel::Acoustic;
   Lobe lobe;                    ///< of Amadou2024
   float waveNumberAtOne = 0.0f; ///< k times c, rad/mm at 1 m/s: 2000 pi f with f in MHz

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Core/Progress.h"
+#include "Kernel/SurfaceHit.h"
 #include "Kernel/TissueCells.h"
 #include "Scene/TraceRegion.h"
 #include "Scene/VoxelBox.h"
@@ -84,6 +85,70 @@ inline std::uint32_t CellsOnDemand::recordOf(int x, int y, int z, std::uint32_t 
   const std::uint32_t* at = record + firstRecord[offset(x, y, z) >> 5] + ((word >> 8) & 31u);
   const std::uint32_t bits = __atomic_load_n(at, __ATOMIC_RELAXED);
   return __builtin_expect(bits != 0u, 1) ? bits : region->bakeAt(Vec3i(x, y, z));
+}
+
+/// sumRecords, all eight at once.
+inline RecordSum sumRecords(const CellsOnDemand& cells, const Vec3i& low, const Vec3f& share, int from, int to,
+                            const SideWeights& weights)
+{
+  std::uint32_t at[8];
+  std::int32_t word[8];
+  cells.offsetsAround(low, at);
+  for (int n = 0; n < 8; ++n)
+  {
+    word[n] = cells.cell[at[n]];
+  }
+  float side[8];
+  std::uint32_t bits[8];
+  std::uint32_t record[8];
+  for (int n = 0; n < 8; ++n)
+  {
+    const int tissue = word[n] & 255;
+    const float of = tissue == from ? weights.before : (tissue == to ? -weights.after : 0.0f);
+    side[n] = (word[n] & 0x8000) != 0 ? of : 0.0f;
+  }
+  for (int n = 0; n < 8; ++n)
+  {
+    record[n] = cells.firstRecord[at[n] >> 5] + (std::uint32_t(word[n] >> 8) & 31u);
+    record[n] = (word[n] & 0x8000) != 0 ? record[n] : 0u;
+  }
+  for (int n = 0; n < 8; ++n)
+  {
+    bits[n] = __atomic_load_n(cells.record + record[n], __ATOMIC_RELAXED);
+    if (__builtin_expect(bits[n] == 0u && side[n] != 0.0f, 0))
+    {
+      bits[n] = cells.region->bakeAt({ low.x + (n & 1), low.y + ((n >> 1) & 1), low.z + (n >> 2) });
+    }
+  }
+  const float sx = share.x, sy = share.y, sz = share.z;
+  const float shareX[2] = { 1.0f - sx, sx };
+  const float shareYZ[4] = { (1.0f - sy) * (1.0f - sz), sy * (1.0f - sz), (1.0f - sy) * sz, sy * sz };
+  float x[8], y[8], z[8], w[8];
+  for (int n = 0; n < 8; ++n)
+  {
+    w[n] = shareX[n & 1] * shareYZ[n >> 1];
+  }
+  for (int n = 0; n < 8; ++n)
+  {
+    const float weight = w[n] * decodeConfidence(bits[n]);
+    const Vec3f normal = decodeOctahedral(bits[n]);
+    const float of = weight * side[n];
+    x[n] = normal.x * of;
+    y[n] = normal.y * of;
+    z[n] = normal.z * of;
+    w[n] = std::fabs(of); // sides are 0, 1 and -1
+  }
+  for (int half = 4; half > 0; half /= 2)
+  {
+    for (int n = 0; n < half; ++n)
+    {
+      x[n] += x[n + half];
+      y[n] += y[n + half];
+      z[n] += z[n + half];
+      w[n] += w[n + half];
+    }
+  }
+  return { { x[0], y[0], z[0] }, w[0] };
 }
 
 } // namespace sono

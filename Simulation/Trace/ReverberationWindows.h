@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Kernel/TraceView.h"
 #include "Trace/TracedReverberation.h"
 
 #include <array>
@@ -62,5 +63,9 @@ void sumAlongLine(const ReverberationRows& inBin, int from, float tissueBinMm, R
 void sumOverLines(const ReverberationRows& along, int line, ReverberationRows& around);
 /// sumFurther, of all lines, into the one line of `further`.
 void sumFurther(const ReverberationRows& around, int line, float tissueBinMm, ReverberationRows& further);
+/// reverberationLevel of a line's bins; `own` and `levels` are the line's as well, `further` has one line.
+void reverberationLevels(const TraceView& view, const TraceLine& axis, float tissueBinMm,
+                         const ReverberationRows& around, int line, const ReverberationRows& further, const float* own,
+                         float* levels);
 
 } // namespace sono

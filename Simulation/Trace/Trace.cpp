@@ -100,16 +100,13 @@ void writeReverberation(const TraceSetup& setup, const TracedReverberation& kept
   const TissueBins& tissueBins = kept.tissueBins;
   ReverberationRows further(1, tissueBins.count);
   sumFurther(kept.around, line, tissueBins.mm, further);
-  for (int t = 0; t < tissueBins.count; ++t)
+  std::vector<float> levels(std::size_t(tissueBins.count));
+  reverberationLevels(setup.view, setup.lines[std::size_t(line)], tissueBins.mm, kept.around, line, further,
+                      kept.ownLevel.data() + kept.at(line, 0), levels.data());
+  float* const ofLine = out.reverberation.data() + std::size_t(line) * std::size_t(out.binCount);
+  for (int b = 0; b < out.binCount; ++b)
   {
-    const float rangeMm = (float(t) + 0.5f) * tissueBins.mm;
-    const float unspread = resolutionCell(setup.view, setup.lines[std::size_t(line)], rangeMm).unspread;
-    const float level =
-      reverberationLevel(kept.around.at(line, t), further.at(0, t), unspread, kept.ownLevel[kept.at(line, t)]);
-    for (int b = t * tissueBins.each; b < std::min(out.binCount, (t + 1) * tissueBins.each); ++b)
-    {
-      out.reverberation[std::size_t(line) * std::size_t(out.binCount) + std::size_t(b)] = level;
-    }
+    ofLine[b] = levels[std::size_t(b / tissueBins.each)];
   }
 }
 

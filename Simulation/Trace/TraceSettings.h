@@ -121,7 +121,8 @@ struct TraceSettings
     visitor(self.rouletteDb,
             Parameter{ "rouletteDb", "Roulette (dB)", between(-1000, 0),
                        "Paths fainter than this in dB, 20 log10 of the intensity, -1000 to 0, are ended by chance and "
-                       "the others of their kind count more." });
+                       "the others of their kind count more. Those that have been reflected already are where they "
+                       "stand for less than a sixth of the sound. -1000: none is." });
     visitor(
       self.reverberation,
       Parameter{ "reverberation",

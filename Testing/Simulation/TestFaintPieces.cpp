@@ -1,5 +1,6 @@
 #include "BeamScenes.h"
 #include "Echo/FaintPieces.h"
+#include "Echo/LayOutPieces.h"
 #include "Echo/SurfaceRows.h"
 #include "Scene/SurfacePieces.h"
 #include "SurfaceFigures.h"
@@ -63,9 +64,11 @@ TEST_P(FaintPieces, AreThoseWithoutAnyPointThatIsHeard)
   {
     const Beam beam = model.beamOf(lines[std::size_t(line)], Vec3d(1.0, 2.0, 3.0), Mat3d(1.0));
     PieceList pieces;
+    PieceShapes shapes;
     PieceExtents extents;
     std::vector<SurfacePiece> all;
-    std::vector<PieceNet> coherentNets;
+    // Two points along each side of a piece, and four of one that is bent.
+    const PieceNets nets{ { Vec3i(2) }, Vec3f(spacing), Vec3i(2), Vec3i(4), 1e6f };
     const PieceNet diffuse{ 2, 2, spacing / 2.0f, spacing / 2.0f };
     for (int n = 0; n < 6001; ++n)
     {
@@ -79,13 +82,24 @@ TEST_P(FaintPieces, AreThoseWithoutAnyPointThatIsHeard)
       piece.bendVV = n % 3 == 0 ? 0.0f : uniform(-0.3f, 0.3f);
       piece.share = uniform(0.2f, 1.0f);
       piece.axis = std::uint8_t(n % 5 == 0 ? n % 2 : 2);
-      const int cuts = n % 3 == 0 ? 2 : 4;
-      coherentNets.push_back({ cuts, cuts, spacing / float(cuts), spacing / float(cuts) });
       const int a = n % 3;
-      const PieceBounds bounds = pieceBounds(piece, spacing);
-      pieces.push(piece.positionMm, bounds.normal, bounds.radiusMm, cuts == 2, rows.row(a, (a + 1) % 3), table);
-      extents.push(piece, diffuse, coherentNets.back());
+      pieces.place(piece.positionMm, rows.row(a, (a + 1) % 3));
+      shapes.push(piece);
       all.push_back(piece);
+    }
+    layOutPieces(shapes, nets, spacing, table, pieces, extents);
+    const auto coherentNet = [&](std::size_t n) {
+      const int cuts = n % 3 == 0 ? 2 : 4;
+      return PieceNet{ cuts, cuts, spacing / float(cuts), spacing / float(cuts) };
+    };
+    for (std::size_t n = 0; n < all.size(); ++n)
+    {
+      const PieceBounds bounds = pieceBounds(all[n], spacing);
+      ASSERT_NEAR(glm::distance(bounds.normal, Vec3f(pieces.normalX[n], pieces.normalY[n], pieces.normalZ[n])), 0.0f,
+                  1e-6f);
+      ASSERT_NEAR(pieces.radiusMm[n], bounds.radiusMm, 1e-6f);
+      const SurfaceRow& row = table.rows[pieces.row[n]];
+      ASSERT_EQ(pieces.coherentReachA[n], n % 3 == 0 ? row.coherentReach : row.finestReach);
     }
     HeardList heard;
     hearPieces(pieces, nullptr, beam, grid, table, intensity, heard);
@@ -114,7 +128,7 @@ TEST_P(FaintPieces, AreThoseWithoutAnyPointThatIsHeard)
         {
           EXPECT_EQ(is, 0.0f);
         }
-        else if (isHeard(coherent ? coherentNets[n] : diffuse, was, coherent))
+        else if (isHeard(coherent ? coherentNet(n) : diffuse, was, coherent))
         {
           EXPECT_EQ(is, was) << (coherent ? "coherent " : "diffuse ") << n;
           ++heardPieces;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <random>
 #include <set>
 #include <thread>
 
@@ -70,6 +71,41 @@ int compareRecords(const RegionOnDemand& region, const TraceRegion& whole)
     }
   }
   return count;
+}
+
+/// All eight at once against one after the other.
+TEST(RegionOnDemand, RecordsAroundAPointAddUpToThoseOfTheWholeRegion)
+{
+  const auto scene = makeBusyScene();
+  const VoxelBox box{ Vec3i(3, 5, 2), Vec3i(60, 41, 64) };
+  const RegionOnDemand region = regionOnDemand(*scene, box);
+  const TraceRegion whole = wholeRegion(*scene, box);
+  const CellsOnDemand cells = region.view();
+  const TissueCells expected = whole.view();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  const std::vector<SideWeights> sides{ { 1.0f, 1.0f }, { 1.0f, 0.0f }, { 0.0f, 1.0f } };
+  int boundaries = 0;
+  for (int n = 0; n < 200000; ++n)
+  {
+    // From the border on one side to that on the other.
+    const Vec3i low =
+      Vec3i(glm::floor(Vec3f(uniform(random), uniform(random), uniform(random)) * Vec3f(cells.size + 1))) - 1;
+    const Vec3f share(uniform(random), uniform(random), uniform(random));
+    const int from = cells.tissueAt(low);
+    const int to = cells.tissueAt(low + Vec3i(n & 1, (n >> 1) & 1, 1));
+    if (from == to)
+    {
+      continue;
+    }
+    const SideWeights& weights = sides[std::size_t(n) % sides.size()];
+    const RecordSum sum = sumRecords(cells, low, share, from, to, weights);
+    const RecordSum reference = sumRecords(expected, low, share, from, to, weights);
+    ASSERT_NEAR(sum.weight, reference.weight, 1e-6f);
+    ASSERT_NEAR(glm::distance(sum.normals, reference.normals), 0.0f, 1e-6f);
+    boundaries += reference.weight > 0.1f ? 1 : 0;
+  }
+  EXPECT_GT(boundaries, 1000);
 }
 
 TEST(RegionOnDemand, RecordsAreThoseOfTheWholeRegion)

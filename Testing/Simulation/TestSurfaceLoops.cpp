@@ -130,6 +130,7 @@ TEST_P(SurfaceLoops, MarkTheFacesThatMayBeHeard)
   {
     points.push_back(point());
     points.back().normal *= n % 7 == 0 ? 0.0f : 1.0f; // not known
+    faces.reserve(1);
     faces.push(points.back().position, points.back().normal, rows.at(points.back().row),
                rows.at(points.back().row ^ 1));
   }

@@ -204,8 +204,9 @@ std::vector<Vec3f> candidatesOf(int level, int count, int edgeMm)
     line.clear();
     line.append({ i % bricks, 0, i / bricks }, 1, bricks);
     nested.generate(level, line, wanted.data(), row);
-    for (std::size_t n = 0; n < std::size_t(row.before.back()); ++n)
+    for (std::size_t n = 0; n < std::size_t(row.count()); ++n)
     {
+      EXPECT_NE(row.amplitude[n], 0.0f);
       out.push_back({ row.x[n], row.y[n], row.z[n] });
     }
   }
