@@ -39,7 +39,7 @@ private:
   std::vector<std::int32_t> at_, parentAt_;
   // What is heard, with room up to whole vectors.
   std::vector<float> x_, y_, z_, amplitude_;
-  std::vector<float> alongAxis_; // amplitudes of all scatterers as they are heard along the beam's axis
+  std::vector<float> alongAxis_; // amplitudes of bricks with fibres as they are heard along the beam's axis
 };
 
 } // namespace sono

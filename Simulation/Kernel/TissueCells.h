@@ -40,16 +40,16 @@ struct TissueCells
     return (std::size_t(block) << 5) | ((ux & 3u) | ((uy & 3u) << 2) | ((uz & 1u) << 4));
   }
   /// Of the eight voxels from `low` to the next along each axis, x first: each axis adds its own part.
-  SONO_HD void offsetsAround(const Vec3i& low, std::uint32_t* out) const
+  SONO_HD void offsetsAround(const Vec3i& low, std::size_t* out) const
   {
-    const unsigned perRow = unsigned(blocks.x) << 5;
-    const unsigned perSlab = perRow * unsigned(blocks.y);
-    const auto ofX = [](unsigned u) { return ((u >> 2) << 5) | (u & 3u); };
-    const auto ofY = [=](unsigned u) { return (u >> 2) * perRow + ((u & 3u) << 2); };
-    const auto ofZ = [=](unsigned u) { return (u >> 1) * perSlab + ((u & 1u) << 4); };
-    const unsigned x[2] = { ofX(unsigned(low.x + 1)), ofX(unsigned(low.x + 2)) };
-    const unsigned y[2] = { ofY(unsigned(low.y + 1)), ofY(unsigned(low.y + 2)) };
-    const unsigned z[2] = { ofZ(unsigned(low.z + 1)), ofZ(unsigned(low.z + 2)) };
+    const std::size_t perRow = std::size_t(blocks.x) << 5;
+    const std::size_t perSlab = perRow * std::size_t(blocks.y);
+    const auto ofX = [](unsigned u) { return (std::size_t(u >> 2) << 5) | (u & 3u); };
+    const auto ofY = [=](unsigned u) { return std::size_t(u >> 2) * perRow + ((u & 3u) << 2); };
+    const auto ofZ = [=](unsigned u) { return std::size_t(u >> 1) * perSlab + ((u & 1u) << 4); };
+    const std::size_t x[2] = { ofX(unsigned(low.x + 1)), ofX(unsigned(low.x + 2)) };
+    const std::size_t y[2] = { ofY(unsigned(low.y + 1)), ofY(unsigned(low.y + 2)) };
+    const std::size_t z[2] = { ofZ(unsigned(low.z + 1)), ofZ(unsigned(low.z + 2)) };
     for (int n = 0; n < 8; ++n)
     {
       out[n] = x[n & 1] + y[(n >> 1) & 1] + z[n >> 2];

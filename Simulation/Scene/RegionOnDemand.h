@@ -91,7 +91,7 @@ inline std::uint32_t CellsOnDemand::recordOf(int x, int y, int z, std::uint32_t 
 inline RecordSum sumRecords(const CellsOnDemand& cells, const Vec3i& low, const Vec3f& share, int from, int to,
                             const SideWeights& weights)
 {
-  std::uint32_t at[8];
+  std::size_t at[8];
   std::int32_t word[8];
   cells.offsetsAround(low, at);
   for (int n = 0; n < 8; ++n)
