@@ -67,13 +67,13 @@ SONO_SIMD_CLONES __attribute__((flatten)) void layOutEach(PieceShapes& shapes, c
     piece.share = share[n];
     piece.axis = std::uint8_t(axis[n]);
     const PieceBounds bounds = pieceBounds(piece, longestStepMm);
-    const Vec3i cuts = nets.coherentCuts(piece).cuts;
-    const Extent extent = extentOf(piece, nets.diffuseNet(piece), PieceCuts{ cuts }.of(piece.axis, nets.spacingMm));
+    const PieceCuts cuts = nets.coherentCuts(piece);
+    const Extent extent = extentOf(piece, nets.diffuseNet(piece), cuts.of(piece.axis, nets.spacingMm));
     nx[n] = bounds.normal.x;
     ny[n] = bounds.normal.y;
     nz[n] = bounds.normal.z;
     radius[n] = bounds.radiusMm;
-    isCoarsest[n] = (cuts.x == nets.fewest.x) & (cuts.y == nets.fewest.y) & (cuts.z == nets.fewest.z) ? 1 : 0;
+    isCoarsest[n] = nets.isCoarsest(cuts) ? 1 : 0;
     ux[n] = extent.halfU.x;
     uy[n] = extent.halfU.y;
     uz[n] = extent.halfU.z;

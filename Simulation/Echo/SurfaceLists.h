@@ -54,6 +54,7 @@ struct PieceList
   void place(const Vec3f& position, int rowFromA);
   /// What one counts of its row. `coarse`: its blobs are the coarsest.
   void setReach(int piece, bool coarse, const SurfaceTable& table);
+  /// Both, of one that is known.
   void push(const Vec3f& position, const Vec3f& normal, float radius, bool coarse, int rowFromA,
             const SurfaceTable& table);
 };

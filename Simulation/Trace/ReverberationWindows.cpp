@@ -38,41 +38,6 @@ void addLine(const ReverberationRows& from, int line, int ahead, float by, float
   }
 }
 
-/// The sums of a line.
-struct AroundPointers
-{
-  const float *cellPower, *power, *chance, *straightPower, *straightWeight;
-
-  AroundPointers(const ReverberationRows& rows, int line)
-    : cellPower(rows.row(line, 0))
-    , power(rows.row(line, 1))
-    , chance(rows.row(line, 2))
-    , straightPower(rows.row(line, 3))
-    , straightWeight(rows.row(line, 4))
-  {
-  }
-  ReverberationAround at(int bin) const
-  {
-    return { cellPower[bin], power[bin], chance[bin], straightPower[bin], straightWeight[bin] };
-  }
-};
-
-SONO_SIMD_CLONES __attribute__((flatten)) void writeLevels(const TraceView& view, const TraceLine& axis, float binMm,
-                                                           const AroundPointers& around, const AroundPointers& further,
-                                                           const float* own, int count, float* levels)
-{
-  const AroundPointers here = around;
-  const AroundPointers there = further;
-  const float* const ownLevel = own;
-  float* const level = levels;
-#pragma GCC ivdep
-  for (int b = 0; b < count; ++b)
-  {
-    const float unspread = resolutionCell(view, axis, (float(b) + 0.5f) * binMm).unspread;
-    level[b] = reverberationLevel(here.at(b), there.at(b), unspread, ownLevel[b]);
-  }
-}
-
 } // namespace
 
 void sumAlongLine(const ReverberationRows& inBin, int from, float tissueBinMm, ReverberationRows& along, int to)
@@ -106,12 +71,20 @@ void sumFurther(const ReverberationRows& around, int line, float tissueBinMm, Re
   }
 }
 
-void reverberationLevels(const TraceView& view, const TraceLine& axis, float tissueBinMm,
-                         const ReverberationRows& around, int line, const ReverberationRows& further, const float* own,
-                         float* levels)
+SONO_SIMD_CLONES __attribute__((flatten)) void reverberationLevels(const TraceView& view, const TraceLine& axis,
+                                                                   float tissueBinMm, const ReverberationRows& around,
+                                                                   int line, const ReverberationRows& further,
+                                                                   const float* own, float* levels)
 {
-  writeLevels(view, axis, tissueBinMm, AroundPointers(around, line), AroundPointers(further, 0), own, around.bins(),
-              levels);
+  const float* const ownLevel = own;
+  float* const level = levels;
+  const int count = around.bins();
+#pragma GCC ivdep
+  for (int b = 0; b < count; ++b)
+  {
+    const float unspread = resolutionCell(view, axis, (float(b) + 0.5f) * tissueBinMm).unspread;
+    level[b] = reverberationLevel(around.at(line, b), further.at(0, b), unspread, ownLevel[b]);
+  }
 }
 
 } // namespace sono
